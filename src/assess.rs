@@ -1,0 +1,221 @@
+//! Every figure and verdict of a candidate, from nothing but the problem, the linkage and its positions.
+//!
+//! Searches call it to rank, `run` to write the record and `verify` to check one: there is one judge, and it
+//! asks no optimiser.
+
+use crate::linkage::{AssemblyMode, FourBar};
+use crate::problem::Problem;
+use crate::problem::spec::{DirectionPolicy, Limits, OnePolicy, OrderPolicy, TransmissionOver};
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
+use crate::task::referee::{Verdict, judge};
+use crate::task::{Defect, error::rms};
+
+/// A requirement is met within this part of max(1, |limit|).
+pub const MET_TOLERANCE: f64 = 1e-7;
+
+/// Whether `value` reaches at least `limit`, within the tolerance.
+fn at_least(value: f64, limit: f64) -> bool {
+    value >= limit - MET_TOLERANCE * limit.abs().max(1.0)
+}
+
+fn at_most(value: f64, limit: f64) -> bool {
+    value <= limit + MET_TOLERANCE * limit.abs().max(1.0)
+}
+
+/// Judges a linkage at crank angles given in degrees, one a target point (that is how the record has them).
+///
+/// `None` where the loop is open at a point: then there is no error to speak of. The rank is left at 0.
+///
+/// # Panics
+/// When there are fewer angles or assemblies than points.
+pub fn assess(
+    problem: &Problem,
+    linkage: &FourBar,
+    crank_deg: &[f64],
+    assemblies: &[AssemblyMode],
+) -> Option<Candidate> {
+    let task = problem.task();
+    let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
+    let linkage_type = linkage.linkage_type()?;
+    let error = task.errors(linkage, &crank_angles, assemblies)?;
+    let to_curve = task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?;
+    let verdict = judge(task, linkage, &crank_angles, assemblies);
+    let n = task.len();
+    let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {
+        TransmissionOver::Cycle
+    } else {
+        TransmissionOver::Used
+    });
+    let extremes = match over {
+        TransmissionOver::Cycle => linkage.transmission_over_cycle(),
+        TransmissionOver::Used => verdict.motion.transmission(),
+    };
+    let mut candidate = Candidate {
+        rank: 0,
+        linkage: *linkage,
+        crank_deg: crank_deg.to_vec(),
+        t1_at: assemblies.to_vec(),
+        error: ErrorRecord {
+            objective: error.objective,
+            sum_sq: error.sum_sq,
+            rms: rms(error.sum_sq, n),
+            max: error.max,
+            max_at: error.max_at,
+            rms_over_size: rms(error.sum_sq, n) / task.size(),
+            to_curve: CurveErrorRecord {
+                sum_sq: to_curve.sum_sq,
+                rms: rms(to_curve.sum_sq, n),
+                max: to_curve.max,
+            },
+        },
+        linkage_type,
+        grashof_margin: linkage.grashof_margin(),
+        transmission_deg: TransmissionRecord {
+            min: extremes.min.to_degrees(),
+            max: extremes.max.to_degrees(),
+            worst: extremes.worst().to_degrees(),
+            over,
+        },
+        link_ratio: linkage.link_ratio(),
+        requirements: Vec::new(),
+        accepted: false,
+        defects: verdict.defects.clone(),
+    };
+    candidate.requirements = requirements(problem, &candidate, &verdict);
+    if let Some(tolerances) = task.tolerances() {
+        candidate.requirements.push(tolerance_row(tolerances, &error.structural));
+    }
+    candidate.accepted = candidate.requirements.iter().all(|r| r.met)
+        && candidate.defects.iter().all(|d| !forbidden(problem, d));
+    Some(candidate)
+}
+
+/// Whether a problem disallows a defect.
+pub fn forbidden(problem: &Problem, defect: &Defect) -> bool {
+    let require = &problem.spec().require;
+    match defect {
+        Defect::Order { .. } => require.order == OrderPolicy::Required,
+        Defect::Branch { .. } => require.branch == OnePolicy::One,
+        Defect::Circuit { .. } => require.circuit == OnePolicy::One,
+    }
+}
+
+fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {
+    // The point that exceeds its tolerance most, or comes nearest to it.
+    let worst = (0..structural.len())
+        .max_by(|&i, &j| {
+            let excess = |k: usize| structural[k].norm() - tolerances[k];
+            excess(i).total_cmp(&excess(j)).then(j.cmp(&i))
+        })
+        .unwrap_or(0);
+    let (value, limit) = (structural[worst].norm(), tolerances[worst]);
+    Requirement {
+        name: "tolerance".into(),
+        value: Figure::Number(value),
+        limit: Figure::Number(limit),
+        met: at_most(value, limit),
+    }
+}
+
+fn requirements(problem: &Problem, candidate: &Candidate, verdict: &Verdict) -> Vec<Requirement> {
+    let require = &problem.spec().require;
+    let mut rows = Vec::new();
+    let mut push = |name: &str, value: Figure, limit: Figure, met: bool| {
+        rows.push(Requirement { name: name.into(), value, limit, met });
+    };
+    if !require.types.is_empty() {
+        push(
+            "type",
+            Figure::Word(candidate.linkage_type.name().into()),
+            Figure::Words(require.types.iter().map(|t| t.name().into()).collect()),
+            require.types.contains(&candidate.linkage_type),
+        );
+    }
+    if let Some(limit) = require.transmission_deg_min {
+        let value = candidate.transmission_deg.worst;
+        push("transmission_deg_min", Figure::Number(value), Figure::Number(limit), at_least(value, limit));
+    }
+    let limit = require.link_ratio_max;
+    push(
+        "link_ratio_max",
+        Figure::Number(candidate.link_ratio),
+        Figure::Number(limit),
+        at_most(candidate.link_ratio, limit),
+    );
+    let inside = |held: [f64; 4], limit: [f64; 4]| {
+        (0..2).all(|i| at_least(held[i], limit[i]) && at_most(held[i + 2], limit[i + 2]))
+    };
+    let boxed = |b: [f64; 4]| Figure::Numbers(b.to_vec());
+    if let Some(limit) = require.pivots_in {
+        let (a, b) = (candidate.linkage.crank_pivot(), candidate.linkage.follower_pivot());
+        let held = [a.re.min(b.re), a.im.min(b.im), a.re.max(b.re), a.im.max(b.im)];
+        push("pivots_in", boxed(held), boxed(limit), inside(held, limit));
+    }
+    if let Some(limit) = require.footprint_in {
+        let held = verdict.motion.footprint();
+        push("footprint_in", boxed(held), boxed(limit), inside(held, limit));
+    }
+    if require.direction != DirectionPolicy::Any {
+        let word = |ccw: bool| if ccw { "ccw" } else { "cw" };
+        let (has, wants) = (verdict.direction > 0.0, require.direction == DirectionPolicy::Ccw);
+        push("direction", Figure::Word(word(has).into()), Figure::Word(word(wants).into()), has == wants);
+    }
+    for defect in ["order", "branch", "circuit"] {
+        let policy = match defect {
+            "order" => require.order == OrderPolicy::Required,
+            "branch" => require.branch == OnePolicy::One,
+            _ => require.circuit == OnePolicy::One,
+        };
+        if policy {
+            let found = candidate.defects.iter().any(|d| d.name() == defect);
+            let wants = if defect == "order" { "required" } else { "one" };
+            let has = match (found, defect) {
+                (false, _) => wants,
+                (true, "order") => "broken",
+                (true, _) => "several",
+            };
+            push(defect, Figure::Word(has.into()), Figure::Word(wants.into()), !found);
+        }
+    }
+    rows.extend(design_rows(problem, &candidate.linkage));
+    rows
+}
+
+/// The design table's limits, each with the linkage's own value.
+fn design_rows(problem: &Problem, linkage: &FourBar) -> Vec<Requirement> {
+    let design = &problem.spec().design;
+    let offset = linkage.coupler_offset();
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    let mut rows = Vec::new();
+    let mut push = |name: &str, value: f64, limits: Option<Limits>| {
+        if let Some(Limits(low, high)) = limits {
+            rows.push(Requirement {
+                name: format!("design.{name}"),
+                value: Figure::Number(value),
+                limit: Figure::Numbers(vec![low, high]),
+                met: at_least(value, low) && at_most(value, high),
+            });
+        }
+    };
+    let axis = |p: Option<[Limits; 2]>, i: usize| p.map(|p| p[i]);
+    push("Ax", a.re, axis(design.crank_pivot, 0));
+    push("Ay", a.im, axis(design.crank_pivot, 1));
+    push("Bx", b.re, axis(design.follower_pivot, 0));
+    push("By", b.im, axis(design.follower_pivot, 1));
+    push("a", linkage.crank(), design.a);
+    push("b", linkage.coupler(), design.b);
+    push("c", linkage.follower(), design.c);
+    push("d", linkage.crank_side(), design.d);
+    push("e", linkage.follower_side(), design.e);
+    push("ground", linkage.ground(), design.ground);
+    if let Some(Limits(low, high)) = design.ground_angle_deg {
+        // The turn of the ground line that lies nearest to the limits.
+        let middle = 0.5 * (low + high);
+        let angle = linkage.ground_angle().to_degrees();
+        let value = angle + 360.0 * ((middle - angle) / 360.0).round();
+        push("ground_angle_deg", value, Some(Limits(low, high)));
+    }
+    push("coupler_x", offset.re, design.coupler_x);
+    push("coupler_y", offset.im, design.coupler_y);
+    rows
+}

@@ -1,0 +1,170 @@
+//! The arithmetic that the position solver is written in, once: one `f64` or eight of them side by side.
+//!
+//! Every operation is a single IEEE-754 operation a lane (no fused multiply-add), so eight lanes give the
+//! very bits that one lane gives. The eight-lane type is a plain array: the compiler turns its loops into
+//! whatever vector instructions the enclosing function may use (see [`super::dispatch`]).
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// How many values [`F64x8`] holds.
+pub const LANES: usize = 8;
+
+/// One number or several numbers that take part in the same calculation.
+pub trait Lane:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// The same number in every lane.
+    fn splat(value: f64) -> Self;
+    /// 1 / self.
+    fn recip(self) -> Self;
+    /// Square root; NaN below zero.
+    fn sqrt(self) -> Self;
+    /// The larger of self and zero; zero for NaN.
+    fn positive_part(self) -> Self;
+    /// The smaller of the two numbers; `other` where self is NaN.
+    fn min(self, other: Self) -> Self;
+    /// `yes` where self >= limit, `no` elsewhere and where self is NaN.
+    fn at_least(self, limit: Self, yes: Self, no: Self) -> Self;
+}
+
+impl Lane for f64 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        1.0 / self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn positive_part(self) -> Self {
+        if self > 0.0 { self } else { 0.0 }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn at_least(self, limit: Self, yes: Self, no: Self) -> Self {
+        if self >= limit { yes } else { no }
+    }
+}
+
+/// Eight numbers side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(align(64))]
+pub struct F64x8(pub [f64; LANES]);
+
+impl F64x8 {
+    /// The eight numbers that start at `slice[at]`.
+    ///
+    /// # Panics
+    /// When fewer than eight are left.
+    #[inline(always)]
+    pub fn load(slice: &[f64], at: usize) -> Self {
+        let mut lanes = [0.0; LANES];
+        lanes.copy_from_slice(&slice[at..at + LANES]);
+        F64x8(lanes)
+    }
+
+    /// Writes the eight numbers to `slice[at..at + 8]`.
+    ///
+    /// # Panics
+    /// When there is no room for eight.
+    #[inline(always)]
+    pub fn store(self, slice: &mut [f64], at: usize) {
+        slice[at..at + LANES].copy_from_slice(&self.0);
+    }
+
+    /// The sum of the lanes, always added in the same order (halves, then quarters, then the pair).
+    #[inline(always)]
+    pub fn sum(self) -> f64 {
+        let l = self.0;
+        ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]))
+    }
+
+    #[inline(always)]
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = f(self.0[i], other.0[i]);
+        }
+        F64x8(out)
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = f(self.0[i]);
+        }
+        F64x8(out)
+    }
+}
+
+impl Add for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |x, y| x + y)
+    }
+}
+
+impl Sub for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |x, y| x - y)
+    }
+}
+
+impl Mul for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self.zip(other, |x, y| x * y)
+    }
+}
+
+impl Neg for F64x8 {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|x| -x)
+    }
+}
+
+impl Lane for F64x8 {
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        F64x8([value; LANES])
+    }
+    #[inline(always)]
+    fn recip(self) -> Self {
+        self.map(|x| 1.0 / x)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(f64::sqrt)
+    }
+    #[inline(always)]
+    fn positive_part(self) -> Self {
+        self.map(Lane::positive_part)
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.zip(other, Lane::min)
+    }
+    #[inline(always)]
+    fn at_least(self, limit: Self, yes: Self, no: Self) -> Self {
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = if self.0[i] >= limit.0[i] { yes.0[i] } else { no.0[i] };
+        }
+        F64x8(out)
+    }
+}

@@ -1,0 +1,260 @@
+//! The analytic position solver in natural coordinates: the kernel that everything else calls.
+//!
+//! With V = B - C and s^2 = |V|^2 (N. N. Romero Nunez 2016, equations 10 to 19):
+//!
+//! ```text
+//! C = A + a e^{i phi}
+//! u = (1 + (b^2 - c^2)/s^2)/2        (= l1/s, equation 12)
+//! k = b^2/s^2 - u^2                  (= (h1/s)^2, equation 13; negative: the loop does not close)
+//! D = C + V (u + i t1 sqrt k)        (equation 15)
+//! P = C + z (D - C)                  (equation 18)
+//! ```
+//!
+//! One division and one square root a position. The seed's assembly condition (20) is necessary only: what
+//! closes the loop is k >= 0, what closes the coupler triangle is d^2 >= l2^2 (checked when a [`FourBar`]
+//! is made). The loop is also open when C falls on B: D is then undetermined (b = c) or impossible.
+
+use super::dispatch::vectorised;
+use super::lane::{F64x8, LANES, Lane};
+use super::{AssemblyMode, Complex, FLAT_TOLERANCE, FourBar};
+
+/// Where the moving joints are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joints {
+    /// C.
+    pub crank_pin: Complex,
+    /// D.
+    pub follower_pin: Complex,
+    /// P.
+    pub coupler_point: Complex,
+}
+
+/// The answer of the position solver at one crank angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Position {
+    /// The loop closes.
+    Closed(Joints),
+    /// No position: coupler and follower cannot meet at this crank angle.
+    Open,
+    /// C lies on B and b = c: every direction of the follower closes the loop.
+    Undetermined,
+}
+
+impl Position {
+    /// The joints where the loop closes in a definite way.
+    pub fn joints(self) -> Option<Joints> {
+        match self {
+            Position::Closed(joints) => Some(joints),
+            Position::Open | Position::Undetermined => None,
+        }
+    }
+
+    /// Whether the loop closes in a definite way.
+    pub fn is_closed(self) -> bool {
+        matches!(self, Position::Closed(_))
+    }
+}
+
+/// The linkage as the numbers that the kernel multiplies with.
+#[derive(Clone, Copy, Debug)]
+pub struct Kernel {
+    a_x: f64,
+    a_y: f64,
+    crank: f64,
+    b_x: f64,
+    b_y: f64,
+    coupler_sq: f64,
+    half_difference: f64,
+    t1: f64,
+    z_x: f64,
+    z_y: f64,
+}
+
+/// A position in lanes; `gap` is k where the loop closes (0 or more) and negative or NaN where it doesn't.
+#[derive(Clone, Copy, Debug)]
+pub struct LanePosition<L> {
+    /// C.
+    pub crank_pin: [L; 2],
+    /// D.
+    pub follower_pin: [L; 2],
+    /// P.
+    pub coupler_point: [L; 2],
+    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly where the loop closes.
+    pub gap: L,
+}
+
+impl Kernel {
+    /// The numbers of a linkage.
+    #[inline]
+    pub fn new(linkage: &FourBar) -> Self {
+        let p = &linkage.parameters;
+        Kernel::from_parts(
+            p.crank_pivot,
+            p.follower_pivot,
+            [p.crank, p.coupler, p.follower],
+            [linkage.coupler_ratio.re, linkage.coupler_ratio.im],
+            p.assembly,
+        )
+    }
+
+    /// The numbers from A, B, (a, b, c), z and t1; nothing is checked.
+    #[inline(always)]
+    pub fn from_parts(
+        crank_pivot: [f64; 2],
+        follower_pivot: [f64; 2],
+        links: [f64; 3],
+        coupler_ratio: [f64; 2],
+        assembly: AssemblyMode,
+    ) -> Self {
+        let [crank, coupler, follower] = links;
+        Kernel {
+            a_x: crank_pivot[0],
+            a_y: crank_pivot[1],
+            crank,
+            b_x: follower_pivot[0],
+            b_y: follower_pivot[1],
+            coupler_sq: coupler * coupler,
+            half_difference: 0.5 * (coupler * coupler - follower * follower),
+            t1: assembly.sign(),
+            z_x: coupler_ratio[0],
+            z_y: coupler_ratio[1],
+        }
+    }
+
+    /// C, V, u, sqrt k and the gap: what both assemblies share.
+    #[inline(always)]
+    fn reach<L: Lane>(&self, cos: L, sin: L) -> Reach<L> {
+        let s = L::splat;
+        let crank_pin = [s(self.a_x) + s(self.crank) * cos, s(self.a_y) + s(self.crank) * sin];
+        let v = [s(self.b_x) - crank_pin[0], s(self.b_y) - crank_pin[1]];
+        let inv = (v[0] * v[0] + v[1] * v[1]).recip();
+        let u = s(0.5) + s(self.half_difference) * inv;
+        let reach = s(self.coupler_sq) * inv;
+        let k = reach - u * u;
+        Reach { crank_pin, v, u, root: k.positive_part().sqrt(), gap: k + s(FLAT_TOLERANCE) * reach }
+    }
+
+    #[inline(always)]
+    fn close<L: Lane>(&self, reach: &Reach<L>, root: L) -> LanePosition<L> {
+        let s = L::splat;
+        let Reach { crank_pin: [c_x, c_y], v: [v_x, v_y], u, gap, .. } = *reach;
+        let w_x = v_x * u - v_y * root;
+        let w_y = v_y * u + v_x * root;
+        LanePosition {
+            crank_pin: [c_x, c_y],
+            follower_pin: [c_x + w_x, c_y + w_y],
+            coupler_point: [
+                c_x + s(self.z_x) * w_x - s(self.z_y) * w_y,
+                c_y + s(self.z_x) * w_y + s(self.z_y) * w_x,
+            ],
+            gap,
+        }
+    }
+
+    /// The position at a crank angle given by its cosine and sine, in any lane type.
+    ///
+    /// Where the loop is open the joints are those of the nearest flat position and `gap` says so.
+    #[inline(always)]
+    pub fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
+        let reach = self.reach(cos, sin);
+        self.close(&reach, L::splat(self.t1) * reach.root)
+    }
+
+    /// The positions of both assemblies, [t1 = +1, t1 = -1], for one division and one root.
+    #[inline(always)]
+    pub fn at_both<L: Lane>(&self, cos: L, sin: L) -> [LanePosition<L>; 2] {
+        let reach = self.reach(cos, sin);
+        [self.close(&reach, reach.root), self.close(&reach, -reach.root)]
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Reach<L> {
+    crank_pin: [L; 2],
+    v: [L; 2],
+    u: L,
+    root: L,
+    gap: L,
+}
+
+impl FourBar {
+    /// The position at the crank angle `crank_angle` (radians from the x axis), in closed form.
+    ///
+    /// ```
+    /// # use linkwright::linkage::*;
+    /// // De Castro, example 2.1 at 90 degrees: P = (64.893, 510.820).
+    /// let linkage = FourBar::from_vector_loop(VectorLoop {
+    ///     crank_pivot: [0.0, 0.0], follower_pivot: [-350.0, 0.0], crank: 700.0, coupler: 300.0,
+    ///     follower: 500.0, coupler_point: 200.0, beta_deg: 30.0, assembly: AssemblyMode::Plus })?;
+    /// let p = linkage.position(90f64.to_radians()).joints().unwrap().coupler_point;
+    /// assert!((p.re - 64.893).abs() < 5e-4 && (p.im - 510.820).abs() < 5e-4);
+    /// # Ok::<(), LinkageError>(())
+    /// ```
+    pub fn position(&self, crank_angle: f64) -> Position {
+        self.position_with(crank_angle, self.assembly())
+    }
+
+    /// As [`FourBar::position`] with the other or the same assembly.
+    pub fn position_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Position {
+        let (sin, cos) = crank_angle.sin_cos();
+        let at = Kernel::new(&self.with_assembly(assembly)).at(cos, sin);
+        if at.gap >= 0.0 && at.coupler_point.iter().all(|x| x.is_finite()) {
+            let as_point = |p: [f64; 2]| Complex::new(p[0], p[1]);
+            return Position::Closed(Joints {
+                crank_pin: as_point(at.crank_pin),
+                follower_pin: as_point(at.follower_pin),
+                coupler_point: as_point(at.coupler_point),
+            });
+        }
+        let distance = (self.follower_pivot() - Complex::new(at.crank_pin[0], at.crank_pin[1])).norm();
+        if distance == 0.0 && self.coupler() == self.follower() {
+            Position::Undetermined
+        } else {
+            Position::Open
+        }
+    }
+}
+
+/// The coupler points and closure of many crank angles, as columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CouplerPoints {
+    /// P, x.
+    pub x: Vec<f64>,
+    /// P, y.
+    pub y: Vec<f64>,
+    /// At least zero where the loop closes; negative or NaN where x and y mean nothing.
+    pub gap: Vec<f64>,
+}
+
+impl CouplerPoints {
+    /// Room for `n` positions, a multiple of eight is used inside.
+    pub fn with_room(n: usize) -> Self {
+        let padded = n.next_multiple_of(LANES);
+        CouplerPoints { x: vec![0.0; padded], y: vec![0.0; padded], gap: vec![0.0; padded] }
+    }
+
+    /// Computes the coupler point for each (cos, sin) pair, eight at a time. No allocation.
+    ///
+    /// # Panics
+    /// When `cos` and `sin` differ in length, are no multiple of eight, or exceed the room.
+    pub fn fill(&mut self, kernel: &Kernel, cos: &[f64], sin: &[f64]) {
+        assert_eq!(cos.len(), sin.len(), "as many cosines as sines");
+        assert_eq!(cos.len() % LANES, 0, "pad the angles to a multiple of eight");
+        let n = cos.len();
+        let (x, y, gap) = (&mut self.x[..n], &mut self.y[..n], &mut self.gap[..n]);
+        vectorised(
+            #[inline(always)]
+            || {
+                let chunks = cos.chunks_exact(LANES).zip(sin.chunks_exact(LANES));
+                let out =
+                    x.chunks_exact_mut(LANES).zip(y.chunks_exact_mut(LANES)).zip(gap.chunks_exact_mut(LANES));
+                for ((c, s), ((x, y), gap)) in chunks.zip(out) {
+                    let at = kernel.at(F64x8::load(c, 0), F64x8::load(s, 0));
+                    at.coupler_point[0].store(x, 0);
+                    at.coupler_point[1].store(y, 0);
+                    at.gap.store(gap, 0);
+                }
+            },
+        );
+    }
+}

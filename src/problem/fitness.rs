@@ -1,0 +1,395 @@
+//! What a population search sees: the design's free numbers in, violation and cost out.
+//!
+//! *Prescribed timing*: the cost is the weighted sum of squared errors at the prescribed angles; both
+//! assemblies come from one position solution, both directions are tried where allowed, and the better one
+//! counts. *Free timing*: the coupler curve is sampled at evenly spaced crank angles and each point is met at
+//! the angle that is nearest to it alone (a parabola through the three samples around the nearest one). The
+//! crank angles are no genes. Order, circuit and branch, where required, enter the violation.
+//!
+//! A design that breaks a requirement is not given a cost that it does not have: it has a violation, and
+//! feasibility rules compare it (see [`crate::solve::population`]). Nothing here allocates.
+
+use super::design_space::{Design, DesignSpace, Shape};
+use super::requirements::{Motion, Requirements, nearest_type};
+use super::{Problem, Setting};
+use crate::linkage::dispatch::vectorised;
+use crate::linkage::lane::{F64x8, LANES, Lane};
+use crate::linkage::mobility::linkage_type;
+use crate::linkage::position::Kernel;
+use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType, cross, xy};
+use crate::solve::population::{Fitness, PopulationProblem};
+use crate::task::{AngleOffset, Timing};
+use std::f64::consts::TAU;
+
+/// Samples of the coupler curve for free timing: 2.8 degrees apart; the parabola leaves an error of the third
+/// order in that.
+const CURVE_SAMPLES: usize = 128;
+
+/// Columns padded to a multiple of eight, the padding with weight zero.
+#[derive(Clone, Debug)]
+struct Columns {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    weight: Vec<f64>,
+}
+
+/// The fitness of a path task.
+#[derive(Clone, Debug)]
+pub struct PathFitness<'a> {
+    problem: &'a Problem,
+    spaces: Vec<(CouplerSide, DesignSpace)>,
+    requirements: Requirements,
+    genes: Vec<(f64, f64)>,
+    targets: Columns,
+    /// For each direction the sign and the columns cos, sin of direction psi_j (prescribed timing).
+    clocks: Vec<(f64, Vec<f64>, Vec<f64>)>,
+    /// cos, sin of the sampled crank angles (free timing).
+    wheel: (Vec<f64>, Vec<f64>),
+    /// The least and the greatest prescribed angle as written, radians.
+    span: (f64, f64),
+}
+
+/// The best way to read a design: its fitness and the setting that has it.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// The fitness.
+    pub fitness: Fitness,
+    /// The setting.
+    pub setting: Setting,
+}
+
+impl<'a> PathFitness<'a> {
+    /// The fitness of a problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        let task = problem.task();
+        let padded = task.len().next_multiple_of(LANES);
+        let column = |of: &dyn Fn(usize) -> f64, pad: f64| -> Vec<f64> {
+            (0..padded).map(|j| if j < task.len() { of(j) } else { pad }).collect()
+        };
+        let last = task.len() - 1;
+        let targets = Columns {
+            x: column(&|j| task.points()[j].re, task.points()[last].re),
+            y: column(&|j| task.points()[j].im, task.points()[last].im),
+            weight: column(&|j| task.weights()[j], 0.0),
+        };
+        let mut clocks = Vec::new();
+        let mut span = (0.0, 0.0);
+        if let Timing::Prescribed { crank_angles, .. } = task.timing() {
+            span = crank_angles
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| (l.min(a), h.max(a)));
+            for &direction in problem.directions() {
+                let phases = problem.phases(direction);
+                clocks.push((
+                    direction,
+                    column(&|j| phases[j].re, phases[last].re),
+                    column(&|j| phases[j].im, phases[last].im),
+                ));
+            }
+        }
+        let wheel: Vec<Complex> = (0..CURVE_SAMPLES)
+            .map(|i| Complex::from_polar(1.0, TAU * i as f64 / CURVE_SAMPLES as f64))
+            .collect();
+        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
+        PathFitness {
+            requirements: problem.requirements(&spaces[0].1),
+            genes: spaces[0].1.free_box(),
+            problem,
+            spaces,
+            targets,
+            clocks,
+            wheel: (wheel.iter().map(|e| e.re).collect(), wheel.iter().map(|e| e.im).collect()),
+            span,
+        }
+    }
+
+    /// The design space of a side of the coupler point.
+    pub fn space(&self, side: CouplerSide) -> &DesignSpace {
+        self.spaces.iter().find(|(s, _)| *s == side).map_or(&self.spaces[0].1, |(_, space)| space)
+    }
+
+    /// How many positions of the linkage one evaluation computes.
+    pub fn positions_per_evaluation(&self) -> u64 {
+        let each = if self.clocks.is_empty() {
+            CURVE_SAMPLES
+        } else {
+            self.problem.task().len() * self.clocks.len()
+        };
+        (2 * each * self.spaces.len()) as u64
+    }
+
+    /// The best reading of a design's free numbers.
+    pub fn read(&self, genes: &[f64]) -> Reading {
+        let nothing =
+            Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
+        let mut best =
+            Reading { fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN }, setting: nothing };
+        let mut offer = |reading: Reading| {
+            if reading.fitness.compare(&best.fitness).is_lt() {
+                best = reading;
+            }
+        };
+        for (side, space) in &self.spaces {
+            let x = space.from_free(genes);
+            let Some(shape) = space.shape(&x) else { continue };
+            if self.clocks.is_empty() {
+                self.free_readings(*side, &shape, &mut offer);
+            } else {
+                self.timed_readings(*side, space, &x, &shape, &mut offer);
+            }
+        }
+        best
+    }
+
+    fn kernel(&self, shape: &Shape) -> Kernel {
+        Kernel::from_parts(
+            xy(shape.crank_pivot),
+            xy(shape.follower_pivot),
+            [shape.crank, shape.coupler, shape.follower],
+            xy(shape.offset / shape.coupler),
+            AssemblyMode::Plus,
+        )
+    }
+
+    fn timed_readings(
+        &self,
+        side: CouplerSide,
+        space: &DesignSpace,
+        x: &Design,
+        shape: &Shape,
+        offer: &mut dyn FnMut(Reading),
+    ) {
+        let kernel = self.kernel(shape);
+        let offset = match self.problem.task().timing() {
+            Timing::Prescribed { offset: AngleOffset::Free, .. } => space.offset(x),
+            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
+                (shape.follower_pivot - shape.crank_pivot).arg()
+            }
+            _ => 0.0,
+        };
+        let turn = Complex::from_polar(1.0, offset);
+        let aim = nearest_type(shape.links(), self.problem.types());
+        for (direction, cos, sin) in &self.clocks {
+            let sums = timed_sums(&kernel, turn, cos, sin, &self.targets);
+            for (sum, assembly) in sums.cost.into_iter().zip([AssemblyMode::Plus, AssemblyMode::Minus]) {
+                let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
+                let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
+                let lack = self.requirements.lack(aim, shape, &motion);
+                offer(Reading {
+                    fitness: Fitness { violation: sums.open + lack, cost: sum },
+                    setting: Setting { aim, assembly, direction: *direction, side },
+                });
+            }
+        }
+    }
+
+    fn free_readings(&self, side: CouplerSide, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
+        let kernel = self.kernel(shape);
+        let links = shape.links();
+        let aim = nearest_type(links, self.problem.types());
+        let own = linkage_type(links);
+        let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
+        // A Grashof linkage whose input rocks has a circuit on either side of its ground line.
+        let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
+        let sides: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
+            for &arc in sides {
+                let reachable = |i: usize| {
+                    let crank = Complex::new(self.wheel.0[i], self.wheel.1[i]);
+                    arc == 0.0 || cross(ground, crank) * arc > 0.0
+                };
+                let (mut cost, mut open) = (0.0, false);
+                let mut course = Course::default();
+                for (j, target) in self.problem.task().points().iter().enumerate() {
+                    match curve.nearest(assembly, *target, &reachable) {
+                        Some((angle, sq)) => {
+                            cost += self.targets.weight[j] * sq;
+                            if j + 1 < self.problem.task().len() || !self.problem.task().repeats_first() {
+                                course.pass(angle);
+                            }
+                        }
+                        None => {
+                            open = true;
+                            break;
+                        }
+                    }
+                }
+                let (direction, total) = course.direction(self.problem.directions());
+                let disorder = if self.problem.order_required() { (total / TAU - 1.0).max(0.0) } else { 0.0 };
+                let start = course.first.unwrap_or(0.0);
+                let end = start + direction * total.min(TAU);
+                let motion = Motion::Stretch(start.min(end), start.max(end), assembly);
+                let lack = self.requirements.lack(aim, shape, &motion);
+                let violation = if open { f64::INFINITY } else { lack + disorder };
+                offer(Reading {
+                    fitness: Fitness { violation, cost },
+                    setting: Setting { aim, assembly, direction, side },
+                });
+            }
+        }
+    }
+
+    /// The positions (e_j, u_j) of the points for free timing, as the reading has them; `None` where a point
+    /// finds no position.
+    pub fn positions(&self, shape: &Shape, assembly: AssemblyMode) -> Option<Vec<[Complex; 2]>> {
+        let linkage = shape.linkage(assembly).ok()?;
+        let kernel = self.kernel(shape);
+        let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
+        self.problem
+            .task()
+            .points()
+            .iter()
+            .map(|target| {
+                let (angle, _) = curve.nearest(assembly, *target, &|_| true)?;
+                let joints = linkage.position_with(angle, assembly).joints()?;
+                let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
+                Some([Complex::from_polar(1.0, angle), coupler])
+            })
+            .collect()
+    }
+}
+
+impl PopulationProblem for PathFitness<'_> {
+    fn bounds(&self) -> &[(f64, f64)] {
+        &self.genes
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Fitness {
+        self.read(x).fitness
+    }
+
+    fn cost_hint_ns(&self) -> f64 {
+        // About 3 ns a position and 150 ns a set of requirements; free timing compares every point with every
+        // sample besides.
+        let positions = 3.0 * self.positions_per_evaluation() as f64 + 300.0;
+        if self.clocks.is_empty() {
+            positions + 2.0 * (CURVE_SAMPLES * self.problem.task().len()) as f64
+        } else {
+            positions
+        }
+    }
+}
+
+struct TimedSums {
+    /// The cost of both assemblies.
+    cost: [f64; 2],
+    /// How far the loop is from closing, summed over the points; 0 where it closes at all of them.
+    open: f64,
+}
+
+/// The weighted sums of squared errors of both assemblies at the angles turned by `turn`.
+#[inline]
+fn timed_sums(kernel: &Kernel, turn: Complex, cos: &[f64], sin: &[f64], targets: &Columns) -> TimedSums {
+    vectorised(
+        #[inline(always)]
+        || {
+            let splat = F64x8::splat;
+            let (mut plus, mut minus, mut open) = (splat(0.0), splat(0.0), splat(0.0));
+            let (turn_cos, turn_sin) = (splat(turn.re), splat(turn.im));
+            let n = cos.len();
+            let (sin, x, y, weight) = (&sin[..n], &targets.x[..n], &targets.y[..n], &targets.weight[..n]);
+            for at in (0..n).step_by(LANES) {
+                let (c, s) = (F64x8::load(cos, at), F64x8::load(sin, at));
+                let crank = (c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin);
+                let [p, m] = kernel.at_both(crank.0, crank.1);
+                let (x, y, w) = (F64x8::load(x, at), F64x8::load(y, at), F64x8::load(weight, at));
+                let (dx, dy) = (x - p.coupler_point[0], y - p.coupler_point[1]);
+                plus = plus + w * (dx * dx + dy * dy);
+                let (dx, dy) = (x - m.coupler_point[0], y - m.coupler_point[1]);
+                minus = minus + w * (dx * dx + dy * dy);
+                open = open + (-p.gap).positive_part().min(splat(1.0));
+            }
+            TimedSums { cost: [plus.sum(), minus.sum()], open: open.sum() }
+        },
+    )
+}
+
+/// The coupler points of both assemblies at evenly spaced crank angles.
+struct Sampled {
+    x: [[f64; CURVE_SAMPLES]; 2],
+    y: [[f64; CURVE_SAMPLES]; 2],
+    gap: [f64; CURVE_SAMPLES],
+}
+
+impl Sampled {
+    fn of(kernel: &Kernel, cos: &[f64], sin: &[f64]) -> Sampled {
+        let mut out =
+            Sampled { x: [[0.0; CURVE_SAMPLES]; 2], y: [[0.0; CURVE_SAMPLES]; 2], gap: [0.0; CURVE_SAMPLES] };
+        vectorised(
+            #[inline(always)]
+            || {
+                for at in (0..CURVE_SAMPLES).step_by(LANES) {
+                    let both = kernel.at_both(F64x8::load(cos, at), F64x8::load(sin, at));
+                    for (i, position) in both.into_iter().enumerate() {
+                        position.coupler_point[0].store(&mut out.x[i], at);
+                        position.coupler_point[1].store(&mut out.y[i], at);
+                    }
+                    both[0].gap.store(&mut out.gap, at);
+                }
+            },
+        );
+        out
+    }
+
+    /// The crank angle of the nearest point and its squared distance.
+    fn nearest(
+        &self,
+        assembly: AssemblyMode,
+        target: Complex,
+        reachable: &dyn Fn(usize) -> bool,
+    ) -> Option<(f64, f64)> {
+        let which = usize::from(assembly == AssemblyMode::Minus);
+        let mut sq = [f64::INFINITY; CURVE_SAMPLES];
+        for i in 0..CURVE_SAMPLES {
+            let (dx, dy) = (self.x[which][i] - target.re, self.y[which][i] - target.im);
+            let distance = dx * dx + dy * dy;
+            sq[i] = if self.gap[i] >= 0.0 { distance } else { f64::INFINITY };
+        }
+        let best = (0..CURVE_SAMPLES)
+            .filter(|&i| sq[i].is_finite() && reachable(i))
+            .min_by(|&i, &j| sq[i].total_cmp(&sq[j]))?;
+        let step = TAU / CURVE_SAMPLES as f64;
+        let (before, after) =
+            (sq[(best + CURVE_SAMPLES - 1) % CURVE_SAMPLES], sq[(best + 1) % CURVE_SAMPLES]);
+        let curvature = before - 2.0 * sq[best] + after;
+        let angle = step * best as f64;
+        if curvature.is_finite() && curvature > 0.0 && before >= sq[best] && after >= sq[best] {
+            let slope = before - after;
+            let least = (sq[best] - slope * slope / (8.0 * curvature)).max(0.0);
+            return Some((angle + step * 0.5 * slope / curvature, least));
+        }
+        Some((angle, sq[best]))
+    }
+}
+
+/// How far a crank turns through points, both ways round.
+#[derive(Default)]
+struct Course {
+    first: Option<f64>,
+    last: Option<f64>,
+    forward: f64,
+    backward: f64,
+}
+
+impl Course {
+    fn pass(&mut self, angle: f64) {
+        if let Some(last) = self.last {
+            let step = (angle - last).rem_euclid(TAU);
+            self.forward += step;
+            self.backward += if step > 0.0 { TAU - step } else { 0.0 };
+        }
+        self.first.get_or_insert(angle);
+        self.last = Some(angle);
+    }
+
+    /// The allowed direction with the shorter way and its length.
+    fn direction(&self, allowed: &[f64]) -> (f64, f64) {
+        let length = |d: f64| if d > 0.0 { self.forward } else { self.backward };
+        allowed
+            .iter()
+            .map(|&d| (d, length(d)))
+            .min_by(|s, t| s.1.total_cmp(&t.1))
+            .unwrap_or((1.0, self.forward))
+    }
+}

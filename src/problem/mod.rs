@@ -1,0 +1,137 @@
+//! The task as mathematics: design space, residuals with derivatives, requirements, fitness.
+//!
+//! A [`Problem`] is a checked [`spec::ProblemSpec`]. What a search may choose besides the design vector (the
+//! assembly, the crank's direction, the type aimed at, the side of the coupler point) is a [`Setting`].
+
+pub mod design_space;
+pub mod fitness;
+pub mod linear_fit;
+pub mod requirements;
+pub mod spec;
+pub mod timed;
+pub mod torus;
+
+use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType};
+use crate::task::{AngleOffset, PathTask, TaskError, Timing};
+use design_space::DesignSpace;
+use requirements::Requirements;
+use spec::{DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec};
+
+/// A problem that has been checked.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    spec: ProblemSpec,
+    task: PathTask,
+    types: Vec<LinkageType>,
+}
+
+/// What a search chooses besides the design vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// The type aimed at; `None`: any.
+    pub aim: Option<LinkageType>,
+    /// t1 (prescribed timing).
+    pub assembly: AssemblyMode,
+    /// +1: the prescribed increments as written, -1: reversed. With free timing the sense in which starts run.
+    pub direction: f64,
+    /// t2 where d and e are coordinates of the design.
+    pub side: CouplerSide,
+}
+
+impl Problem {
+    /// A problem from its resolved data.
+    ///
+    /// # Errors
+    /// As [`PathTask::new`].
+    pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
+        let task = spec.task.path.to_task()?;
+        let mut types = spec.require.types.clone();
+        types.sort();
+        types.dedup();
+        Ok(Problem { spec, task, types })
+    }
+
+    /// The data it was made from.
+    pub fn spec(&self) -> &ProblemSpec {
+        &self.spec
+    }
+
+    /// The task.
+    pub fn task(&self) -> &PathTask {
+        &self.task
+    }
+
+    /// The types allowed; empty: any.
+    pub fn types(&self) -> &[LinkageType] {
+        &self.types
+    }
+
+    /// Whether the crank angle's offset is an unknown of the design vector.
+    pub fn offset_is_free(&self) -> bool {
+        matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
+    }
+
+    /// The design space of a setting.
+    pub fn space(&self, side: CouplerSide) -> DesignSpace {
+        DesignSpace::new(
+            &self.spec.design,
+            &self.task,
+            self.offset_is_free(),
+            self.spec.require.pivots_in,
+            side,
+        )
+    }
+
+    /// The requirements over a design space.
+    pub fn requirements(&self, space: &DesignSpace) -> Requirements {
+        Requirements::new(&self.spec.require, space.derived(), self.task.size())
+    }
+
+    /// The directions in which prescribed increments may be run, +1 first; for free timing the allowed senses.
+    pub fn directions(&self) -> &'static [f64] {
+        match (self.task.timing(), self.spec.require.direction) {
+            (Timing::Prescribed { offset: AngleOffset::Fixed | AngleOffset::Ground, .. }, _) => &[1.0],
+            (_, DirectionPolicy::Any) => &[1.0, -1.0],
+            (Timing::Free, DirectionPolicy::Ccw) => &[1.0],
+            (Timing::Free, DirectionPolicy::Cw) => &[-1.0],
+            (Timing::Prescribed { crank_angles, .. }, policy) => {
+                let rising = crank_angles.last() >= crank_angles.first();
+                if rising == (policy == DirectionPolicy::Ccw) { &[1.0] } else { &[-1.0] }
+            }
+        }
+    }
+
+    /// The sides of the coupler point to try: both only where d and e are the coordinates.
+    pub fn sides(&self) -> &'static [CouplerSide] {
+        if DesignSpace::has_side(&self.spec.design) {
+            &[CouplerSide::Plus, CouplerSide::Minus]
+        } else {
+            &[CouplerSide::Plus]
+        }
+    }
+
+    /// Whether the points must be passed in order.
+    pub fn order_required(&self) -> bool {
+        self.spec.require.order == OrderPolicy::Required
+    }
+
+    /// Whether the motion may pass a toggle.
+    pub fn branch_any(&self) -> bool {
+        self.spec.require.branch == OnePolicy::Any
+    }
+
+    /// Whether the points may lie on different circuits.
+    pub fn circuit_any(&self) -> bool {
+        self.spec.require.circuit == OnePolicy::Any
+    }
+
+    /// e^{i psi_j} of the prescribed angles in a direction; empty for free timing.
+    pub fn phases(&self, direction: f64) -> Vec<Complex> {
+        match self.task.timing() {
+            Timing::Free => Vec::new(),
+            Timing::Prescribed { crank_angles, .. } => {
+                crank_angles.iter().map(|psi| Complex::from_polar(1.0, direction * psi)).collect()
+            }
+        }
+    }
+}

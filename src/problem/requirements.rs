@@ -1,0 +1,498 @@
+//! What is required of a linkage, as smooth functions g(shape, motion) >= 0 in units of length.
+//!
+//! - type: with the shortest link s and the others p, q, l, "s is the shortest and the margin is positive"
+//!   is the three linear conditions p + q - l - s >= 0, p + l - q - s >= 0, q + l - p - s >= 0;
+//! - link ratio R: l_i - l_j / R >= 0 for all pairs;
+//! - transmission angle: size (cos mu_min - cos mu) >= 0 and size (cos mu + cos mu_min) >= 0 at the extremes of
+//!   the diagonal |CB|, cos mu = (b^2 + c^2 - s^2)/(2 b c);
+//! - boxes: the distance to each side of the extreme joint, whose derivative is that of the joint at its
+//!   extreme position (Danskin 1967);
+//! - derived bounds of the design space.
+//!
+//! Every g is aimed at with a small margin, so that what the search calls met is met to the referee.
+
+use super::design_space::{Derived, DerivedBound, SHAPE, Shape, unit};
+use super::spec::{RequireSpec, TransmissionOver};
+use crate::linkage::gradient::{Frame, shape_gradient};
+use crate::linkage::mobility::{grashof_margin, linkage_type, wrapped};
+use crate::linkage::{AssemblyMode, Complex, FourBar, LinkageType, cross, dot, turned};
+use std::f64::consts::PI;
+
+/// The margin aimed at inside the limits, in parts of the target's size.
+const LENGTH_MARGIN: f64 = 1e-9;
+/// The margin aimed at inside the Grashof boundary, in parts of the sum of the links: well beyond the
+/// change-point tolerance.
+const TYPE_MARGIN: f64 = 1e-7;
+/// The margin aimed at inside angle limits, radians.
+const ANGLE_MARGIN: f64 = 1e-9;
+
+/// One requirement's value with its derivatives by the shape and by a turn of all crank angles.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// g, a length.
+    pub value: f64,
+    /// dg/d(Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
+    pub shape: [f64; SHAPE],
+    /// dg/dphi, all crank angles together.
+    pub crank: f64,
+}
+
+/// The motion that a requirement is asked of.
+#[derive(Clone, Copy, Debug)]
+pub enum Motion<'a> {
+    /// The crank angles from the first to the second, on one assembly.
+    Stretch(f64, f64, AssemblyMode),
+    /// Positions (crank, coupler direction) at the points, not further known between them.
+    Positions(&'a [[Complex; 2]]),
+}
+
+/// The requirements as the search sees them.
+#[derive(Clone, Debug)]
+pub struct Requirements {
+    /// The target's size.
+    size: f64,
+    require: RequireSpec,
+    derived: Vec<DerivedBound>,
+}
+
+impl Requirements {
+    /// The requirements of a problem whose target has the given size.
+    pub fn new(require: &RequireSpec, derived: &[DerivedBound], size: f64) -> Self {
+        Requirements { size, require: require.clone(), derived: derived.to_vec() }
+    }
+
+    /// Calls `each` for every requirement, always as many and in the same order for the same problem and the
+    /// same `aim`, the type that is searched for (`None`: any). No allocation.
+    pub fn rows(
+        &self,
+        aim: Option<LinkageType>,
+        shape: &Shape,
+        motion: &Motion<'_>,
+        each: &mut dyn FnMut(&Row),
+    ) {
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let g = unit(ground);
+        // d(links)/d(shape): ground, a, b, c
+        let link_rows: [[f64; SHAPE]; 4] = [
+            [-g.re, -g.im, g.re, g.im, 0.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+        ];
+        let links = shape.links();
+        let combine = |factors: [f64; 4], constant: f64| {
+            let mut row = Row { value: constant, shape: [0.0; SHAPE], crank: 0.0 };
+            for (link, factor) in factors.into_iter().enumerate() {
+                row.value += factor * links[link];
+                for (out, by) in row.shape.iter_mut().zip(&link_rows[link]) {
+                    *out += factor * by;
+                }
+            }
+            row
+        };
+        type_rows(aim, links, &combine, each);
+        let ratio = self.require.link_ratio_max;
+        for i in 0..4 {
+            for j in 0..4 {
+                if i != j {
+                    let mut factors = [0.0; 4];
+                    factors[i] = 1.0;
+                    factors[j] = -1.0 / (ratio * (1.0 - LENGTH_MARGIN));
+                    each(&combine(factors, 0.0));
+                }
+            }
+        }
+        self.derived_rows(shape, links, &link_rows, each);
+        if let Some(b) = self.require.pivots_in {
+            for (at, p) in [(0, shape.crank_pivot), (2, shape.follower_pivot)] {
+                self.box_rows(
+                    b,
+                    p,
+                    &|axis, sign| {
+                        let mut row = [0.0; SHAPE];
+                        row[at + axis] = sign;
+                        (row, 0.0)
+                    },
+                    each,
+                );
+            }
+        }
+        if let Some(limit) = self.require.transmission_deg_min {
+            self.transmission_rows(limit.to_radians() + ANGLE_MARGIN, shape, links, g, motion, each);
+        }
+        if let Some(b) = self.require.footprint_in {
+            self.footprint_rows(b, shape, motion, each);
+        }
+    }
+
+    /// The sum of what the rows lack, in sizes of the target; 0 where all are met.
+    pub fn lack(&self, aim: Option<LinkageType>, shape: &Shape, motion: &Motion<'_>) -> f64 {
+        let mut lack = 0.0;
+        self.rows(aim, shape, motion, &mut |row| lack += (-row.value).max(0.0));
+        lack / self.size
+    }
+
+    fn derived_rows(
+        &self,
+        shape: &Shape,
+        links: [f64; 4],
+        link_rows: &[[f64; SHAPE]; 4],
+        each: &mut dyn FnMut(&Row),
+    ) {
+        let margin = LENGTH_MARGIN * self.size;
+        for bound in &self.derived {
+            let (low, high) = (bound.limits.0, bound.limits.1);
+            let mut row = [0.0; SHAPE];
+            let value = match bound.quantity {
+                Derived::Ground => {
+                    row = link_rows[0];
+                    links[0]
+                }
+                Derived::GroundAngle => {
+                    let ground = shape.follower_pivot - shape.crank_pivot;
+                    let across = turned(unit(ground));
+                    let middle = 0.5 * (low + high);
+                    let value = wrapped(ground.arg() - middle) * self.size;
+                    let scale = self.size / links[0].max(f64::MIN_POSITIVE);
+                    (row[0], row[1]) = (-across.re * scale, -across.im * scale);
+                    (row[2], row[3]) = (across.re * scale, across.im * scale);
+                    let half = 0.5 * (high - low) * self.size;
+                    for sign in [1.0, -1.0] {
+                        each(&Row {
+                            value: half - sign * value,
+                            shape: row.map(|by| -sign * by),
+                            crank: 0.0,
+                        });
+                    }
+                    continue;
+                }
+                Derived::CrankSide => {
+                    let along = unit(shape.offset);
+                    (row[7], row[8]) = (along.re, along.im);
+                    shape.offset.norm()
+                }
+                Derived::FollowerSide => {
+                    let from_d = shape.offset - shape.coupler;
+                    let along = unit(from_d);
+                    (row[5], row[7], row[8]) = (-along.re, along.re, along.im);
+                    from_d.norm()
+                }
+            };
+            let margin = if low == high { 0.0 } else { margin };
+            each(&Row { value: value - low - margin, shape: row, crank: 0.0 });
+            each(&Row { value: high - value - margin, shape: row.map(|by| -by), crank: 0.0 });
+        }
+    }
+
+    fn box_rows(
+        &self,
+        b: [f64; 4],
+        p: Complex,
+        derivative: &dyn Fn(usize, f64) -> ([f64; SHAPE], f64),
+        each: &mut dyn FnMut(&Row),
+    ) {
+        let margin = LENGTH_MARGIN * self.size;
+        for (axis, at) in [(0, p.re), (1, p.im)] {
+            for (limit, sign) in [(b[axis], 1.0), (b[axis + 2], -1.0)] {
+                let (shape, crank) = derivative(axis, sign);
+                each(&Row { value: sign * (at - limit) - margin, shape, crank });
+            }
+        }
+    }
+
+    /// The diagonals at which the transmission angle is extreme: s^2 with its derivatives.
+    fn transmission_rows(
+        &self,
+        limit: f64,
+        shape: &Shape,
+        links: [f64; 4],
+        g: Complex,
+        motion: &Motion<'_>,
+        each: &mut dyn FnMut(&Row),
+    ) {
+        let [ground, a, b, c] = links;
+        let turns = linkage_type(links).is_some_and(LinkageType::input_turns_fully);
+        let over = self.require.transmission_over.unwrap_or(if turns {
+            TransmissionOver::Cycle
+        } else {
+            TransmissionOver::Used
+        });
+        // (s, ds by ground and a, or by the shape at a crank angle)
+        let aligned = |sign: f64| {
+            let s = ground + sign * a;
+            let mut row = [0.0; SHAPE];
+            let flip = s.signum();
+            (row[0], row[1], row[2], row[3]) = (-g.re * flip, -g.im * flip, g.re * flip, g.im * flip);
+            row[4] = sign * flip;
+            (s.abs(), row, 0.0)
+        };
+        let at = |crank: Complex| {
+            let v = shape.follower_pivot - shape.crank_pivot - crank * a;
+            let along = unit(v);
+            let mut row = [0.0; SHAPE];
+            (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im);
+            row[4] = -dot(along, crank);
+            (v.norm(), row, -dot(along, turned(crank)) * a)
+        };
+        let extremes = match (over, motion) {
+            (TransmissionOver::Cycle, _) => [aligned(-1.0), aligned(1.0)],
+            (TransmissionOver::Used, Motion::Positions(positions)) => {
+                let mut found = [at(positions[0][0]), at(positions[0][0])];
+                for p in positions.iter() {
+                    let s = at(p[0]);
+                    if s.0 < found[0].0 {
+                        found[0] = s;
+                    }
+                    if s.0 > found[1].0 {
+                        found[1] = s;
+                    }
+                }
+                found
+            }
+            (TransmissionOver::Used, Motion::Stretch(from, to, _)) => {
+                let (low, high) = (from.min(*to), from.max(*to));
+                let (first, last) = (at(Complex::from_polar(1.0, low)), at(Complex::from_polar(1.0, high)));
+                let (mut least, mut greatest) = if first.0 < last.0 { (first, last) } else { (last, first) };
+                let holds = |angle: f64| (angle - low).rem_euclid(2.0 * PI) <= high - low;
+                if holds(g.arg()) {
+                    least = aligned(-1.0);
+                }
+                if holds(g.arg() + PI) {
+                    greatest = aligned(1.0);
+                }
+                [least, greatest]
+            }
+        };
+        for (sign, (s, by, by_crank)) in [1.0, -1.0].into_iter().zip(extremes) {
+            // least s: cos mu <= cos limit; greatest s: cos mu >= -cos limit
+            let cos = (b * b + c * c - s * s) / (2.0 * b * c);
+            let mut row = Row {
+                value: self.size * (limit.cos() - sign * cos),
+                shape: by.map(|d| self.size * sign * s / (b * c) * d),
+                crank: self.size * sign * s / (b * c) * by_crank,
+            };
+            row.shape[5] -= self.size * sign * (1.0 / c - cos / b);
+            row.shape[6] -= self.size * sign * (1.0 / b - cos / c);
+            each(&row);
+        }
+    }
+
+    fn footprint_rows(&self, b: [f64; 4], shape: &Shape, motion: &Motion<'_>, each: &mut dyn FnMut(&Row)) {
+        for (at, p) in [(0, shape.crank_pivot), (2, shape.follower_pivot)] {
+            self.box_rows(
+                b,
+                p,
+                &|axis, sign| {
+                    let mut row = [0.0; SHAPE];
+                    row[at + axis] = sign;
+                    (row, 0.0)
+                },
+                each,
+            );
+        }
+        let margin = LENGTH_MARGIN * self.size;
+        let positions = Swept::of(shape, motion);
+        for joint in 0..3 {
+            for (axis, limit, sign) in [(0, b[0], 1.0), (1, b[1], 1.0), (0, b[2], -1.0), (1, b[3], -1.0)] {
+                let row = positions.as_ref().and_then(|swept| {
+                    let extreme = swept.extreme(joint, axis, sign)?;
+                    let (shape_row, crank) = extreme.derivative(shape, joint, axis, sign);
+                    let at = if axis == 0 { extreme.joints[joint].re } else { extreme.joints[joint].im };
+                    Some(Row { value: sign * (at - limit) - margin, shape: shape_row, crank })
+                });
+                // A linkage that has no position at all has no footprint to judge: its size is lacking.
+                each(&row.unwrap_or(Row { value: -self.size, shape: [0.0; SHAPE], crank: 0.0 }));
+            }
+        }
+    }
+}
+
+fn type_rows(
+    aim: Option<LinkageType>,
+    links: [f64; 4],
+    combine: &dyn Fn([f64; 4], f64) -> Row,
+    each: &mut dyn FnMut(&Row),
+) {
+    let margin = TYPE_MARGIN * links.iter().sum::<f64>();
+    let shortest = match aim {
+        Some(LinkageType::DoubleCrank) => 0,
+        Some(LinkageType::CrankRocker) => 1,
+        Some(LinkageType::DoubleRocker) => 2,
+        Some(LinkageType::RockerCrank) => 3,
+        Some(LinkageType::TripleRocker) => {
+            // l + s - p - q >= 0 with the links as they are now, and l <= the others together.
+            let mut order = [0, 1, 2, 3];
+            order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
+            let mut factors = [0.0; 4];
+            for (place, sign) in [(0, 1.0), (1, -1.0), (2, -1.0), (3, 1.0)] {
+                factors[order[place]] = sign;
+            }
+            each(&combine(factors, -margin));
+            let mut closes = [1.0; 4];
+            closes[order[3]] = -1.0;
+            each(&combine(closes, -margin));
+            return;
+        }
+        Some(LinkageType::ChangePoint) | None => return,
+    };
+    for other in (0..4).filter(|&i| i != shortest) {
+        let mut factors = [1.0; 4];
+        factors[shortest] = -1.0;
+        factors[other] = -1.0;
+        each(&combine(factors, -margin));
+    }
+}
+
+/// Joints over a motion, without allocation.
+enum Swept<'a> {
+    Samples {
+        linkage: FourBar,
+        assembly: AssemblyMode,
+        step: f64,
+        found: usize,
+        at: [SweptPosition; SAMPLES + 1],
+    },
+    Points {
+        shape: &'a Shape,
+        positions: &'a [[Complex; 2]],
+    },
+}
+
+/// Samples a stretch needs for parabolas through neighbours to find its extremes.
+const SAMPLES: usize = 96;
+
+#[derive(Clone, Copy)]
+struct SweptPosition {
+    angle: f64,
+    frame: Frame,
+    joints: [Complex; 3],
+}
+
+impl<'a> Swept<'a> {
+    fn of(shape: &'a Shape, motion: &Motion<'a>) -> Option<Swept<'a>> {
+        match *motion {
+            Motion::Positions(positions) => Some(Swept::Points { shape, positions }),
+            Motion::Stretch(from, to, assembly) => {
+                let linkage = shape.linkage(assembly).ok()?;
+                let step = (to - from) / SAMPLES as f64;
+                let zero = Complex::new(0.0, 0.0);
+                let nowhere = SweptPosition {
+                    angle: 0.0,
+                    frame: Frame { crank: zero, coupler: zero, follower: zero },
+                    joints: [zero; 3],
+                };
+                let (mut at, mut found) = ([nowhere; SAMPLES + 1], 0);
+                for i in 0..=SAMPLES {
+                    if let Some(position) = SweptPosition::at(&linkage, assembly, from + step * i as f64) {
+                        at[found] = position;
+                        found += 1;
+                    }
+                }
+                Some(Swept::Samples { linkage, assembly, step, found, at })
+            }
+        }
+    }
+
+    fn extreme(&self, joint: usize, axis: usize, sign: f64) -> Option<SweptPosition> {
+        let value =
+            |p: &SweptPosition| sign * if axis == 0 { p.joints[joint].re } else { p.joints[joint].im };
+        match self {
+            Swept::Points { shape, positions } => positions
+                .iter()
+                .map(|p| SweptPosition::of_directions(shape, p))
+                .min_by(|p, q| value(p).total_cmp(&value(q))),
+            Swept::Samples { linkage, assembly, step, found, at } => {
+                let at = &at[..*found];
+                let mut best = *at.iter().min_by(|p, q| value(p).total_cmp(&value(q)))?;
+                let (low, high) = (at[0].angle, at[*found - 1].angle);
+                let mut step = step.abs();
+                for _ in 0..4 {
+                    let at = |angle: f64| SweptPosition::at(linkage, *assembly, angle.clamp(low, high));
+                    let (Some(before), Some(after)) = (at(best.angle - step), at(best.angle + step)) else {
+                        break;
+                    };
+                    let (l, m, r) = (value(&before), value(&best), value(&after));
+                    let curvature = l - 2.0 * m + r;
+                    let shift =
+                        if curvature > 0.0 { (0.5 * (l - r) / curvature).clamp(-1.0, 1.0) } else { 0.0 };
+                    for candidate in
+                        [Some(before), Some(after), at(best.angle + shift * step)].into_iter().flatten()
+                    {
+                        if value(&candidate) < value(&best) {
+                            best = candidate;
+                        }
+                    }
+                    step *= 0.1;
+                }
+                Some(best)
+            }
+        }
+    }
+}
+
+impl SweptPosition {
+    fn of_directions(shape: &Shape, [crank, coupler]: &[Complex; 2]) -> SweptPosition {
+        let c = shape.crank_pivot + crank * shape.crank;
+        let d = c + coupler * shape.coupler;
+        SweptPosition {
+            angle: crank.arg(),
+            frame: Frame { crank: *crank, coupler: *coupler, follower: unit(d - shape.follower_pivot) },
+            joints: [c, d, c + coupler * shape.offset],
+        }
+    }
+
+    fn at(linkage: &FourBar, assembly: AssemblyMode, angle: f64) -> Option<SweptPosition> {
+        let joints = linkage.position_with(angle, assembly).joints()?;
+        Some(SweptPosition {
+            angle,
+            frame: linkage.frame(angle, assembly)?,
+            joints: [joints.crank_pin, joints.follower_pin, joints.coupler_point],
+        })
+    }
+
+    /// The derivative of `sign` times a joint's coordinate by the shape and by the crank angle.
+    fn derivative(&self, shape: &Shape, joint: usize, axis: usize, sign: f64) -> ([f64; SHAPE], f64) {
+        // C is the coupler point at offset 0, D the one at offset b (which grows with b).
+        let offset = match joint {
+            0 => Complex::new(0.0, 0.0),
+            1 => Complex::new(shape.coupler, 0.0),
+            _ => shape.offset,
+        };
+        let Some(gradient) = shape_gradient(&self.frame, shape.crank, shape.coupler, offset) else {
+            return ([0.0; SHAPE], 0.0);
+        };
+        let component = |z: Complex| sign * if axis == 0 { z.re } else { z.im };
+        let mut row = gradient.shape.map(component);
+        match joint {
+            0 => (row[7], row[8]) = (0.0, 0.0),
+            1 => {
+                row[5] += row[7];
+                (row[7], row[8]) = (0.0, 0.0);
+            }
+            _ => {}
+        }
+        (row, component(gradient.crank_angle))
+    }
+}
+
+/// Which of the allowed types a shape is nearest to: its own where that is allowed.
+pub fn nearest_type(links: [f64; 4], allowed: &[LinkageType]) -> Option<LinkageType> {
+    let own = linkage_type(links)?;
+    if allowed.is_empty() || allowed.contains(&own) {
+        return Some(own);
+    }
+    let shortest = |t: &LinkageType| match t {
+        LinkageType::DoubleCrank => links[0],
+        LinkageType::CrankRocker => links[1],
+        LinkageType::DoubleRocker => links[2],
+        LinkageType::RockerCrank => links[3],
+        LinkageType::TripleRocker | LinkageType::ChangePoint => grashof_margin(links).abs(),
+    };
+    allowed.iter().copied().min_by(|s, t| shortest(s).total_cmp(&shortest(t)))
+}
+
+/// +1 where D lies left of C -> B, -1 right of it: the assembly of a position given by directions.
+pub fn assembly_of(shape: &Shape, crank: Complex, coupler: Complex) -> AssemblyMode {
+    let c = shape.crank_pivot + crank * shape.crank;
+    AssemblyMode::of(cross(shape.follower_pivot - c, coupler))
+}

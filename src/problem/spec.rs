@@ -1,0 +1,345 @@
+//! The problem as data: every key of a problem file with its default filled in.
+//!
+//! This is what stands as `problem.resolved` in a record and what a run starts from; a problem file, a
+//! library caller and `verify` all arrive here. Angles in degrees, lengths in the file's unit.
+
+use crate::linkage::LinkageType;
+use crate::solve::differential_evolution::DifferentialEvolutionParameters;
+use crate::solve::genetic::GeneticParameters;
+use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An interval [low, high]; a fixed value has low = high.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Limits(pub f64, pub f64);
+
+impl Limits {
+    /// Whether it fixes a value.
+    pub fn is_fixed(&self) -> bool {
+        self.0 == self.1
+    }
+
+    /// The nearest value inside.
+    pub fn clamp(&self, value: f64) -> f64 {
+        value.max(self.0).min(self.1)
+    }
+}
+
+/// A problem with every default filled in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProblemSpec {
+    /// What is wanted.
+    pub task: TaskSpec,
+    /// Where the parameters may lie.
+    pub design: DesignSpec,
+    /// What an acceptable linkage satisfies.
+    pub require: RequireSpec,
+    /// How to search.
+    pub solve: SolveSpec,
+}
+
+/// The task; a path is the only kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TaskSpec {
+    /// A path to trace.
+    pub path: PathSpec,
+}
+
+/// A path: points and what stands beside them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PathSpec {
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// One positive weight a point; they enter the objective only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<Vec<f64>>,
+    /// The largest error accepted, one a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<Vec<f64>>,
+    /// Prescribed timing; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<TimingSpec>,
+}
+
+/// Prescribed crank angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TimingSpec {
+    /// One a point, degrees, counter-clockwise positive.
+    pub crank_deg: Vec<f64>,
+    /// What they are measured from.
+    pub offset: AngleOffset,
+}
+
+impl PathSpec {
+    /// The task, checked.
+    ///
+    /// # Errors
+    /// As [`PathTask::new`].
+    pub fn to_task(&self) -> Result<PathTask, TaskError> {
+        let timing = match &self.timing {
+            None => Timing::Free,
+            Some(t) => Timing::Prescribed {
+                crank_angles: t.crank_deg.iter().map(|d| d.to_radians()).collect(),
+                offset: t.offset,
+            },
+        };
+        let options = PathOptions {
+            weights: self.weight.clone(),
+            tolerances: self.tolerance.clone(),
+            closed: self.closed,
+        };
+        PathTask::new(self.points.clone(), timing, options)
+    }
+}
+
+/// Where the parameters may lie. A key that is absent does not bind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DesignSpec {
+    /// The crank's pivot.
+    #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
+    pub crank_pivot: Option<[Limits; 2]>,
+    /// The follower's pivot.
+    #[serde(rename = "B", default, skip_serializing_if = "Option::is_none")]
+    pub follower_pivot: Option<[Limits; 2]>,
+    /// |AC|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub a: Option<Limits>,
+    /// |CD|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub b: Option<Limits>,
+    /// |BD|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c: Option<Limits>,
+    /// |CP|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d: Option<Limits>,
+    /// |DP|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub e: Option<Limits>,
+    /// |AB|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<Limits>,
+    /// The direction from A to B, degrees from the x axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_angle_deg: Option<Limits>,
+    /// P along C -> D from C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_x: Option<Limits>,
+    /// P across C -> D, positive to the left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_y: Option<Limits>,
+}
+
+/// The default of `link_ratio_max`.
+pub const DEFAULT_LINK_RATIO: f64 = 20.0;
+/// The default half width of the pivots' box and the greatest default length, in sizes of the target.
+pub const DEFAULT_REACH: f64 = 5.0;
+/// The least default length of a link, in sizes of the target.
+pub const DEFAULT_SHORTEST: f64 = 0.02;
+
+impl DesignSpec {
+    /// Fills in the defaults for a target: pivots within 5 sizes of its centre, links in [0.02, 5] sizes,
+    /// coupler point within 5 sizes along and across.
+    ///
+    /// A quantity that other given keys determine gets no default of its own: B where `ground` or
+    /// `ground_angle_deg` is given, the ground where both pivots are, coupler_x and coupler_y where `d` or
+    /// `e` is given.
+    pub fn resolve(&mut self, task: &PathTask) {
+        let (size, centre) = (task.size(), task.centre());
+        let around = |c: f64| Limits(c - DEFAULT_REACH * size, c + DEFAULT_REACH * size);
+        let length = Limits(DEFAULT_SHORTEST * size, DEFAULT_REACH * size);
+        let pivot_box = [around(centre.re), around(centre.im)];
+        let polar = self.ground.is_some() || self.ground_angle_deg.is_some();
+        let both_pivots = self.crank_pivot.is_some() && self.follower_pivot.is_some();
+        self.crank_pivot.get_or_insert(pivot_box);
+        if !polar {
+            self.follower_pivot.get_or_insert(pivot_box);
+        }
+        if !both_pivots {
+            self.ground.get_or_insert(length);
+        }
+        for key in [&mut self.a, &mut self.b, &mut self.c] {
+            key.get_or_insert(length);
+        }
+        if self.d.is_none() && self.e.is_none() {
+            let offset = Limits(-DEFAULT_REACH * size, DEFAULT_REACH * size);
+            self.coupler_x.get_or_insert(offset);
+            self.coupler_y.get_or_insert(offset);
+        }
+    }
+}
+
+/// Over which motion the transmission angle is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TransmissionOver {
+    /// The full turn of the crank.
+    Cycle,
+    /// The crank angles between the target points.
+    Used,
+}
+
+/// Whether a defect is forbidden.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderPolicy {
+    /// The points are passed in their order.
+    #[default]
+    Required,
+    /// Any order will do.
+    Any,
+}
+
+/// Whether the motion must stay on one circuit or branch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OnePolicy {
+    /// It must.
+    #[default]
+    One,
+    /// It need not.
+    Any,
+}
+
+/// Which way the crank turns along the points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DirectionPolicy {
+    /// Either way.
+    #[default]
+    Any,
+    /// Counter-clockwise.
+    Ccw,
+    /// Clockwise.
+    Cw,
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RequireSpec {
+    /// The types allowed; empty: any.
+    #[serde(rename = "type")]
+    pub types: Vec<LinkageType>,
+    /// The least of min(mu, 180 - mu) over the motion, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_deg_min: Option<f64>,
+    /// Over which motion; absent: the cycle where the input turns fully, else the used part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_over: Option<TransmissionOver>,
+    /// Longest over shortest of ground, a, b, c.
+    pub link_ratio_max: f64,
+    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivots_in: Option<[f64; 4]>,
+    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub footprint_in: Option<[f64; 4]>,
+    /// Whether the points must be passed in order.
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    pub branch: OnePolicy,
+}
+
+impl Default for RequireSpec {
+    fn default() -> Self {
+        RequireSpec {
+            types: Vec::new(),
+            transmission_deg_min: None,
+            transmission_over: None,
+            link_ratio_max: DEFAULT_LINK_RATIO,
+            pivots_in: None,
+            footprint_in: None,
+            order: OrderPolicy::default(),
+            direction: DirectionPolicy::default(),
+            circuit: OnePolicy::default(),
+            branch: OnePolicy::default(),
+        }
+    }
+}
+
+/// How to search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Chooses and combines the others.
+    #[default]
+    Auto,
+    /// A real-coded genetic algorithm on the design vector.
+    Genetic,
+    /// Differential evolution on the design vector.
+    DifferentialEvolution,
+    /// Levenberg-Marquardt from many starts.
+    LeastSquares,
+}
+
+impl Method {
+    /// The name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Auto => "auto",
+            Method::Genetic => "genetic",
+            Method::DifferentialEvolution => "differential-evolution",
+            Method::LeastSquares => "least-squares",
+        }
+    }
+}
+
+/// What is minimised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Objective {
+    /// The weighted sum of squared structural errors.
+    #[default]
+    SumOfSquares,
+}
+
+/// How to search and when to stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SolveSpec {
+    /// The method.
+    pub method: Method,
+    /// What is minimised.
+    pub objective: Objective,
+    /// Every draw comes from this number.
+    pub seed: u64,
+    /// How many distinct answers are wanted.
+    pub candidates: usize,
+    /// How many evaluations of the objective at most.
+    pub evaluations: u64,
+    /// Seconds of search at most; when it bites the record says that the run cannot be repeated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit_s: Option<f64>,
+    /// The genetic algorithm's parameters.
+    pub genetic: GeneticParameters,
+    /// Differential evolution's parameters.
+    pub differential_evolution: DifferentialEvolutionParameters,
+}
+
+impl Default for SolveSpec {
+    fn default() -> Self {
+        SolveSpec {
+            method: Method::Auto,
+            objective: Objective::SumOfSquares,
+            seed: 1,
+            candidates: 5,
+            evaluations: 200_000,
+            time_limit_s: None,
+            genetic: GeneticParameters::default(),
+            differential_evolution: DifferentialEvolutionParameters::default(),
+        }
+    }
+}
+
+/// The most candidates that a run gives.
+pub const MAX_CANDIDATES: usize = 100;
+/// The largest budget of evaluations.
+pub const MAX_EVALUATIONS: u64 = 1_000_000_000_000;
+/// The largest population of a population search.
+pub const MAX_POPULATION: usize = 1_000_000;

@@ -1,0 +1,230 @@
+//! The truth on disk: what a run was asked, what it did and what it found.
+//!
+//! A record holds no time, host or path; the same binary writes the same bytes for the same problem and
+//! seed, whatever the number of threads.
+
+use crate::linkage::{AssemblyMode, FourBar, LinkageType};
+use crate::problem::spec::{Method, ProblemSpec, TransmissionOver};
+use crate::task::Defect;
+use serde::{Deserialize, Serialize};
+
+/// The format that this program writes and reads.
+pub const FORMAT: u32 = 1;
+
+/// A run: problem, method, termination, candidates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// [`FORMAT`].
+    pub format: u32,
+    /// What wrote it.
+    pub tool: Tool,
+    /// What was asked.
+    pub problem: ProblemRecord,
+    /// The seed of every draw.
+    pub seed: u64,
+    /// How it was searched.
+    pub method: MethodRecord,
+    /// Why the search ended.
+    pub termination: Termination,
+    /// What it cost.
+    pub evaluations: Evaluations,
+    /// The answers, best first.
+    pub candidates: Vec<Candidate>,
+}
+
+/// Name and version of the program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tool {
+    /// linkwright.
+    pub name: String,
+    /// The version.
+    pub version: String,
+}
+
+/// The problem as it was run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ProblemRecord {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The label of lengths: mm, cm, m or in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// SHA-256 of what decides the search: task, design, require, objective, method and its parameters, seed.
+    pub digest: String,
+    /// Every key with its default filled in.
+    pub resolved: ProblemSpec,
+}
+
+/// The unit that labels lengths.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Unit {
+    /// Millimetres.
+    Mm,
+    /// Centimetres.
+    Cm,
+    /// Metres.
+    M,
+    /// Inches.
+    In,
+}
+
+impl Unit {
+    /// The label: mm, cm, m or in.
+    pub fn label(self) -> &'static str {
+        match self {
+            Unit::Mm => "mm",
+            Unit::Cm => "cm",
+            Unit::M => "m",
+            Unit::In => "in",
+        }
+    }
+}
+
+/// The method asked for and the methods that ran.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MethodRecord {
+    /// As in the problem file.
+    pub asked: Method,
+    /// What ran, in order.
+    pub used: Vec<String>,
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// The best answer was found again and again from different starts.
+    Converged,
+    /// The target was met: exact answers, as many as were asked for.
+    TargetReached,
+    /// The search ran out of ideas before its budget.
+    Stalled,
+    /// The budget of evaluations was used up.
+    EvaluationLimit,
+    /// The time limit bit.
+    TimeLimit,
+    /// It was cancelled.
+    Cancelled,
+}
+
+/// Why the search ended and whether the run can be repeated to the digit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Termination {
+    /// Why.
+    pub reason: Reason,
+    /// Whether the same problem and seed give the same record (not after a time limit or a cancellation).
+    pub reproducible: bool,
+}
+
+/// What a search cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Evaluations {
+    /// How often the objective was computed.
+    pub objective: u64,
+    /// How many positions of the linkage were computed for that.
+    pub positions: u64,
+}
+
+/// One answer with every figure and verdict, all recomputed by the referee.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Candidate {
+    /// 1 is the best.
+    pub rank: usize,
+    /// The linkage.
+    pub linkage: FourBar,
+    /// The crank angle at each target point, degrees from the x axis, unwrapped.
+    pub crank_deg: Vec<f64>,
+    /// The assembly at each target point.
+    pub t1_at: Vec<AssemblyMode>,
+    /// How far the coupler point is from the target.
+    pub error: ErrorRecord,
+    /// The type.
+    #[serde(rename = "type")]
+    pub linkage_type: LinkageType,
+    /// p + q - s - l.
+    pub grashof_margin: f64,
+    /// The transmission angle's extremes.
+    pub transmission_deg: TransmissionRecord,
+    /// Longest over shortest link.
+    pub link_ratio: f64,
+    /// Every defect found, whether it is allowed or not.
+    pub defects: Vec<Defect>,
+    /// Each requirement with its value and limit.
+    pub requirements: Vec<Requirement>,
+    /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.
+    pub accepted: bool,
+}
+
+/// The errors of a candidate, in the file's unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorRecord {
+    /// What was minimised (weighted).
+    pub objective: f64,
+    /// The unweighted sum of squared distances at the points.
+    pub sum_sq: f64,
+    /// sqrt(sum_sq / n).
+    pub rms: f64,
+    /// The largest distance at a point.
+    pub max: f64,
+    /// Where it is, counted from 0.
+    pub max_at: usize,
+    /// rms over the diagonal of the target's bounding box.
+    pub rms_over_size: f64,
+    /// Distances to the whole coupler curve of the circuit, whatever the timing.
+    pub to_curve: CurveErrorRecord,
+}
+
+/// Distances to the whole coupler curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveErrorRecord {
+    /// The sum of squares.
+    pub sum_sq: f64,
+    /// sqrt(sum_sq / n).
+    pub rms: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// The transmission angle's extremes, degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TransmissionRecord {
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// min(mu, 180 - mu) at its worst.
+    pub worst: f64,
+    /// Over which motion.
+    pub over: TransmissionOver,
+}
+
+/// A value or a limit of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Figure {
+    /// A number.
+    Number(f64),
+    /// Several, such as a box.
+    Numbers(Vec<f64>),
+    /// A word, such as a type.
+    Word(String),
+    /// Several words.
+    Words(Vec<String>),
+}
+
+/// A requirement of a candidate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Requirement {
+    /// The key in the problem file.
+    pub name: String,
+    /// What the candidate has.
+    pub value: Figure,
+    /// What was asked.
+    pub limit: Figure,
+    /// Whether it is met.
+    pub met: bool,
+}

@@ -1,0 +1,119 @@
+//! One run: a problem in, a record out. This is where the rooms meet.
+
+use crate::problem::Problem;
+use crate::problem::spec::ProblemSpec;
+use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
+use crate::search::{Budget, Observer, plan};
+use crate::solve::population::PopulationError;
+use crate::task::TaskError;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+/// What is to be run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// The problem's name.
+    pub name: String,
+    /// Where it comes from, in words.
+    pub source: Option<String>,
+    /// The label of lengths.
+    pub unit: Option<Unit>,
+    /// The problem with every default filled in.
+    pub spec: ProblemSpec,
+}
+
+/// What a run needs of its caller.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// Set it to end the run with its best so far.
+    pub cancel: &'a AtomicBool,
+    /// Told where the search stands.
+    pub observer: &'a Observer<'a>,
+}
+
+/// Why a job cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The task is no task.
+    #[error(transparent)]
+    Task(#[from] TaskError),
+    /// A population search cannot be set up.
+    #[error(transparent)]
+    Population(#[from] PopulationError),
+    /// The problem cannot be written as data.
+    #[error("the problem cannot be written as JSON: {0}")]
+    Json(String),
+}
+
+/// A record with the time that its search took.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    /// The record.
+    pub record: Record,
+    /// Seconds from the checked problem to ranked, refereed candidates.
+    pub search_s: f64,
+}
+
+/// Runs a job on the current rayon thread pool.
+///
+/// # Errors
+/// [`RunError`] when the job makes no search; a search that finds nothing is a record with no accepted
+/// candidate, not an error.
+pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
+    let start = Instant::now();
+    let problem = Problem::new(job.spec.clone())?;
+    let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
+    let outcome = plan::search(&problem, &budget, context.observer)?;
+    let search_s = start.elapsed().as_secs_f64();
+    let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
+    let record = Record {
+        format: FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        problem: ProblemRecord {
+            name: job.name.clone(),
+            source: job.source.clone(),
+            unit: job.unit,
+            digest: digest(&job.spec)?,
+            resolved: job.spec.clone(),
+        },
+        seed: job.spec.solve.seed,
+        method: MethodRecord { asked: job.spec.solve.method, used: outcome.used },
+        termination: Termination { reason: outcome.reason, reproducible },
+        evaluations: outcome.evaluations,
+        candidates: outcome.candidates,
+    };
+    Ok(Finished { record, search_s })
+}
+
+/// SHA-256 of what decides a search: task, design, require, objective, method with its parameters, seed.
+///
+/// # Errors
+/// [`RunError::Json`] when the problem cannot be written as data.
+pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
+    #[derive(Serialize)]
+    struct Decides<'a> {
+        task: &'a crate::problem::spec::TaskSpec,
+        design: &'a crate::problem::spec::DesignSpec,
+        require: &'a crate::problem::spec::RequireSpec,
+        objective: crate::problem::spec::Objective,
+        method: crate::problem::spec::Method,
+        genetic: &'a crate::solve::genetic::GeneticParameters,
+        differential_evolution: &'a crate::solve::differential_evolution::DifferentialEvolutionParameters,
+        seed: u64,
+    }
+    let solve = &spec.solve;
+    let text = serde_json::to_vec(&Decides {
+        task: &spec.task,
+        design: &spec.design,
+        require: &spec.require,
+        objective: solve.objective,
+        method: solve.method,
+        genetic: &solve.genetic,
+        differential_evolution: &solve.differential_evolution,
+        seed: solve.seed,
+    })
+    .map_err(|e| RunError::Json(e.to_string()))?;
+    Ok(Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,72 @@
+//! What to try: starts, rounds, populations, and which answers to give.
+
+pub mod multistart;
+pub mod plan;
+pub mod population;
+pub mod rank;
+pub mod starts;
+
+use crate::record::{Candidate, Evaluations, Reason};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// What stops a search from outside.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget<'a> {
+    /// Set by whoever wants the search to end with its best so far.
+    pub cancel: &'a AtomicBool,
+    /// The time limit, where one was asked for.
+    pub deadline: Option<Instant>,
+}
+
+impl<'a> Budget<'a> {
+    /// A budget that starts now.
+    pub fn new(cancel: &'a AtomicBool, time_limit_s: Option<f64>) -> Self {
+        let limit = time_limit_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+        Budget { cancel, deadline: limit.and_then(|limit| Instant::now().checked_add(limit)) }
+    }
+
+    /// Whether the search should end now.
+    pub fn stopped(&self) -> bool {
+        self.stop_reason().is_some()
+    }
+
+    /// Why the search should end now.
+    pub fn stop_reason(&self) -> Option<Reason> {
+        if self.cancel.load(Ordering::Relaxed) {
+            return Some(Reason::Cancelled);
+        }
+        self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| Reason::TimeLimit)
+    }
+}
+
+/// Where a search stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// What is being done, in a few words.
+    pub phase: &'static str,
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// The budget of evaluations.
+    pub budget: u64,
+    /// The best sum of squares of an acceptable candidate so far, or else of any.
+    pub best_sum_sq: Option<f64>,
+    /// Whether that one is acceptable.
+    pub accepted: bool,
+}
+
+/// Whoever wants to know where a search stands.
+pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
+
+/// The end of a search.
+#[derive(Clone, Debug)]
+pub struct SearchOutcome {
+    /// Distinct candidates, ranked.
+    pub candidates: Vec<Candidate>,
+    /// What ran, in order.
+    pub used: Vec<String>,
+    /// Why it ended.
+    pub reason: Reason,
+    /// What it cost.
+    pub evaluations: Evaluations,
+}

@@ -1,0 +1,239 @@
+//! Levenberg-Marquardt from many starts, in rounds.
+//!
+//! A round draws [`SCREEN`] starts from its own stream of the seed, keeps the [`SHORT`] that promise most, fits
+//! each for a few steps and the best [`LONG`] of them to the end. Rounds run side by side in batches of a
+//! fixed size and are read in their order, so the number of threads changes nothing but the time.
+
+use super::Budget;
+use super::rank::exact_sum_sq;
+use super::starts::{Start, Starts};
+use crate::assess::assess;
+use crate::linkage::mobility::wrapped;
+use crate::linkage::{AssemblyMode, Complex};
+use crate::problem::design_space::{Design, Shape};
+use crate::problem::requirements::{Motion, assembly_of};
+use crate::problem::timed::TimedFit;
+use crate::problem::torus::{Positions, TorusFit};
+use crate::problem::{Problem, Setting};
+use crate::record::Candidate;
+use crate::solve::levenberg_marquardt::{
+    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve, violation,
+};
+use crate::solve::streams::stream;
+use crate::task::{AngleOffset, Timing};
+use std::f64::consts::TAU;
+
+/// Starts drawn and screened in a round.
+const SCREEN: usize = 160;
+/// Starts fitted for a few steps.
+const SHORT: usize = 8;
+/// Starts fitted to the end.
+const LONG: usize = 3;
+/// Steps of a short and of a long fit.
+const SHORT_STEPS: usize = 24;
+const LONG_STEPS: usize = 300;
+
+/// What a round found and what it cost.
+#[derive(Clone, Debug, Default)]
+pub struct RoundOutcome {
+    /// Judged candidates, in the order of their starts' promise.
+    pub found: Vec<Candidate>,
+    /// How often the objective was computed.
+    pub evaluations: u64,
+    /// How many positions that took.
+    pub positions: u64,
+}
+
+/// Options of a fit; `exact` is the cost below which nothing is left to gain.
+fn options(problem: &Problem, max_steps: usize, max_rounds: usize) -> LmOptions {
+    let task = problem.task();
+    LmOptions {
+        max_steps,
+        max_rounds,
+        relative_reduction: 1e-12,
+        exact_cost: 1e-6 * exact_sum_sq(problem),
+        feasibility: 1e-9 * task.size(),
+        // A mean error above a fifth of the size after half of the steps leads nowhere.
+        hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
+    }
+}
+
+/// Runs round `index` of the seed.
+pub fn round(problem: &Problem, starts: &Starts<'_>, index: u64, budget: &Budget<'_>) -> RoundOutcome {
+    let mut outcome = RoundOutcome::default();
+    let mut draws = stream(problem.spec().solve.seed, index);
+    let n = problem.task().len() as u64;
+    let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    for _ in 0..SCREEN {
+        let Some(mut start) = starts.draw(&mut draws) else { continue };
+        outcome.evaluations += 1;
+        outcome.positions += n;
+        if let Some(promise) = promise(problem, &mut start) {
+            screened.push((promise, start));
+        }
+    }
+    screened.sort_by(|one, other| one.0.total_cmp(&other.0));
+    screened.truncate(SHORT);
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+    for (_, start) in screened {
+        if budget.stopped() {
+            return outcome;
+        }
+        let fit = polish(problem, start, SHORT_STEPS, 2, budget);
+        outcome.evaluations += fit.evaluations;
+        outcome.positions += n * fit.evaluations;
+        if let Some(start) = fit.end {
+            fitted.push((fit.merit, start));
+        }
+    }
+    fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
+    fitted.truncate(LONG);
+    for (_, start) in fitted {
+        if budget.stopped() {
+            return outcome;
+        }
+        let fit = polish(problem, start, LONG_STEPS, 14, budget);
+        outcome.evaluations += fit.evaluations;
+        outcome.positions += n * fit.evaluations;
+        outcome.found.extend(fit.end.and_then(|end| judged(problem, &end)));
+    }
+    outcome
+}
+
+/// Cost plus what the requirements lack, as a mean squared error; `None` where it has none.
+fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+    let task = problem.task();
+    let weight: f64 = task.weights().iter().sum();
+    let scale = weight * task.size().powi(2);
+    if start.positions.is_empty() {
+        let fit = TimedFit::new(problem, start.setting)?;
+        let cost = fit.cost(&start.design, &())?;
+        let shape = fit.space().shape(&start.design)?;
+        let motion = fit.motion(&start.design, &shape);
+        let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+        return Some(cost + scale * lack * lack);
+    }
+    let fit = TorusFit::new(problem, start.setting);
+    if !fit.settle(&start.design, &mut start.positions) {
+        return None;
+    }
+    let cost = fit.cost(&start.design, &start.positions)?;
+    let shape = fit.space().shape(&start.design)?;
+    let motion = Motion::Positions(&start.positions);
+    let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+    Some(cost + scale * lack * lack)
+}
+
+/// The end of a fit.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// Where it ended; `None` where it could not start.
+    pub end: Option<Start>,
+    /// Cost plus violation, for comparing ends.
+    pub merit: f64,
+    /// How often the cost was computed.
+    pub evaluations: u64,
+}
+
+/// Fits from a start under all requirements.
+pub fn polish(problem: &Problem, start: Start, steps: usize, rounds: usize, budget: &Budget<'_>) -> Fitted {
+    let options = options(problem, steps, rounds);
+    let stop = || budget.stopped();
+    if start.positions.is_empty() {
+        let Some(fit) = TimedFit::new(problem, start.setting) else {
+            return Fitted { end: None, merit: f64::INFINITY, evaluations: 0 };
+        };
+        ended(problem, solve(&fit, start.design, (), &options, &stop), start.setting, |()| Vec::new())
+    } else {
+        let fit = TorusFit::new(problem, start.setting);
+        let result = solve(&fit, start.design, start.positions, &options, &stop);
+        ended(problem, result, start.setting, |positions| positions)
+    }
+}
+
+fn ended<S>(
+    problem: &Problem,
+    result: LmResult<{ crate::problem::design_space::DESIGN }, S>,
+    setting: Setting,
+    positions: impl Fn(S) -> Positions,
+) -> Fitted {
+    let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
+    let weight: f64 = problem.task().weights().iter().sum();
+    Fitted {
+        merit: result.cost + weight * result.violation * result.violation,
+        evaluations: result.evaluations,
+        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+    }
+}
+
+/// The positions of free timing at a fixed design, each brought to its nearest point.
+pub fn settle_positions(
+    problem: &Problem,
+    design: &Design,
+    setting: Setting,
+    positions: Positions,
+    budget: &Budget<'_>,
+) -> Option<(Positions, u64)> {
+    let fit = TorusFit::at(problem, setting, design);
+    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, 60, 1) };
+    let result = solve(&fit, *design, positions, &options, &|| budget.stopped());
+    debug_assert!(violation(&fit, design, &result.state) >= 0.0);
+    (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
+}
+
+/// The candidate of a fit's end, judged; `None` where it cannot be judged.
+pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
+    let space = problem.space(end.setting.side);
+    let shape = space.shape(&end.design)?;
+    let task = problem.task();
+    if let Timing::Prescribed { crank_angles, offset } = task.timing() {
+        let linkage = space.project(&shape.linkage(end.setting.assembly).ok()?).ok()?;
+        let fit = TimedFit::new(problem, end.setting)?;
+        // An exact multiple of the degrees in the file stays one.
+        let base = match offset {
+            AngleOffset::Free => wrapped(fit.offset(&end.design, &shape)).to_degrees(),
+            AngleOffset::Fixed => 0.0,
+            AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+        };
+        let written = problem.spec().task.path.timing.as_ref()?;
+        debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
+        let crank_deg: Vec<f64> =
+            written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
+        return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
+    }
+    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions);
+    let linkage = space.project(&shape.linkage(assemblies[0]).ok()?).ok()?;
+    assess(problem, &linkage, &crank_deg, &assemblies)
+}
+
+/// Crank angles (degrees, unwrapped along the motion) and assemblies of positions.
+fn reading(problem: &Problem, shape: &Shape, positions: &[[Complex; 2]]) -> (Vec<f64>, Vec<AssemblyMode>) {
+    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
+    let wrapped_angles: Vec<f64> = positions.iter().map(|[e, _]| e.arg()).collect();
+    let turns = crate::linkage::mobility::linkage_type(shape.links())
+        .is_some_and(|t| t.input_turns_fully() || t == crate::linkage::LinkageType::ChangePoint);
+    let mut angles = vec![wrapped_angles[0]];
+    // Along a full turn the way that is shorter in total; a rocking crank takes the short way each time.
+    let total = |direction: f64| -> f64 {
+        wrapped_angles.windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
+    };
+    let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
+    for w in wrapped_angles.windows(2) {
+        let step = if turns {
+            let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
+            direction * if step > TAU - 1e-9 { step - TAU } else { step }
+        } else {
+            wrapped(w[1] - w[0])
+        };
+        angles.push(angles[angles.len() - 1] + step);
+    }
+    if problem.task().repeats_first() {
+        let last = angles.len() - 1;
+        let around = if turns { direction * TAU } else { 0.0 };
+        angles[last] = angles[0] + around;
+        let mut assemblies = assemblies;
+        assemblies[last] = assemblies[0];
+        return (angles.iter().map(|a| a.to_degrees()).collect(), assemblies);
+    }
+    (angles.iter().map(|a| a.to_degrees()).collect(), assemblies)
+}

@@ -1,0 +1,208 @@
+//! Which searches run, in which order, and when they have done enough.
+//!
+//! `least-squares` fits from many starts until the best answer has come back [`HITS`] times from different
+//! rounds and as many distinct answers as were asked for are known. `auto` does the same and, when nothing
+//! acceptable came of it within its share of the budget, lets differential evolution look for a feasible
+//! design and polishes what that finds. The population searches alone run without a polish.
+
+use super::multistart::{judged, polish, round};
+use super::population::{self, Population};
+use super::rank::{compare, distinct, exact_sum_sq};
+use super::starts::Starts;
+use super::{Budget, Observer, Progress, SearchOutcome};
+use crate::problem::Problem;
+use crate::problem::spec::Method;
+use crate::record::{Candidate, Evaluations, Reason};
+use crate::solve::population::PopulationError;
+use rayon::prelude::*;
+
+/// The best answer has to come back from this many rounds before it is believed.
+pub const HITS: usize = 6;
+/// Errors that differ by less than this part are the same optimum.
+const SAME_OPTIMUM: f64 = 1e-6;
+/// Rounds that run side by side before any is read: the same number whatever the threads.
+const BATCH: u64 = 8;
+/// Batches at least, so that rarer answers have their chance, and batches without news that end a search for
+/// further distinct answers.
+const LEAST_BATCHES: u64 = 3;
+const QUIET_BATCHES: u64 = 6;
+/// The part of the budget that `auto` gives to local searches when nothing acceptable turns up.
+const LOCAL_SHARE: f64 = 0.6;
+/// Candidates that are kept while searching; the worst are dropped beyond it.
+const KEPT: usize = 400;
+
+/// Searches as the problem's `[solve]` table says.
+///
+/// # Errors
+/// [`PopulationError`] when a population search cannot be set up.
+pub fn search(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<SearchOutcome, PopulationError> {
+    match problem.spec().solve.method {
+        Method::Genetic => alone(problem, Population::Genetic, budget, observer),
+        Method::DifferentialEvolution => alone(problem, Population::DifferentialEvolution, budget, observer),
+        Method::LeastSquares => {
+            let limit = problem.spec().solve.evaluations;
+            Ok(local_search(problem, limit, limit, budget, observer).outcome(problem))
+        }
+        Method::Auto => auto(problem, budget, observer),
+    }
+}
+
+fn alone(
+    problem: &Problem,
+    which: Population,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<SearchOutcome, PopulationError> {
+    let spec = &problem.spec().solve;
+    let end = population::search(problem, which, spec.evaluations, budget, observer)?;
+    Ok(SearchOutcome {
+        candidates: distinct(problem, end.found, spec.candidates),
+        used: vec![which.name().into()],
+        reason: end.reason,
+        evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
+    })
+}
+
+/// The state of a multistart.
+struct Local {
+    found: Vec<Candidate>,
+    evaluations: Evaluations,
+    reason: Reason,
+    used: Vec<String>,
+}
+
+impl Local {
+    fn outcome(self, problem: &Problem) -> SearchOutcome {
+        SearchOutcome {
+            candidates: distinct(problem, self.found, problem.spec().solve.candidates),
+            used: self.used,
+            reason: self.reason,
+            evaluations: self.evaluations,
+        }
+    }
+}
+
+/// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
+/// an acceptable candidate.
+fn local_search(
+    problem: &Problem,
+    limit: u64,
+    patience: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Local {
+    let wanted = problem.spec().solve.candidates;
+    let exact = exact_sum_sq(problem);
+    let starts = Starts::new(problem);
+    let mut local = Local {
+        found: Vec::new(),
+        evaluations: Evaluations::default(),
+        reason: Reason::EvaluationLimit,
+        used: vec!["least-squares".into()],
+    };
+    let mut best: Option<Candidate> = None;
+    let (mut hits, mut known, mut quiet) = (0, 0, 0);
+    let mut batch = 0;
+    loop {
+        if let Some(reason) = budget.stop_reason() {
+            local.reason = reason;
+            return local;
+        }
+        let rounds: Vec<_> = (batch * BATCH..(batch + 1) * BATCH)
+            .into_par_iter()
+            .map(|index| round(problem, &starts, index, budget))
+            .collect();
+        batch += 1;
+        for outcome in rounds {
+            local.evaluations.objective += outcome.evaluations;
+            local.evaluations.positions += outcome.positions;
+            let mut hit = false;
+            for candidate in outcome.found {
+                if candidate.accepted {
+                    let error = candidate.error.objective;
+                    let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
+                    if error < bar - SAME_OPTIMUM * bar.max(exact) {
+                        hits = 0;
+                    }
+                    if error <= bar + (SAME_OPTIMUM * bar).max(exact) {
+                        hit = true;
+                    }
+                    if error < bar {
+                        best = Some(candidate.clone());
+                    }
+                }
+                local.found.push(candidate);
+            }
+            hits += usize::from(hit);
+        }
+        local.found.sort_by(|one, other| compare(problem, one, other));
+        local.found.truncate(KEPT);
+        let shown = best.as_ref().or(local.found.first());
+        observer(&Progress {
+            phase: "least-squares",
+            evaluations: local.evaluations.objective,
+            budget: limit,
+            best_sum_sq: shown.map(|c| c.error.sum_sq),
+            accepted: best.is_some(),
+        });
+        if hits >= HITS && batch >= LEAST_BATCHES {
+            let distinct = distinct(problem, local.found.clone(), wanted).len();
+            quiet = if distinct > known { 0 } else { quiet + 1 };
+            known = distinct;
+            if distinct >= wanted || quiet >= QUIET_BATCHES {
+                let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact);
+                local.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
+                return local;
+            }
+        }
+        let used = local.evaluations.objective;
+        if used >= limit || (used >= patience && best.is_none()) {
+            local.reason = Reason::EvaluationLimit;
+            return local;
+        }
+    }
+}
+
+fn auto(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<SearchOutcome, PopulationError> {
+    let limit = problem.spec().solve.evaluations;
+    let patience = (limit as f64 * LOCAL_SHARE) as u64;
+    let mut local = local_search(problem, limit, patience, budget, observer);
+    let finished = local.reason != Reason::EvaluationLimit || local.evaluations.objective >= limit;
+    if finished || local.found.iter().any(|c| c.accepted) {
+        return Ok(local.outcome(problem));
+    }
+    let left = limit.saturating_sub(local.evaluations.objective).max(1);
+    let end = population::search(problem, Population::DifferentialEvolution, left, budget, observer)?;
+    local.used.push(Population::DifferentialEvolution.name().into());
+    local.evaluations.objective += end.evaluations;
+    local.evaluations.positions += end.positions;
+    local.found.extend(end.found);
+    let n = problem.task().len() as u64;
+    let polished: Vec<_> = end
+        .starts
+        .into_par_iter()
+        .map(|start| {
+            let fit = polish(problem, start, 300, 14, budget);
+            (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
+        })
+        .collect();
+    for (candidate, evaluations) in polished {
+        local.evaluations.objective += evaluations;
+        local.evaluations.positions += n * evaluations;
+        local.found.extend(candidate);
+    }
+    if let Some(reason) = budget.stop_reason() {
+        local.reason = reason;
+    } else if end.reason != Reason::EvaluationLimit {
+        local.reason = end.reason;
+    }
+    Ok(local.outcome(problem))
+}

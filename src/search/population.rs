@@ -1,0 +1,135 @@
+//! The population searches on the design vector: genetic, differential evolution, and uniform sampling as the
+//! baseline that they are measured against.
+
+use super::multistart::{judged, settle_positions};
+use super::starts::Start;
+use super::{Budget, Observer, Progress};
+use crate::problem::Problem;
+use crate::problem::fitness::PathFitness;
+use crate::record::{Candidate, Reason};
+use crate::solve::argmin_bridge::{Limits, StopReason, run_restarts};
+use crate::solve::differential_evolution::DifferentialEvolution;
+use crate::solve::genetic::Genetic;
+use crate::solve::population::{Generations, Individual, PopulationError, PopulationProblem};
+use crate::solve::random_search::{UniformSampling, UniformSamplingParameters};
+use crate::task::Timing;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Which population search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Population {
+    /// The real-coded genetic algorithm.
+    Genetic,
+    /// Differential evolution.
+    DifferentialEvolution,
+    /// Uniform random sampling of the box.
+    UniformSampling,
+}
+
+impl Population {
+    /// The name in records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Population::Genetic => "genetic",
+            Population::DifferentialEvolution => "differential-evolution",
+            Population::UniformSampling => "uniform-sampling",
+        }
+    }
+}
+
+/// The end of a population search.
+#[derive(Clone, Debug)]
+pub struct PopulationEnd {
+    /// Starts for a polish, best first, one for each individual kept.
+    pub starts: Vec<Start>,
+    /// The same, judged as they are.
+    pub found: Vec<Candidate>,
+    /// How often the objective was computed.
+    pub evaluations: u64,
+    /// How many positions that took.
+    pub positions: u64,
+    /// Why it ended.
+    pub reason: Reason,
+}
+
+/// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
+/// are used.
+///
+/// # Errors
+/// [`PopulationError`] when the parameters are out of range or everything is fixed.
+pub fn search(
+    problem: &Problem,
+    which: Population,
+    evaluations: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<PopulationEnd, PopulationError> {
+    let fitness = PathFitness::new(problem);
+    let spec = &problem.spec().solve;
+    let mut algorithm: Box<dyn Generations> = match which {
+        Population::Genetic => Box::new(Genetic::new(spec.genetic.clone())?),
+        Population::DifferentialEvolution => {
+            Box::new(DifferentialEvolution::new(spec.differential_evolution.clone())?)
+        }
+        Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
+    };
+    let limits = Limits { evaluations, target: Some(super::rank::exact_sum_sq(problem)) };
+    let stop = AtomicBool::new(budget.stopped());
+    let outcome = run_restarts(&fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
+        if budget.stopped() {
+            stop.store(true, Ordering::Relaxed);
+        }
+        observer(&Progress {
+            phase: which.name(),
+            evaluations: at.evaluations,
+            budget: evaluations,
+            best_sum_sq: at.best.fitness.is_feasible().then_some(at.best.fitness.cost),
+            accepted: at.best.fitness.is_feasible(),
+        });
+    })?;
+    let mut starts = Vec::new();
+    let mut found = Vec::new();
+    let kept =
+        [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
+    for individual in kept {
+        let Some(start) = start_of(problem, &fitness, individual, budget) else { continue };
+        found.extend(judged(problem, &start));
+        starts.push(start);
+    }
+    Ok(PopulationEnd {
+        starts,
+        found,
+        evaluations: outcome.evaluations,
+        positions: outcome.evaluations * fitness.positions_per_evaluation(),
+        reason: match outcome.reason {
+            StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
+            StopReason::TargetReached => Reason::TargetReached,
+            StopReason::EvaluationLimit => Reason::EvaluationLimit,
+            StopReason::Converged => Reason::Stalled,
+        },
+    })
+}
+
+/// Individuals of the last population that are looked at for distinct answers.
+const KEPT: usize = 20;
+
+fn start_of(
+    problem: &Problem,
+    fitness: &PathFitness<'_>,
+    individual: &Individual,
+    budget: &Budget<'_>,
+) -> Option<Start> {
+    debug_assert_eq!(individual.x.len(), fitness.bounds().len());
+    let reading = fitness.read(&individual.x);
+    let space = fitness.space(reading.setting.side);
+    let design = space.from_free(&individual.x);
+    let positions = match problem.task().timing() {
+        Timing::Prescribed { .. } => Vec::new(),
+        Timing::Free => {
+            let shape = space.shape(&design)?;
+            let sampled = fitness.positions(&shape, reading.setting.assembly)?;
+            settle_positions(problem, &design, reading.setting, sampled, budget)?.0
+        }
+    };
+    Some(Start { design, setting: reading.setting, positions })
+}

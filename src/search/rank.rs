@@ -1,0 +1,91 @@
+//! Which answers are really different, and which is the best.
+//!
+//! Two linkages count as one answer when they draw the same curve through the target (Roberts' cognates
+//! included): their coupler points at the target points and 48 points of their curves lie within a small part
+//! of the target's size of each other. Ranked by acceptance, then error (errors of exact answers are equal),
+//! then worst transmission angle, then size.
+
+use crate::linkage::{Complex, CouplerCurve};
+use crate::problem::Problem;
+use crate::record::Candidate;
+use std::cmp::Ordering;
+
+/// Curves nearer to each other than this part of the target's size are one answer.
+pub const SAME_CURVE: f64 = 2e-3;
+/// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
+pub const EXACT: f64 = 1e-24;
+
+/// The sum of squares below which a fit is exact.
+pub fn exact_sum_sq(problem: &Problem) -> f64 {
+    EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
+}
+
+/// Better first.
+pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Ordering {
+    let floor = exact_sum_sq(problem);
+    let error = |c: &Candidate| c.error.objective.max(floor);
+    let unmet = |c: &Candidate| {
+        if c.accepted { 0 } else { 1 + c.requirements.iter().filter(|r| !r.met).count() }
+    };
+    let size = |c: &Candidate| c.linkage.longest_link().max(c.linkage.crank_side());
+    let accepted = |c: &Candidate| u8::from(!c.accepted);
+    accepted(one)
+        .cmp(&accepted(other))
+        .then_with(|| error(one).total_cmp(&error(other)))
+        .then_with(|| unmet(one).cmp(&unmet(other)))
+        .then_with(|| other.transmission_deg.worst.total_cmp(&one.transmission_deg.worst))
+        .then_with(|| size(one).total_cmp(&size(other)))
+}
+
+/// A candidate's curve for comparisons.
+struct Trace {
+    at_points: Vec<Complex>,
+    curve: CouplerCurve,
+    probes: Vec<Complex>,
+}
+
+impl Trace {
+    fn of(candidate: &Candidate) -> Trace {
+        let (angles, assemblies) = (&candidate.crank_deg, &candidate.t1_at);
+        let at_points = angles
+            .iter()
+            .zip(assemblies)
+            .filter_map(|(deg, t1)| candidate.linkage.position_with(deg.to_radians(), *t1).joints())
+            .map(|joints| joints.coupler_point)
+            .collect();
+        let through = |samples| {
+            CouplerCurve::through(&candidate.linkage, angles[0].to_radians(), assemblies[0], samples)
+        };
+        Trace { at_points, curve: through(240), probes: through(48).points().collect() }
+    }
+
+    fn is_same(&self, other: &Trace, reach: f64) -> bool {
+        let near = |p: &Complex, q: &Complex| (p - q).norm() <= reach;
+        self.at_points.len() == other.at_points.len()
+            && self.at_points.iter().zip(&other.at_points).all(|(p, q)| near(p, q))
+            && self.probes.iter().all(|p| other.curve.nearest(*p).is_some_and(|n| n.distance <= reach))
+    }
+}
+
+/// The best distinct candidates, at most `wanted`, ranked from 1.
+///
+/// Where at least one is accepted only accepted ones are given.
+pub fn distinct(problem: &Problem, mut found: Vec<Candidate>, wanted: usize) -> Vec<Candidate> {
+    found.sort_by(|one, other| compare(problem, one, other));
+    if found.first().is_some_and(|best| best.accepted) {
+        found.retain(|candidate| candidate.accepted);
+    }
+    let reach = SAME_CURVE * problem.task().size();
+    let mut kept: Vec<(Candidate, Trace)> = Vec::new();
+    for candidate in found {
+        if kept.len() == wanted {
+            break;
+        }
+        let trace = Trace::of(&candidate);
+        if kept.iter().all(|(_, other)| !trace.is_same(other, reach)) {
+            kept.push((candidate, trace));
+        }
+    }
+    let rank = |(i, (candidate, _)): (usize, (Candidate, Trace))| Candidate { rank: i + 1, ..candidate };
+    kept.into_iter().enumerate().map(rank).collect()
+}

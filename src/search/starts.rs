@@ -1,0 +1,259 @@
+//! Where local searches start: shapes drawn by type, positions by timing, the rest by linear least squares.
+//!
+//! Grashof shapes are drawn in their slacks: with the shortest link s and s_i > 0,
+//! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
+//! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
+
+use crate::linkage::mobility::Mobility;
+use crate::linkage::{
+    AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates,
+    mobility::{grashof_margin, linkage_type},
+};
+use crate::problem::design_space::{Design, DesignSpace, Shape};
+use crate::problem::linear_fit::{KnownPivots, Ratios, coupler_direction, fit};
+use crate::problem::torus::Positions;
+use crate::problem::{Problem, Setting};
+use crate::solve::streams::{Stream, below, uniform};
+use crate::task::{AngleOffset, Timing};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A start for a local search.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The design vector, inside its bounds.
+    pub design: Design,
+    /// What is fixed besides.
+    pub setting: Setting,
+    /// The points' positions; empty for prescribed timing.
+    pub positions: Positions,
+}
+
+/// Draws starts for a problem.
+#[derive(Clone, Debug)]
+pub struct Starts<'a> {
+    problem: &'a Problem,
+    types: Vec<LinkageType>,
+    /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
+    arc: Vec<f64>,
+    /// One space a side of the coupler point.
+    spaces: Vec<(CouplerSide, DesignSpace)>,
+}
+
+impl<'a> Starts<'a> {
+    /// The starts of a problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        let task = problem.task();
+        let points = task.points();
+        let mut along = vec![0.0];
+        for w in points.windows(2) {
+            along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let mut whole = along[along.len() - 1];
+        if task.closed() && !task.repeats_first() {
+            whole += (points[0] - points[points.len() - 1]).norm();
+        }
+        let types = match problem.types() {
+            // Any type: those that a motor can turn get half of the draws.
+            [] => vec![
+                LinkageType::CrankRocker,
+                LinkageType::CrankRocker,
+                LinkageType::DoubleCrank,
+                LinkageType::RockerCrank,
+                LinkageType::DoubleRocker,
+                LinkageType::TripleRocker,
+            ],
+            some => some.to_vec(),
+        };
+        Starts {
+            problem,
+            types,
+            arc: along.iter().map(|s| s / whole).collect(),
+            spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
+        }
+    }
+
+    /// One start; `None` where the draw cannot be assembled at every point.
+    pub fn draw(&self, stream: &mut Stream) -> Option<Start> {
+        let drawn = self.types[below(stream, self.types.len())];
+        let assembly = if below(stream, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
+        let directions = self.problem.directions();
+        let direction = directions[below(stream, directions.len())];
+        let which = below(stream, self.spaces.len());
+        let ratios = draw_ratios(stream, drawn)?;
+        let aim = if self.problem.types().is_empty() { None } else { Some(drawn) };
+        let theta = uniform(stream, -PI, PI);
+        let phase = uniform(stream, -PI, PI);
+        let (side, space) = &self.spaces[which];
+        let setting = Setting { aim, assembly, direction, side: *side };
+        let mut known = self.known(space);
+        match self.problem.task().timing() {
+            Timing::Prescribed { offset, .. } => {
+                let t = assembly.sign();
+                let phases = self.problem.phases(direction);
+                let turn = match offset {
+                    AngleOffset::Free => Complex::from_polar(1.0, phase),
+                    AngleOffset::Ground => Complex::new(1.0, 0.0),
+                    AngleOffset::Fixed => {
+                        let angle = match (known.crank_pivot, known.follower_pivot, known.ground_angle) {
+                            (Some(a), Some(b), _) => (b - a).arg(),
+                            (_, _, Some(angle)) => angle,
+                            _ => theta,
+                        };
+                        known.ground_angle = Some(angle);
+                        Complex::from_polar(1.0, -angle)
+                    }
+                };
+                let positions: Option<Vec<[Complex; 2]>> = phases
+                    .iter()
+                    .map(|e| {
+                        let e = e * turn;
+                        Some([e, coupler_direction(&ratios, e, t)?])
+                    })
+                    .collect();
+                let shape = self.fit(&ratios, &known, &positions?)?;
+                let ground = (shape.follower_pivot - shape.crank_pivot).arg();
+                let offset = if self.problem.offset_is_free() { phase + ground } else { 0.0 };
+                Some(Start { design: space.design(&shape, offset), setting, positions: Vec::new() })
+            }
+            Timing::Free => {
+                let positions = self.free_positions(stream, &ratios, drawn, assembly, direction)?;
+                let shape = self.fit(&ratios, &known, &positions)?;
+                let ground = shape.follower_pivot - shape.crank_pivot;
+                let turn = ground / ground.norm();
+                let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
+                Some(Start { design: space.design(&shape, 0.0), setting, positions })
+            }
+        }
+    }
+
+    fn fit(&self, ratios: &Ratios, known: &KnownPivots, positions: &[[Complex; 2]]) -> Option<Shape> {
+        let task = self.problem.task();
+        fit(ratios, known, positions, task.points(), task.weights())
+    }
+
+    /// What the design's bounds fix of the pivots.
+    fn known(&self, space: &DesignSpace) -> KnownPivots {
+        let fixed = |limits: Option<crate::problem::spec::Limits>| {
+            limits.filter(crate::problem::spec::Limits::is_fixed).map(|l| l.0)
+        };
+        let design = &self.problem.spec().design;
+        let pivot = |p: Option<[crate::problem::spec::Limits; 2]>| {
+            let [x, y] = p?;
+            Some(Complex::new(fixed(Some(x))?, fixed(Some(y))?))
+        };
+        debug_assert_eq!(space.bounds().len(), crate::problem::design_space::DESIGN);
+        KnownPivots {
+            crank_pivot: pivot(design.crank_pivot),
+            follower_pivot: pivot(design.follower_pivot),
+            ground_angle: fixed(design.ground_angle_deg).map(f64::to_radians),
+            ground: fixed(design.ground),
+        }
+    }
+
+    /// Positions (from the ground line) spread along the circuit as the points are along the target.
+    fn free_positions(
+        &self,
+        stream: &mut Stream,
+        ratios: &Ratios,
+        drawn: LinkageType,
+        assembly: AssemblyMode,
+        direction: f64,
+    ) -> Option<Positions> {
+        let closed = self.problem.task().closed() || self.problem.task().repeats_first();
+        let start = uniform(stream, -PI, PI);
+        let partial = uniform(stream, 0.5, 5.8);
+        let within = [uniform(stream, -FRAC_PI_2, FRAC_PI_2), uniform(stream, -FRAC_PI_2, FRAC_PI_2)];
+        let arc_choice = below(stream, 2);
+        let at = |e: Complex, t: f64| Some([e, coupler_direction(ratios, e, t)?]);
+        if drawn.input_turns_fully() {
+            let span = if closed { TAU } else { partial };
+            return self
+                .arc
+                .iter()
+                .map(|s| at(Complex::from_polar(1.0, start + direction * span * s), assembly.sign()))
+                .collect();
+        }
+        let mobility = unit_linkage(ratios)?;
+        let index = (arc_choice as u8) % mobility.circuits().max(1);
+        let arc = mobility.arc(crate::linkage::Circuit { index })?;
+        // Keep a little off the toggles, where the assembly is undecided.
+        const INSIDE: f64 = 1.0 - 1e-9;
+        if self.problem.branch_any() {
+            let span = if closed { TAU } else { partial };
+            return self
+                .arc
+                .iter()
+                .map(|s| {
+                    let psi = start + direction * span * s;
+                    let angle = arc.middle + INSIDE * arc.half_width * psi.sin();
+                    at(Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+                })
+                .collect();
+        }
+        let [from, to] = within;
+        let ends = [from.sin(), to.sin()].map(|x| arc.middle + INSIDE * arc.half_width * x);
+        if (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1 {
+            return None;
+        }
+        self.arc
+            .iter()
+            .map(|s| at(Complex::from_polar(1.0, ends[0] + (ends[1] - ends[0]) * s), assembly.sign()))
+            .collect()
+    }
+}
+
+/// The mobility of the linkage with ground 1 along the x axis.
+fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
+    let linkage = FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [1.0, 0.0],
+        crank: ratios.crank,
+        coupler: ratios.coupler,
+        follower: ratios.follower,
+        crank_side: 0.0,
+        follower_side: ratios.coupler,
+        assembly: AssemblyMode::Plus,
+        side: CouplerSide::Plus,
+    })
+    .ok()?;
+    Some(linkage.mobility())
+}
+
+/// Slacks and lengths are drawn over this range of ratios, evenly in their logarithm.
+const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
+
+fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
+    let log_uniform =
+        |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
+    let links = match drawn {
+        LinkageType::TripleRocker | LinkageType::ChangePoint => {
+            // Most draws are no triple-rocker: try a few.
+            let mut found = None;
+            for _ in 0..16 {
+                let links = [(); 4].map(|()| log_uniform(stream, (0.2, 5.0)));
+                let fits = linkage_type(links) == Some(LinkageType::TripleRocker);
+                if found.is_none() && fits && grashof_margin(links) < 0.0 {
+                    found = Some(links);
+                }
+            }
+            found?
+        }
+        _ => {
+            let s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
+            let others = [1.0 + 0.5 * (s[1] + s[2]), 1.0 + 0.5 * (s[0] + s[2]), 1.0 + 0.5 * (s[0] + s[1])];
+            let place = match drawn {
+                LinkageType::DoubleCrank => 0,
+                LinkageType::CrankRocker => 1,
+                LinkageType::DoubleRocker => 2,
+                _ => 3,
+            };
+            let mut links = [1.0; 4];
+            for (slot, value) in (0..4).filter(|&i| i != place).zip(others) {
+                links[slot] = value;
+            }
+            links
+        }
+    };
+    let [g, a, b, c] = links;
+    Some(Ratios { crank: a / g, coupler: b / g, follower: c / g })
+}

@@ -1,0 +1,335 @@
+//! Runs a population algorithm under argmin's executor: the one file that names argmin.
+//!
+//! Each algorithm implements [`Generations`]; the bridge makes any of them an `argmin::core::Solver` whose state is a
+//! `PopulationState<Vec<f64>, f64>`. What argmin is not asked to do, and why:
+//!
+//! - *counting*: argmin counts evaluations only on request, per call of the problem, and from zero after a resume. The
+//!   algorithms report their own evaluations, and the limit is met to the evaluation;
+//! - *infeasible points*: argmin knows one cost. It sees infinity until a feasible point is found, while the algorithms
+//!   go by the feasibility rules of [`Fitness`](super::population::Fitness);
+//! - *signals*: its handler is for the whole process. A search looks at its own job's token after each generation.
+//!
+//! A search that stops at its limit, at a token or in a stall is an outcome, not an error.
+
+use super::population::{
+    Generations, Individual, PopulationError, PopulationProblem, best_of, check_box, sort_best_first,
+};
+use super::streams::stream;
+use argmin::core::{
+    Error, Executor, KV, PopulationState, Problem, Solver, State, TerminationReason, TerminationStatus,
+};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// When a search has to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The number of evaluations that is never exceeded, at least 1.
+    pub evaluations: u64,
+    /// Stop as soon as a feasible point costs no more than this. Looked at after each generation; NaN is never met.
+    pub target: Option<f64>,
+}
+
+/// Why a search stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StopReason {
+    /// The best stalled or the population collapsed.
+    Converged,
+    /// A feasible point reached the target.
+    TargetReached,
+    /// All evaluations were used.
+    EvaluationLimit,
+    /// The token was set.
+    Cancelled,
+}
+
+/// Where a search is, after a generation.
+#[derive(Clone, Copy, Debug)]
+pub struct PopulationProgress<'a> {
+    /// The number of the restart, from zero.
+    pub restart: u64,
+    /// The number of the generation within the restart; zero is the first population.
+    pub generation: u64,
+    /// The evaluations so far, over all restarts.
+    pub evaluations: u64,
+    /// The best so far, over all restarts.
+    pub best: &'a Individual,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PopulationOutcome {
+    /// The best individual of all. It may be infeasible, if no feasible one was met.
+    pub best: Individual,
+    /// The last population of the restart that found the best, sorted best first: `best` is its first.
+    pub population: Vec<Individual>,
+    /// The best individual of each restart, in the order of the restarts.
+    pub restart_bests: Vec<Individual>,
+    /// How many evaluations were made, exactly.
+    pub evaluations: u64,
+    /// How many generations were made over all restarts, first populations included.
+    pub generations: u64,
+    /// Why the search stopped.
+    pub reason: StopReason,
+}
+
+/// Searches once, with stream 0 of `seed`, until the algorithm converges or the limits are met.
+///
+/// `starts` are points that the first population shall contain, as many as fit; the others are drawn uniformly from the
+/// box. `observe` is called on this thread after each generation. `cancel` is looked at after each generation, so even
+/// a search that is cancelled beforehand has an answer, from its first population. The outcome is a function of the
+/// problem, the algorithm's parameters, the starts, the seed and the limits, unless the search is cancelled: neither
+/// the number of threads nor the observer changes a digit.
+///
+/// # Errors
+/// [`PopulationError`] if the box, a start or the limit makes no search; see [`check_box`].
+///
+/// # Panics
+/// If the algorithm breaks the contract of [`Generations`].
+pub fn run(
+    problem: &dyn PopulationProblem,
+    algorithm: &mut dyn Generations,
+    starts: &[Vec<f64>],
+    seed: u64,
+    limits: &Limits,
+    cancel: &AtomicBool,
+    observe: &mut dyn FnMut(PopulationProgress<'_>),
+) -> Result<PopulationOutcome, PopulationError> {
+    check(problem, starts, limits)?;
+    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, found: None };
+    search.restart(0, starts);
+    Ok(search.finish())
+}
+
+/// Searches again and again until the limits are met: restart i begins afresh with stream i of `seed`, once restart
+/// i - 1 has converged. The best of all restarts is kept.
+///
+/// `starts` are given to restart 0 only, since the later ones shall find something else. The other arguments are those
+/// of [`run`], whose outcome is that of restart 0 alone. The reason is never [`StopReason::Converged`]; the last
+/// restart is cut short by the limit.
+///
+/// # Errors
+/// As [`run`].
+///
+/// # Panics
+/// As [`run`].
+pub fn run_restarts(
+    problem: &dyn PopulationProblem,
+    algorithm: &mut dyn Generations,
+    starts: &[Vec<f64>],
+    seed: u64,
+    limits: &Limits,
+    cancel: &AtomicBool,
+    observe: &mut dyn FnMut(PopulationProgress<'_>),
+) -> Result<PopulationOutcome, PopulationError> {
+    check(problem, starts, limits)?;
+    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, found: None };
+    search.restart(0, starts);
+    let mut index = 1;
+    while search.wants_more() {
+        search.restart(index, &[]);
+        index += 1;
+    }
+    Ok(search.finish())
+}
+
+fn check(
+    problem: &dyn PopulationProblem,
+    starts: &[Vec<f64>],
+    limits: &Limits,
+) -> Result<(), PopulationError> {
+    check_box(problem.bounds(), starts)?;
+    if limits.evaluations == 0 {
+        return Err(PopulationError::NoEvaluations);
+    }
+    Ok(())
+}
+
+/// The arguments of a search, and what it has found in the restarts that are over.
+struct Search<'a> {
+    problem: &'a dyn PopulationProblem,
+    algorithm: &'a mut dyn Generations,
+    seed: u64,
+    limits: &'a Limits,
+    cancel: &'a AtomicBool,
+    observe: &'a mut dyn FnMut(PopulationProgress<'_>),
+    found: Option<PopulationOutcome>,
+}
+
+impl Search<'_> {
+    /// Whether the last restart converged with evaluations left.
+    fn wants_more(&mut self) -> bool {
+        let Some(found) = &mut self.found else {
+            return true;
+        };
+        if found.reason == StopReason::Converged && found.evaluations >= self.limits.evaluations {
+            found.reason = StopReason::EvaluationLimit;
+        }
+        found.reason == StopReason::Converged
+    }
+
+    fn restart(&mut self, index: u64, starts: &[Vec<f64>]) {
+        let (evaluations, generations, best_before) = match &self.found {
+            None => (0, 0, None),
+            Some(found) => (found.evaluations, found.generations, Some(&found.best)),
+        };
+        let bridge = Bridge {
+            algorithm: self.algorithm,
+            starts,
+            seed: self.seed,
+            restart: index,
+            limits: self.limits,
+            cancel: self.cancel,
+            observe: self.observe,
+            best_before,
+            evaluations,
+            generation: 0,
+        };
+        let result = Executor::new(self.problem, bridge)
+            .ctrlc(false)
+            .timer(false)
+            .run()
+            .expect("neither the bridge nor an executor without observers and checkpoints fails");
+        let reason = stop_reason(result.state.get_termination_reason());
+        let evaluations = result.solver.evaluations;
+        let generations = generations + result.solver.generation + 1;
+        let mut population = result.solver.algorithm.population().to_vec();
+        sort_best_first(&mut population);
+        let best = population[0].clone();
+        match &mut self.found {
+            None => {
+                let restart_bests = vec![best.clone()];
+                let outcome =
+                    PopulationOutcome { best, population, restart_bests, evaluations, generations, reason };
+                self.found = Some(outcome);
+            }
+            Some(found) => {
+                (found.evaluations, found.generations) = (evaluations, generations);
+                found.reason = reason;
+                found.restart_bests.push(best.clone());
+                if best.fitness.compare(&found.best.fitness).is_lt() {
+                    (found.best, found.population) = (best, population);
+                }
+            }
+        }
+    }
+
+    fn finish(self) -> PopulationOutcome {
+        self.found.expect("a search makes at least one restart")
+    }
+}
+
+/// The reason that the bridge gave argmin.
+fn stop_reason(reason: Option<&TerminationReason>) -> StopReason {
+    match reason {
+        Some(TerminationReason::SolverConverged) => StopReason::Converged,
+        Some(TerminationReason::TargetCostReached) => StopReason::TargetReached,
+        Some(TerminationReason::MaxItersReached) => StopReason::EvaluationLimit,
+        Some(TerminationReason::Interrupt) => StopReason::Cancelled,
+        Some(TerminationReason::Timeout | TerminationReason::SolverExit(_)) | None => {
+            unreachable!("the bridge sets no timeout and names one of four reasons")
+        }
+    }
+}
+
+type BridgeState = PopulationState<Vec<f64>, f64>;
+
+/// One restart of an algorithm, as a solver of argmin's.
+struct Bridge<'a> {
+    algorithm: &'a mut dyn Generations,
+    starts: &'a [Vec<f64>],
+    seed: u64,
+    restart: u64,
+    limits: &'a Limits,
+    cancel: &'a AtomicBool,
+    observe: &'a mut dyn FnMut(PopulationProgress<'_>),
+    /// The best of the restarts before this one.
+    best_before: Option<&'a Individual>,
+    /// Over all restarts.
+    evaluations: u64,
+    /// Of this restart.
+    generation: u64,
+}
+
+impl Bridge<'_> {
+    fn remaining(&self) -> u64 {
+        self.limits.evaluations - self.evaluations
+    }
+
+    fn best(&self) -> &Individual {
+        best_of(self.algorithm.population()).expect("an initialised algorithm has a population")
+    }
+
+    /// Books what a generation spent, tells the observer, and gives argmin the best.
+    fn book(&mut self, spent: u64, mut state: BridgeState) -> BridgeState {
+        assert!(
+            (1..=self.remaining()).contains(&spent),
+            "{} spent {spent} evaluations of {}",
+            self.algorithm.name(),
+            self.remaining()
+        );
+        self.evaluations += spent;
+        let best = best_of(self.algorithm.population()).expect("an initialised algorithm has a population");
+        let overall = match self.best_before {
+            Some(before) if before.fitness.compare(&best.fitness).is_le() => before,
+            _ => best,
+        };
+        (self.observe)(PopulationProgress {
+            restart: self.restart,
+            generation: self.generation,
+            evaluations: self.evaluations,
+            best: overall,
+        });
+        state.cost = if best.fitness.is_feasible() { best.fitness.cost } else { f64::INFINITY };
+        state.individual.get_or_insert_default().clone_from(&best.x);
+        state
+    }
+}
+
+impl<'p> Solver<&'p dyn PopulationProblem, BridgeState> for Bridge<'_> {
+    fn name(&self) -> &str {
+        self.algorithm.name()
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<&'p dyn PopulationProblem>,
+        state: BridgeState,
+    ) -> Result<(BridgeState, Option<KV>), Error> {
+        let draws = stream(self.seed, self.restart);
+        let allowance = self.remaining();
+        let (algorithm, starts) = (&mut self.algorithm, self.starts);
+        let spent = problem
+            .problem("evaluations", |problem| Ok(algorithm.initialise(*problem, starts, draws, allowance)))?;
+        Ok((self.book(spent, state), None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<&'p dyn PopulationProblem>,
+        state: BridgeState,
+    ) -> Result<(BridgeState, Option<KV>), Error> {
+        let allowance = self.remaining();
+        let algorithm = &mut self.algorithm;
+        let spent = problem.problem("evaluations", |problem| Ok(algorithm.advance(*problem, allowance)))?;
+        self.generation += 1;
+        Ok((self.book(spent, state), None))
+    }
+
+    fn terminate(&mut self, _state: &BridgeState) -> TerminationStatus {
+        let best = self.best().fitness;
+        let met = |target| best.is_feasible() && best.cost <= target;
+        // A success is a success even if the token is set; a search that converges with its last evaluation converged.
+        let reason = if self.limits.target.is_some_and(met) {
+            TerminationReason::TargetCostReached
+        } else if self.cancel.load(Ordering::Relaxed) {
+            TerminationReason::Interrupt
+        } else if self.algorithm.converged() {
+            TerminationReason::SolverConverged
+        } else if self.remaining() == 0 {
+            TerminationReason::MaxItersReached
+        } else {
+            return TerminationStatus::NotTerminated;
+        };
+        TerminationStatus::Terminated(reason)
+    }
+}

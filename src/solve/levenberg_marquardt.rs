@@ -1,0 +1,477 @@
+//! Bounded Levenberg-Marquardt for points that share a few unknowns and may each have one of their own.
+//!
+//! minimise  sum_j w_j |r_j(x, s_j)|^2   subject to  lo <= x <= hi  and  g_i(x, s) >= 0
+//!
+//! where r_j is a planar residual, x in R^N is shared and s_j is a point's own position on a curve. In a step
+//! (dx, tau_j) the linear model is r_j + J_j dx + t_j tau_j with the tangent t_j = dr_j/dtau_j. The tau_j are
+//! eliminated: rows normal to t_j keep weight 1, rows along it weight nu/(|t_j|^2 + nu) with a damping nu, and
+//!
+//! ```text
+//! tau_j = -<t_j, r_j + J_j dx> / (|t_j|^2 + nu)
+//! ```
+//!
+//! so the cost of a step is linear in the number of points. Inequalities enter by an augmented Lagrangian
+//! (Powell 1969, Hestenes 1969, Rockafellar 1974): a row sqrt(rho) max(0, m_i - g_i) each, with m_i moved to
+//! max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping
+//! follows Nielsen (1999), *Damping parameter in Marquardt's method*.
+
+use nalgebra::{SMatrix, SVector};
+
+/// A point's residual with its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct PointBlock<const N: usize> {
+    /// r_j.
+    pub residual: [f64; 2],
+    /// dr_j/dx, two rows.
+    pub jacobian: [[f64; N]; 2],
+    /// dr_j/dtau_j; zero where the point has no freedom of its own.
+    pub tangent: [f64; 2],
+    /// w_j.
+    pub weight: f64,
+}
+
+/// An inequality g >= 0 with its derivative by the shared unknowns.
+#[derive(Clone, Copy, Debug)]
+pub struct ConstraintRow<const N: usize> {
+    /// g, in the unit of the residuals.
+    pub value: f64,
+    /// dg/dx.
+    pub gradient: [f64; N],
+}
+
+/// A least-squares problem with a block a point.
+pub trait BlockLeastSquares<const N: usize> {
+    /// The points' own unknowns.
+    type State: Clone;
+
+    /// How many points.
+    fn points(&self) -> usize;
+
+    /// [low, high] of each shared unknown; equal: fixed; infinite: unbounded.
+    fn bounds(&self) -> &[(f64, f64); N];
+
+    /// sum_j w_j |r_j|^2; `None` where it does not exist.
+    fn cost(&self, x: &[f64; N], state: &Self::State) -> Option<f64>;
+
+    /// The blocks of all points in their order; `false` where a derivative does not exist.
+    fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N>)) -> bool;
+
+    /// The points' unknowns after a step `tau` from `state` at `from`, brought back to their curves at `to`;
+    /// `false` where that fails.
+    fn retract(
+        &self,
+        from: &[f64; N],
+        state: &Self::State,
+        tau: &[f64],
+        to: &[f64; N],
+        out: &mut Self::State,
+    ) -> bool;
+
+    /// The inequalities, always as many and in the same order.
+    fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&ConstraintRow<N>));
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub struct LmOptions {
+    /// Steps tried in one inner solve.
+    pub max_steps: usize,
+    /// Rounds of the multipliers.
+    pub max_rounds: usize,
+    /// Converged when a step promises less than this part of the cost.
+    pub relative_reduction: f64,
+    /// Converged when the cost is below this: an exact answer.
+    pub exact_cost: f64,
+    /// A constraint counts as met when g >= -this.
+    pub feasibility: f64,
+    /// An inner solve is given up when its cost is not below this after half the steps.
+    pub hopeless_cost: f64,
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LmOutcome {
+    /// No step promises more.
+    Converged,
+    /// The cost is below `exact_cost`.
+    Exact,
+    /// Out of steps.
+    StepLimit,
+    /// The start could not be evaluated.
+    NoStart,
+    /// Given up or stopped from outside.
+    Abandoned,
+}
+
+/// The end of a solve.
+#[derive(Clone, Debug)]
+pub struct LmResult<const N: usize, S> {
+    /// The shared unknowns.
+    pub x: [f64; N],
+    /// The points' unknowns.
+    pub state: S,
+    /// sum_j w_j |r_j|^2.
+    pub cost: f64,
+    /// The largest -g_i, or 0.
+    pub violation: f64,
+    /// How often the cost was computed.
+    pub evaluations: u64,
+    /// How it ended.
+    pub outcome: LmOutcome,
+}
+
+/// A point's own step is at most this long (radians): beyond it the tangent says nothing.
+const MAX_TAU: f64 = 0.6;
+/// First damping, in parts of the normal matrix' diagonal.
+const FIRST_DAMPING: f64 = 1e-3;
+/// Past this damping a step is below rounding.
+const LAST_DAMPING: f64 = 1e14;
+
+struct Penalty {
+    rho: f64,
+    shift: Vec<f64>,
+}
+
+impl Penalty {
+    /// rho max(0, m - g)^2 summed, and the largest -g.
+    fn of<const N: usize, P: BlockLeastSquares<N>>(
+        &self,
+        problem: &P,
+        x: &[f64; N],
+        state: &P::State,
+    ) -> f64 {
+        let (mut sum, mut i) = (0.0, 0);
+        problem.constraints(x, state, &mut |row| {
+            let lack = self.shift[i] - row.value;
+            i += 1;
+            if lack > 0.0 {
+                sum += self.rho * lack * lack;
+            }
+        });
+        sum
+    }
+}
+
+/// The largest -g_i, or 0 where all constraints hold.
+pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    x: &[f64; N],
+    state: &P::State,
+) -> f64 {
+    let mut worst: f64 = 0.0;
+    problem.constraints(x, state, &mut |row| worst = worst.max(-row.value));
+    worst
+}
+
+/// Solves from a start. `stop` is asked between steps.
+///
+/// The start is brought into its bounds. The best point so far is always what is returned.
+pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    start: [f64; N],
+    state: P::State,
+    options: &LmOptions,
+    stop: &dyn Fn() -> bool,
+) -> LmResult<N, P::State> {
+    let mut x = start;
+    for (value, &(low, high)) in x.iter_mut().zip(problem.bounds()) {
+        *value = value.max(low).min(high);
+    }
+    let mut shift = Vec::new();
+    problem.constraints(&x, &state, &mut |_| shift.push(0.0));
+    let unconstrained = shift.is_empty();
+    let mut result = LmResult {
+        x,
+        state,
+        cost: f64::INFINITY,
+        violation: 0.0,
+        evaluations: 1,
+        outcome: LmOutcome::NoStart,
+    };
+    let Some(cost) = problem.cost(&result.x, &result.state) else { return result };
+    result.cost = cost;
+    result.violation = violation(problem, &result.x, &result.state);
+    let mut penalty = Penalty { rho: FIRST_RHO * problem.points() as f64, shift };
+    let mut last_violation = f64::INFINITY;
+    for round in 0..options.max_rounds.max(1) {
+        inner(problem, &mut result, &penalty, options, stop);
+        result.violation = violation(problem, &result.x, &result.state);
+        if unconstrained || matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned) {
+            return result;
+        }
+        let mut i = 0;
+        let mut moved: f64 = 0.0;
+        problem.constraints(&result.x, &result.state, &mut |row| {
+            let next = (penalty.shift[i] - row.value).max(0.0);
+            moved = moved.max((next - penalty.shift[i]).abs());
+            penalty.shift[i] = next;
+            i += 1;
+        });
+        if result.violation <= options.feasibility && moved <= options.feasibility && round > 0 {
+            return result;
+        }
+        if result.violation <= options.feasibility && penalty.shift.iter().all(|m| *m == 0.0) {
+            return result;
+        }
+        if result.violation > 0.25 * last_violation {
+            let grown = RHO_GROWTH * penalty.rho;
+            penalty.shift.iter_mut().for_each(|m| *m *= penalty.rho / grown);
+            penalty.rho = grown;
+        }
+        last_violation = result.violation;
+    }
+    result
+}
+
+/// The first weight of a squared constraint against a squared residual, a point.
+const FIRST_RHO: f64 = 1.0;
+/// Its growth where a round did not bring the constraints down to a quarter.
+const RHO_GROWTH: f64 = 8.0;
+
+struct Normal<const N: usize> {
+    matrix: SMatrix<f64, N, N>,
+    gradient: SVector<f64, N>,
+    /// mean |t_j|^2.
+    tangent_sq: f64,
+}
+
+fn assemble<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    at: &LmResult<N, P::State>,
+    penalty: &Penalty,
+    nu: f64,
+    blocks: &mut Vec<PointBlock<N>>,
+) -> Option<Normal<N>> {
+    blocks.clear();
+    let complete = problem.linearise(&at.x, &at.state, &mut |block| blocks.push(*block));
+    if !complete {
+        return None;
+    }
+    let mut matrix = SMatrix::<f64, N, N>::zeros();
+    let mut gradient = SVector::<f64, N>::zeros();
+    let mut tangent_sum = 0.0;
+    let mut add = |weight: f64, row: &[f64; N], residual: f64| {
+        for i in 0..N {
+            let w = weight * row[i];
+            if w == 0.0 {
+                continue;
+            }
+            gradient[i] += w * residual;
+            for k in 0..=i {
+                matrix[(i, k)] += w * row[k];
+            }
+        }
+    };
+    for block in blocks.iter() {
+        let t = block.tangent;
+        let t_sq = t[0] * t[0] + t[1] * t[1];
+        tangent_sum += t_sq;
+        let (r, j) = (&block.residual, &block.jacobian);
+        if t_sq == 0.0 {
+            add(block.weight, &j[0], r[0]);
+            add(block.weight, &j[1], r[1]);
+            continue;
+        }
+        let length = t_sq.sqrt();
+        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+        let mut row = [0.0; N];
+        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+            for i in 0..N {
+                row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
+            }
+            add(block.weight * weight, &row, axis[0] * r[0] + axis[1] * r[1]);
+        }
+    }
+    let mut i = 0;
+    problem.constraints(&at.x, &at.state, &mut |row| {
+        let lack = penalty.shift[i] - row.value;
+        i += 1;
+        if lack > 0.0 {
+            let down = row.gradient.map(|g| -g);
+            add(penalty.rho, &down, lack);
+        }
+    });
+    for i in 0..N {
+        for k in 0..i {
+            matrix[(k, i)] = matrix[(i, k)];
+        }
+    }
+    let usable = matrix.iter().chain(gradient.iter()).all(|v| v.is_finite());
+    usable.then(|| Normal { matrix, gradient, tangent_sq: tangent_sum / blocks.len().max(1) as f64 })
+}
+
+fn inner<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    result: &mut LmResult<N, P::State>,
+    penalty: &Penalty,
+    options: &LmOptions,
+    stop: &dyn Fn() -> bool,
+) {
+    let bounds = *problem.bounds();
+    let mut merit = result.cost + penalty.of(problem, &result.x, &result.state);
+    let mut blocks = Vec::with_capacity(problem.points());
+    let mut tau = vec![0.0; problem.points()];
+    let mut trial_state = result.state.clone();
+    let (mut damping, mut growth) = (FIRST_DAMPING, 2.0);
+    let mut normal: Option<Normal<N>> = None;
+    // The damping of the points' own unknowns follows the shared one: nu = damping * mean |t_j|^2.
+    let (mut nu, mut tangent_sq) = (0.0, 0.0);
+    let mut quiet = 0;
+    for step in 0..options.max_steps {
+        if result.cost <= options.exact_cost && penalty.shift.is_empty() {
+            result.outcome = LmOutcome::Exact;
+            return;
+        }
+        if stop() || (step == options.max_steps / 2 && result.cost > options.hopeless_cost) {
+            result.outcome = LmOutcome::Abandoned;
+            return;
+        }
+        if normal.is_none() {
+            nu = damping * tangent_sq;
+            match assemble(problem, result, penalty, nu, &mut blocks) {
+                Some(assembled) => {
+                    tangent_sq = assembled.tangent_sq;
+                    normal = Some(assembled);
+                }
+                None => {
+                    // A toggle or a flat position: no derivative, no step.
+                    result.outcome = LmOutcome::Converged;
+                    return;
+                }
+            }
+        }
+        let Some(system) = &normal else { return };
+        let Some(dx) = bounded_step(system, &result.x, &bounds, damping) else {
+            damping *= growth;
+            growth *= 2.0;
+            if damping > LAST_DAMPING {
+                result.outcome = LmOutcome::Converged;
+                return;
+            }
+            continue;
+        };
+        let mut trial = result.x;
+        for i in 0..N {
+            trial[i] = (result.x[i] + dx[i]).max(bounds[i].0).min(bounds[i].1);
+        }
+        // The reduction that the linear model promises, its own unknowns included.
+        let mut promised = -(2.0 * system.gradient.dot(&dx) + dx.dot(&(system.matrix * dx)));
+        for (block, tau) in blocks.iter().zip(tau.iter_mut()) {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            if t_sq == 0.0 {
+                *tau = 0.0;
+                continue;
+            }
+            let along = |r: [f64; 2]| t[0] * r[0] + t[1] * r[1];
+            let mut moved = block.residual;
+            for (axis, value) in moved.iter_mut().enumerate() {
+                *value += (0..N).map(|i| block.jacobian[axis][i] * dx[i]).sum::<f64>();
+            }
+            *tau = (-along(moved) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
+            // What the elimination takes off before any dx: the residual along the tangent.
+            promised += block.weight * along(block.residual).powi(2) / (t_sq + nu);
+        }
+        result.evaluations += 1;
+        let trial_merit = if problem.retract(&result.x, &result.state, &tau, &trial, &mut trial_state) {
+            problem
+                .cost(&trial, &trial_state)
+                .map(|cost| (cost, cost + penalty.of(problem, &trial, &trial_state)))
+        } else {
+            None
+        };
+        match trial_merit {
+            Some((cost, new_merit)) if new_merit < merit => {
+                let gain = (merit - new_merit) / promised.max(f64::MIN_POSITIVE);
+                let reduction = merit - new_merit;
+                result.x = trial;
+                std::mem::swap(&mut result.state, &mut trial_state);
+                result.cost = cost;
+                merit = new_merit;
+                damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
+                damping = damping.max(1e-15);
+                growth = 2.0;
+                normal = None;
+                quiet = if reduction <= options.relative_reduction * merit { quiet + 1 } else { 0 };
+                if quiet >= QUIET_STEPS {
+                    result.outcome = LmOutcome::Converged;
+                    return;
+                }
+            }
+            _ => {
+                if promised <= options.relative_reduction * 1e-3 * merit {
+                    result.outcome = LmOutcome::Converged;
+                    return;
+                }
+                damping *= growth;
+                growth *= 2.0;
+                if damping > LAST_DAMPING {
+                    result.outcome = LmOutcome::Converged;
+                    return;
+                }
+                // The elimination depends on nu: assemble again where points have unknowns of their own.
+                if system.tangent_sq > 0.0 {
+                    normal = None;
+                }
+            }
+        }
+    }
+    result.outcome = LmOutcome::StepLimit;
+}
+
+/// The damped step inside the bounds: what a step would push through a bound is put onto it and the rest is
+/// solved again, so that the step is the model's minimum on the face that it ends on. `None` where the damped
+/// matrix is not positive definite.
+fn bounded_step<const N: usize>(
+    system: &Normal<N>,
+    x: &[f64; N],
+    bounds: &[(f64, f64); N],
+    damping: f64,
+) -> Option<SVector<f64, N>> {
+    let mut damped = system.matrix;
+    let diagonal_max = (0..N).map(|i| damped[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
+    let mut held = [false; N];
+    let mut dx = SVector::<f64, N>::zeros();
+    for i in 0..N {
+        let (low, high) = bounds[i];
+        held[i] = low == high
+            || damped[(i, i)] == 0.0
+            || (x[i] <= low && system.gradient[i] >= 0.0)
+            || (x[i] >= high && system.gradient[i] <= 0.0);
+        damped[(i, i)] += damping * damped[(i, i)].max(1e-10 * diagonal_max);
+    }
+    for _ in 0..=N {
+        let mut matrix = damped;
+        let mut right =
+            -(system.gradient + damped * SVector::from_fn(|i, _| if held[i] { dx[i] } else { 0.0 }));
+        for i in (0..N).filter(|&i| held[i]) {
+            for k in 0..N {
+                matrix[(i, k)] = 0.0;
+                matrix[(k, i)] = 0.0;
+            }
+            matrix[(i, i)] = 1.0;
+            right[i] = dx[i];
+        }
+        dx = matrix.cholesky()?.solve(&right);
+        let mut crossed = false;
+        for i in 0..N {
+            if held[i] {
+                continue;
+            }
+            let (low, high) = bounds[i];
+            let to = x[i] + dx[i];
+            if to < low || to > high {
+                dx[i] = if to < low { low - x[i] } else { high - x[i] };
+                held[i] = true;
+                crossed = true;
+            }
+        }
+        if !crossed {
+            break;
+        }
+    }
+    Some(dx)
+}
+
+/// Steps in a row that hardly reduce before a solve counts as converged.
+const QUIET_STEPS: usize = 3;

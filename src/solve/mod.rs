@@ -1,0 +1,17 @@
+//! Numbers only: population searches, bounded least squares with a block a point, random streams.
+//!
+//! This room imports nothing else of the crate. It owns the traits that problems implement:
+//! [`population::PopulationProblem`] and [`levenberg_marquardt::BlockLeastSquares`].
+
+pub mod argmin_bridge;
+pub mod differential_evolution;
+pub mod genetic;
+pub mod levenberg_marquardt;
+pub mod population;
+pub mod random_search;
+pub mod streams;
+
+#[cfg(test)]
+mod population_tests;
+#[cfg(test)]
+mod test_functions;

@@ -1,0 +1,85 @@
+//! Structural errors: at the positions of the points, and to the whole coupler curve.
+
+use super::PathTask;
+use crate::linkage::coupler_curve::DEFAULT_SAMPLES;
+use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar};
+
+/// The errors T_j - P_j at the positions of the points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathError {
+    /// Desired minus generated, one a point.
+    pub structural: Vec<Complex>,
+    /// sum_j w_j |T_j - P_j|^2.
+    pub objective: f64,
+    /// sum_j |T_j - P_j|^2.
+    pub sum_sq: f64,
+    /// max_j |T_j - P_j|.
+    pub max: f64,
+    /// The first j at which the maximum stands.
+    pub max_at: usize,
+}
+
+/// Distances from the target points to the coupler curve of a circuit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveError {
+    /// One a point.
+    pub distances: Vec<f64>,
+    /// The sum of their squares.
+    pub sum_sq: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// sqrt(sum_sq / n), the root of the mean square.
+pub fn rms(sum_sq: f64, n: usize) -> f64 {
+    (sum_sq / n as f64).sqrt()
+}
+
+impl PathTask {
+    /// The errors of a linkage at the given crank angles (radians) and assemblies, one a point; `None` where
+    /// the loop is open at a point.
+    ///
+    /// # Panics
+    /// When there are fewer angles or assemblies than points.
+    pub fn errors(
+        &self,
+        linkage: &FourBar,
+        crank_angles: &[f64],
+        assemblies: &[AssemblyMode],
+    ) -> Option<PathError> {
+        let mut error =
+            PathError { structural: Vec::new(), objective: 0.0, sum_sq: 0.0, max: 0.0, max_at: 0 };
+        for (j, &target) in self.points().iter().enumerate() {
+            let generated = linkage.position_with(crank_angles[j], assemblies[j]).joints()?.coupler_point;
+            let difference = target - generated;
+            let sq = difference.norm_sqr();
+            error.structural.push(difference);
+            error.objective += self.weights()[j] * sq;
+            error.sum_sq += sq;
+            if difference.norm() > error.max {
+                error.max = difference.norm();
+                error.max_at = j;
+            }
+        }
+        Some(error)
+    }
+
+    /// The distances from the points to the coupler curve of the circuit that holds the given position;
+    /// `None` where that circuit has no point.
+    pub fn errors_to_curve(
+        &self,
+        linkage: &FourBar,
+        crank_angle: f64,
+        assembly: AssemblyMode,
+    ) -> Option<CurveError> {
+        let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
+        let mut error = CurveError { distances: Vec::new(), sum_sq: 0.0, max: 0.0 };
+        for &target in self.points() {
+            let distance = curve.nearest(target)?.distance;
+            error.distances.push(distance);
+            error.sum_sq += distance * distance;
+            error.max = error.max.max(distance);
+        }
+        Some(error)
+    }
+}

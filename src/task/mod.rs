@@ -1,0 +1,237 @@
+//! What is wanted: a path for the coupler point, with or without the crank angles at its points.
+//!
+//! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is
+//! T_j - P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the
+//! x axis, or from the ground line A -> B); with *free timing* each is chosen to be nearest. This room knows
+//! linkages and nothing else of the crate.
+
+pub mod error;
+pub mod referee;
+
+pub use error::{CurveError, PathError};
+pub use referee::{Defect, Verdict};
+
+use crate::linkage::{Complex, MAX_MAGNITUDE};
+
+/// What the prescribed crank angles are measured from.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum AngleOffset {
+    /// Only the increments count: a common offset is free.
+    #[default]
+    Free,
+    /// From the x axis.
+    Fixed,
+    /// From the line A -> B.
+    Ground,
+}
+
+/// When the coupler point is to be at the target points.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Timing {
+    /// At whatever crank angle is nearest.
+    Free,
+    /// At these crank angles.
+    Prescribed {
+        /// One a point, radians, counter-clockwise positive, not wrapped.
+        crank_angles: Vec<f64>,
+        /// What they are measured from.
+        offset: AngleOffset,
+    },
+}
+
+/// A path to trace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathTask {
+    points: Vec<Complex>,
+    weights: Vec<f64>,
+    tolerances: Option<Vec<f64>>,
+    closed: bool,
+    timing: Timing,
+    size: f64,
+    centre: Complex,
+}
+
+/// What makes numbers no path task.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TaskError {
+    /// A path needs two points.
+    #[error("a path needs at least 2 points, this one has {0}")]
+    TooFewPoints(usize),
+    /// A number that is NaN, infinite or too large.
+    #[error("point {index}: {value} is not a finite number below 1e12 in magnitude")]
+    NotFinite {
+        /// Which point, counted from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Two equal neighbours that no different crank angle tells apart.
+    #[error("points {0} and {next} are equal", next = .0 + 1)]
+    AdjacentEqual(usize),
+    /// All points in one place.
+    #[error("all points are equal")]
+    NoExtent,
+    /// A list beside the points has another length.
+    #[error("{points} points but {values} values of {what}")]
+    LengthMismatch {
+        /// Which list.
+        what: &'static str,
+        /// How many points.
+        points: usize,
+        /// How many values.
+        values: usize,
+    },
+    /// A weight that is not positive or a tolerance that is negative.
+    #[error("{what} of point {index} is {value}: it must be {must}")]
+    OutOfRange {
+        /// Which list.
+        what: &'static str,
+        /// Which point, counted from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+        /// What is allowed.
+        must: &'static str,
+    },
+}
+
+/// The optional lists of a path task.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathOptions {
+    /// One positive weight a point; they enter the objective only.
+    pub weights: Option<Vec<f64>>,
+    /// One tolerance a point: the largest error accepted there.
+    pub tolerances: Option<Vec<f64>>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+}
+
+impl PathTask {
+    /// A path through `points` with the given timing.
+    ///
+    /// A last point equal to the first is kept. Adjacent equal points are refused unless their prescribed
+    /// crank angles are equal modulo a turn.
+    ///
+    /// # Errors
+    /// [`TaskError`] as its variants say.
+    pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: PathOptions) -> Result<Self, TaskError> {
+        let n = points.len();
+        if n < 2 {
+            return Err(TaskError::TooFewPoints(n));
+        }
+        let usable = |value: f64| value.abs() <= MAX_MAGNITUDE;
+        for (index, p) in points.iter().enumerate() {
+            if let Some(&value) = p.iter().find(|v| !usable(**v)) {
+                return Err(TaskError::NotFinite { index, value });
+            }
+        }
+        let same_length = |what, values: usize| {
+            if values == n { Ok(()) } else { Err(TaskError::LengthMismatch { what, points: n, values }) }
+        };
+        if let Timing::Prescribed { crank_angles, .. } = &timing {
+            same_length("crank_deg", crank_angles.len())?;
+            if let Some(index) = crank_angles.iter().position(|v| !usable(*v)) {
+                return Err(TaskError::NotFinite { index, value: crank_angles[index] });
+            }
+        }
+        if let Some(weights) = &options.weights {
+            same_length("weight", weights.len())?;
+            if let Some(index) = weights.iter().position(|w| !(*w > 0.0 && usable(*w))) {
+                let value = weights[index];
+                return Err(TaskError::OutOfRange { what: "weight", index, value, must: "positive" });
+            }
+        }
+        if let Some(tolerances) = &options.tolerances {
+            same_length("tolerance", tolerances.len())?;
+            if let Some(index) = tolerances.iter().position(|t| !(*t >= 0.0 && usable(*t))) {
+                let value = tolerances[index];
+                return Err(TaskError::OutOfRange { what: "tolerance", index, value, must: "0 or more" });
+            }
+        }
+        let (mut low, mut high) = (points[0], points[0]);
+        for p in &points {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        let size = f64::hypot(high[0] - low[0], high[1] - low[1]);
+        if size == 0.0 {
+            return Err(TaskError::NoExtent);
+        }
+        for i in 0..n - 1 {
+            let timed_equal = match &timing {
+                Timing::Free => false,
+                Timing::Prescribed { crank_angles, .. } => {
+                    let turns = (crank_angles[i + 1] - crank_angles[i]) / std::f64::consts::TAU;
+                    (turns - turns.round()).abs() <= 1e-9
+                }
+            };
+            if points[i] == points[i + 1] && !timed_equal {
+                return Err(TaskError::AdjacentEqual(i));
+            }
+        }
+        Ok(PathTask {
+            points: points.into_iter().map(crate::linkage::point).collect(),
+            weights: options.weights.unwrap_or_else(|| vec![1.0; n]),
+            tolerances: options.tolerances,
+            closed: options.closed,
+            timing,
+            size,
+            centre: Complex::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])),
+        })
+    }
+
+    /// The target points.
+    pub fn points(&self) -> &[Complex] {
+        &self.points
+    }
+
+    /// How many points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Never: a path has at least two points.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// One positive weight a point, 1 where none was given.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// The largest error accepted at each point.
+    pub fn tolerances(&self) -> Option<&[f64]> {
+        self.tolerances.as_deref()
+    }
+
+    /// Whether the target is a closed curve.
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Whether the last point repeats the first.
+    pub fn repeats_first(&self) -> bool {
+        self.points.len() > 2 && self.points[0] == self.points[self.points.len() - 1]
+    }
+
+    /// The timing.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// The diagonal of the target's bounding box; positive.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The centre of the target's bounding box.
+    pub fn centre(&self) -> Complex {
+        self.centre
+    }
+}

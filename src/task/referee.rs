@@ -1,0 +1,283 @@
+//! The referee: order, circuit and branch of a motion through target points.
+//!
+//! Circuits and branches are those of Chase and Mirth (1993), told from the closed forms of
+//! [`crate::linkage::mobility`]; that the loop stays closed between the points is checked on dense samples.
+//! Nothing here is used by, or takes the word of, an optimiser.
+//!
+//! *Order* is judged where the timing is free (prescribed angles are an order by themselves): the parameter
+//! of the circuit (the crank angle, or psi where the input rocks) must run one way through the points and
+//! less than once around.
+
+use super::{PathTask, Timing};
+use crate::linkage::{
+    AssemblyMode, Circuit, Complex, FourBar, InputRange, Joints, Mobility,
+    transmission::{TransmissionExtremes, angle_opposite},
+};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Steps of the circuit's parameter smaller than this (radians) are no step: two points may share a position.
+pub const ORDER_TOLERANCE: f64 = 1e-9;
+
+/// Samples of the motion between two neighbouring points on which closure is checked.
+const CLOSURE_SAMPLES: usize = 24;
+
+/// What can be wrong with a motion through the points, and at which points (counted from 0).
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Defect {
+    /// The points are not passed in their order.
+    Order {
+        /// The points at which the motion would have to jump back.
+        at: Vec<usize>,
+    },
+    /// The motion passes a toggle.
+    Branch {
+        /// The points on another branch than point 0.
+        at: Vec<usize>,
+    },
+    /// The linkage would have to be taken apart, or turned where it does not close.
+    Circuit {
+        /// The points that cannot be reached from point 0.
+        at: Vec<usize>,
+    },
+}
+
+impl Defect {
+    /// order, branch or circuit.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Defect::Order { .. } => "order",
+            Defect::Branch { .. } => "branch",
+            Defect::Circuit { .. } => "circuit",
+        }
+    }
+}
+
+/// The part of the motion between the first and the last target point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UsedMotion {
+    linkage: FourBar,
+    mobility: Mobility,
+    circuit: Circuit,
+    /// Whether the parameter is psi of the circuit's arc (else the crank angle).
+    rocks: bool,
+    /// The parameter's range, low to high.
+    range: [f64; 2],
+}
+
+/// What the referee says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Every defect, whether it is allowed or not.
+    pub defects: Vec<Defect>,
+    /// +1 when the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 clockwise.
+    pub direction: f64,
+    /// The motion used.
+    pub motion: UsedMotion,
+}
+
+/// Judges the motion of a linkage through the points of a task at the given crank angles (radians) and
+/// assemblies, one a point.
+///
+/// # Panics
+/// When there are fewer angles or assemblies than points.
+pub fn judge(
+    task: &PathTask,
+    linkage: &FourBar,
+    crank_angles: &[f64],
+    assemblies: &[AssemblyMode],
+) -> Verdict {
+    let n = task.len();
+    let mobility = linkage.mobility();
+    let linkage = linkage.with_assembly(assemblies[0]);
+    let first = mobility.branch(crank_angles[0], assemblies[0]);
+    let prescribed = matches!(task.timing(), Timing::Prescribed { .. });
+    let arc = mobility.arc(first.circuit);
+    let mut defects = Vec::new();
+
+    let mut off_circuit = Vec::new();
+    let mut off_branch = Vec::new();
+    for j in 0..n {
+        let branch = mobility.branch(crank_angles[j], assemblies[j]);
+        let open = !linkage.position_with(crank_angles[j], assemblies[j]).is_closed();
+        // A rocking crank cannot get from one turn to the next, whatever the angles modulo a turn say.
+        let other_turn = prescribed
+            && arc.is_some_and(|arc| {
+                let turns = |angle: f64| ((angle - arc.offset(angle) - arc.middle) / TAU).round();
+                turns(crank_angles[j]) != turns(crank_angles[0])
+            });
+        if open || other_turn || branch.circuit != first.circuit {
+            off_circuit.push(j);
+        } else if branch.assembly != first.assembly {
+            off_branch.push(j);
+        }
+    }
+
+    let rocks = arc.is_some();
+    let parameter: Vec<f64> = (0..n)
+        .map(|j| match arc {
+            None => crank_angles[j],
+            Some(arc) => arc.parameter(crank_angles[j], assemblies[j]),
+        })
+        .collect();
+    // The closing point is the first one again and says nothing of the order.
+    let ordered = if task.repeats_first() { n - 1 } else { n };
+    let course = if prescribed && !rocks {
+        let direction = if parameter[n - 1] < parameter[0] { -1.0 } else { 1.0 };
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Course { direction, range: [low, high], jumps: Vec::new() }
+    } else if prescribed || !off_circuit.is_empty() {
+        // On one branch psi is monotone in the crank angle: the hull of what is used.
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
+        Course { direction, range: [low, high], jumps: Vec::new() }
+    } else {
+        Course::through(&parameter[..ordered])
+    };
+    let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range: course.range };
+
+    if off_circuit.is_empty() && off_branch.is_empty() {
+        let samples = CLOSURE_SAMPLES * n;
+        let open = (0..=samples).any(|i| motion.joints_at(motion.blend(i, samples)).is_none());
+        if open {
+            off_circuit.extend(1..n);
+        }
+    }
+    if !off_circuit.is_empty() {
+        defects.push(Defect::Circuit { at: off_circuit });
+    }
+    if !off_branch.is_empty() {
+        defects.push(Defect::Branch { at: off_branch });
+    }
+    if !course.jumps.is_empty() {
+        defects.push(Defect::Order { at: course.jumps });
+    }
+    Verdict { defects, direction: course.direction, motion }
+}
+
+/// How a cyclic parameter runs through the points.
+struct Course {
+    direction: f64,
+    range: [f64; 2],
+    jumps: Vec<usize>,
+}
+
+impl Course {
+    /// The direction in which the parameter goes less far in total; it is in order when that is less than once around.
+    fn through(parameter: &[f64]) -> Course {
+        let along = |direction: f64| {
+            let steps: Vec<f64> = parameter
+                .windows(2)
+                .map(|w| {
+                    let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
+                    if step > TAU - ORDER_TOLERANCE { 0.0 } else { step }
+                })
+                .collect();
+            (steps.iter().sum::<f64>(), steps)
+        };
+        let (forward, backward) = (along(1.0), along(-1.0));
+        let (direction, (total, steps)) =
+            if backward.0 < forward.0 { (-1.0, backward) } else { (1.0, forward) };
+        let mut jumps = Vec::new();
+        if total >= TAU {
+            jumps.extend(steps.iter().zip(1..).filter(|(step, _)| **step > PI).map(|(_, j)| j));
+            if jumps.is_empty() {
+                jumps.push(parameter.len() - 1);
+            }
+        }
+        let end = parameter[0] + direction * total.min(TAU);
+        Course { direction, range: [parameter[0].min(end), parameter[0].max(end)], jumps }
+    }
+}
+
+impl UsedMotion {
+    fn blend(&self, i: usize, of: usize) -> f64 {
+        self.range[0] + (self.range[1] - self.range[0]) * i as f64 / of as f64
+    }
+
+    /// The crank angle and assembly at a parameter.
+    fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
+        match self.mobility.arc(self.circuit) {
+            Some(arc) if self.rocks => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
+            _ => (parameter, self.linkage.assembly()),
+        }
+    }
+
+    fn joints_at(&self, parameter: f64) -> Option<Joints> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.position_with(crank_angle, assembly).joints()
+    }
+
+    /// The joints at `n` + 1 evenly spaced positions of the motion; open ones left out.
+    pub fn joints(&self, n: usize) -> Vec<Joints> {
+        (0..=n).filter_map(|i| self.joints_at(self.blend(i, n))).collect()
+    }
+
+    /// The extremes of the transmission angle over the motion, in closed form: they stand at its ends, where
+    /// the crank lies along the ground, or at a toggle.
+    pub fn transmission(&self) -> TransmissionExtremes {
+        let [low, high] = self.range;
+        let ground = self.linkage.ground_angle();
+        let extreme: Vec<f64> =
+            if self.rocks { vec![0.0, FRAC_PI_2, PI, -FRAC_PI_2] } else { vec![ground, ground + PI] };
+        let inside = extreme.into_iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for t in [low, high].into_iter().chain(inside) {
+            let s = self.linkage.diagonal(self.position_at(t).0);
+            (least, greatest) = (least.min(s), greatest.max(s));
+        }
+        let (b, c) = (self.linkage.coupler(), self.linkage.follower());
+        TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
+    }
+
+    /// [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
+    /// golden section around its sample.
+    pub fn footprint(&self) -> [f64; 4] {
+        const SAMPLES: usize = 720;
+        let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
+        let mut bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        let mut hold = |p: Complex| {
+            bounds = [bounds[0].min(p.re), bounds[1].min(p.im), bounds[2].max(p.re), bounds[3].max(p.im)];
+        };
+        hold(self.linkage.crank_pivot());
+        hold(self.linkage.follower_pivot());
+        let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
+        for joint in 0..3 {
+            for direction in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+                let reach = |t: f64| {
+                    self.joints_at(t.clamp(self.range[0], self.range[1])).map_or(f64::NEG_INFINITY, |j| {
+                        let p = joints_of(&j)[joint];
+                        direction.0 * p.re + direction.1 * p.im
+                    })
+                };
+                let best = (0..=SAMPLES)
+                    .map(|i| self.blend(i, SAMPLES))
+                    .max_by(|s, t| reach(*s).total_cmp(&reach(*t)));
+                let Some(best) = best else { continue };
+                let (mut low, mut high) = (best - step, best + step);
+                for _ in 0..60 {
+                    let third = (high - low) / 3.0;
+                    if reach(low + third) >= reach(high - third) {
+                        high -= third;
+                    } else {
+                        low += third;
+                    }
+                }
+                for t in [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])] {
+                    if let Some(j) = self.joints_at(t) {
+                        hold(joints_of(&j)[joint]);
+                    }
+                }
+            }
+        }
+        bounds
+    }
+
+    /// Whether the input turns fully.
+    pub fn input_turns_fully(&self) -> bool {
+        self.mobility.input == InputRange::Full
+    }
+}
