@@ -25,13 +25,35 @@
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
-//! | [`record`] | the truth on disk | linkage, task, problem |
+//! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
+//! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
+//! | [`problem_file`], [`points_file`], [`linkage_file`] | text in, with errors that point at their place | linkage, task, problem |
+//! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
+//! | [`diagnostic`] | an error with file, line, caret and remedy | |
+//! | [`report`] | what a person sees: pure functions of the record | linkage, task, problem, record |
+//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files | record |
+//! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod assess;
+#[cfg(feature = "cli")]
+pub mod cli;
+pub mod diagnostic;
+mod input_text;
 pub mod linkage;
+pub mod linkage_file;
+pub mod name;
+pub mod points_file;
 pub mod problem;
+pub mod problem_file;
+pub mod problem_template;
 pub mod record;
+pub mod report;
+pub mod results_folder;
 pub mod run;
+pub mod schema;
 pub mod search;
 pub mod solve;
 pub mod task;
+mod toml_text;
+mod toml_values;
+pub mod verify;

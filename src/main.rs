@@ -1,1 +1,7 @@
-fn main() {}
+//! `linkwright`, the command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    linkwright::cli::main()
+}

@@ -1,8 +1,9 @@
 //! Run-time choice of vector instructions: the one file of this crate that may use `unsafe`.
 //!
-//! [`vectorised`] runs a closure inside a function that is compiled for AVX2 when the machine has it, so
-//! that a plain release build (baseline x86-64) still uses 256-bit vectors in the loops over
-//! [`super::lane::F64x8`]. Fused multiply-add is *not* switched on: the digits are those of the baseline.
+//! [`vectorised`] runs a closure inside a function that is compiled for AVX-512 or AVX2 when the machine has
+//! it, so that a plain release build (baseline x86-64) still uses wide vectors in the loops over
+//! [`super::lane::F64x8`]. Fused multiply-add is *not* used (Rust never contracts a * b + c by itself): the
+//! digits are those of the baseline.
 
 #![allow(unsafe_code)]
 
@@ -12,9 +13,15 @@
 #[inline(always)]
 pub fn vectorised<R>(f: impl FnOnce() -> R) -> R {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the only requirement of `with_avx2` is that the processor has AVX2, which was just asked.
-        return unsafe { with_avx2(f) };
+    {
+        if has_avx512() {
+            // SAFETY: `with_avx512` requires the features that `has_avx512` has just found, and nothing else.
+            return unsafe { with_avx512(f) };
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: `with_avx2` requires AVX2, which was just found, and nothing else.
+            return unsafe { with_avx2(f) };
+        }
     }
     f()
 }
@@ -22,10 +29,29 @@ pub fn vectorised<R>(f: impl FnOnce() -> R) -> R {
 /// The name of the instruction set that [`vectorised`] uses on this machine.
 pub fn instruction_set() -> &'static str {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        return "AVX2";
+    {
+        if has_avx512() {
+            return "AVX-512";
+        }
+        if std::arch::is_x86_feature_detected!("avx2") {
+            return "AVX2";
+        }
     }
     "baseline"
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn has_avx512() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f")
+        && std::arch::is_x86_feature_detected!("avx512vl")
+        && std::arch::is_x86_feature_detected!("avx512dq")
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq")]
+fn with_avx512<R>(f: impl FnOnce() -> R) -> R {
+    f()
 }
 
 #[cfg(target_arch = "x86_64")]

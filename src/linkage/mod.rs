@@ -177,8 +177,8 @@ pub enum LinkageError {
 /// The largest magnitude of a coordinate or length.
 pub const MAX_MAGNITUDE: f64 = 1e12;
 
-/// A triangle or a loop that misses closure by less than this part of its scale (a squared length) is taken
-/// as flat: the roots of collinear points round below zero in a third of the cases.
+/// A triangle or a loop that misses closure by less than this part of its scale is taken as flat: the roots of
+/// collinear points round below zero in a third of the cases.
 pub const FLAT_TOLERANCE: f64 = 1e-12;
 
 /// A four-bar linkage: fixed pivots, five lengths and two signs.
@@ -274,7 +274,7 @@ impl FourBar {
     ///
     /// # Errors
     /// [`LinkageError`] when a number is not finite, a link a, b, c is not positive, d or e is negative or
-    /// no triangle C-D-P exists (beyond [`FLAT_TOLERANCE`] of its scale d^2 + b^2).
+    /// no triangle C-D-P exists (beyond [`FLAT_TOLERANCE`] of its perimeter).
     pub fn new(parameters: NaturalCoordinates) -> Result<Self, LinkageError> {
         let p = &parameters;
         let numbers = [
@@ -304,12 +304,15 @@ impl FourBar {
             }
         }
         let (b, d, e) = (p.coupler, p.crank_side, p.follower_side);
-        let along = (d * d + b * b - e * e) / (2.0 * b);
-        let height_sq = d * d - along * along;
-        if height_sq < -FLAT_TOLERANCE * (d * d + b * b) {
+        // 16 area^2 = (b+d+e)(b+d-e)(d+e-b)(e+b-d): factors, so that a flat triangle is told to the last digit.
+        let perimeter = b + d + e;
+        let lacks = [b + d - e, d + e - b, e + b - d];
+        if lacks.iter().any(|lack| *lack < -FLAT_TOLERANCE * perimeter) {
             return Err(LinkageError::NoCouplerTriangle { b, d, e });
         }
-        let across = p.side.sign() * height_sq.max(0.0).sqrt();
+        let along = (b + (d - e) * (d + e) / b) / 2.0;
+        let area_16_sq = lacks.iter().fold(perimeter, |product, lack| product * lack.max(0.0));
+        let across = p.side.sign() * area_16_sq.sqrt() / (2.0 * b);
         Ok(FourBar {
             parameters,
             ground: (point(p.follower_pivot) - point(p.crank_pivot)).norm(),

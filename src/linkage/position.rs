@@ -242,17 +242,15 @@ impl CouplerPoints {
         assert_eq!(cos.len() % LANES, 0, "pad the angles to a multiple of eight");
         let n = cos.len();
         let (x, y, gap) = (&mut self.x[..n], &mut self.y[..n], &mut self.gap[..n]);
+        let kernel = *kernel;
         vectorised(
             #[inline(always)]
             || {
-                let chunks = cos.chunks_exact(LANES).zip(sin.chunks_exact(LANES));
-                let out =
-                    x.chunks_exact_mut(LANES).zip(y.chunks_exact_mut(LANES)).zip(gap.chunks_exact_mut(LANES));
-                for ((c, s), ((x, y), gap)) in chunks.zip(out) {
-                    let at = kernel.at(F64x8::load(c, 0), F64x8::load(s, 0));
-                    at.coupler_point[0].store(x, 0);
-                    at.coupler_point[1].store(y, 0);
-                    at.gap.store(gap, 0);
+                for at in (0..n).step_by(LANES) {
+                    let position = kernel.at(F64x8::load(cos, at), F64x8::load(sin, at));
+                    position.coupler_point[0].store(x, at);
+                    position.coupler_point[1].store(y, at);
+                    position.gap.store(gap, at);
                 }
             },
         );

@@ -78,6 +78,9 @@ impl<'a> PathFitness<'a> {
             span = crank_angles
                 .iter()
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| (l.min(a), h.max(a)));
+            if task.closed() {
+                span.1 = span.1.max(span.0 + TAU);
+            }
             for &direction in problem.directions() {
                 let phases = problem.phases(direction);
                 clocks.push((
@@ -151,6 +154,20 @@ impl<'a> PathFitness<'a> {
         )
     }
 
+    /// What the requirements lack; computed once a shape where the motion does not enter.
+    fn lack(
+        &self,
+        aim: Option<LinkageType>,
+        shape: &Shape,
+        motion: &Motion<'_>,
+        shared: &mut Option<f64>,
+    ) -> f64 {
+        if self.requirements.depend_on_motion() {
+            return self.requirements.lack(aim, shape, motion);
+        }
+        *shared.get_or_insert_with(|| self.requirements.lack(aim, shape, motion))
+    }
+
     fn timed_readings(
         &self,
         side: CouplerSide,
@@ -169,12 +186,13 @@ impl<'a> PathFitness<'a> {
         };
         let turn = Complex::from_polar(1.0, offset);
         let aim = nearest_type(shape.links(), self.problem.types());
+        let mut shared = None;
         for (direction, cos, sin) in &self.clocks {
             let sums = timed_sums(&kernel, turn, cos, sin, &self.targets);
             for (sum, assembly) in sums.cost.into_iter().zip([AssemblyMode::Plus, AssemblyMode::Minus]) {
                 let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
                 let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
-                let lack = self.requirements.lack(aim, shape, &motion);
+                let lack = self.lack(aim, shape, &motion, &mut shared);
                 offer(Reading {
                     fitness: Fitness { violation: sums.open + lack, cost: sum },
                     setting: Setting { aim, assembly, direction: *direction, side },
@@ -193,6 +211,7 @@ impl<'a> PathFitness<'a> {
         let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
         let sides: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
         let ground = shape.follower_pivot - shape.crank_pivot;
+        let mut shared = None;
         for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
             for &arc in sides {
                 let reachable = |i: usize| {
@@ -220,7 +239,7 @@ impl<'a> PathFitness<'a> {
                 let start = course.first.unwrap_or(0.0);
                 let end = start + direction * total.min(TAU);
                 let motion = Motion::Stretch(start.min(end), start.max(end), assembly);
-                let lack = self.requirements.lack(aim, shape, &motion);
+                let lack = self.lack(aim, shape, &motion, &mut shared);
                 let violation = if open { f64::INFINITY } else { lack + disorder };
                 offer(Reading {
                     fitness: Fitness { violation, cost },
@@ -278,31 +297,49 @@ struct TimedSums {
     open: f64,
 }
 
+/// Points whose errors are computed before they are summed.
+const BLOCK: usize = 64;
+
 /// The weighted sums of squared errors of both assemblies at the angles turned by `turn`.
+///
+/// Errors are stored block by block and summed afterwards, always in the same order: a running sum inside the
+/// loop would keep the compiler from using vectors.
 #[inline]
 fn timed_sums(kernel: &Kernel, turn: Complex, cos: &[f64], sin: &[f64], targets: &Columns) -> TimedSums {
-    vectorised(
-        #[inline(always)]
-        || {
-            let splat = F64x8::splat;
-            let (mut plus, mut minus, mut open) = (splat(0.0), splat(0.0), splat(0.0));
-            let (turn_cos, turn_sin) = (splat(turn.re), splat(turn.im));
-            let n = cos.len();
-            let (sin, x, y, weight) = (&sin[..n], &targets.x[..n], &targets.y[..n], &targets.weight[..n]);
+    let kernel = *kernel;
+    let mut sums = [F64x8::splat(0.0); 3];
+    let mut block = [[0.0; BLOCK]; 3];
+    for from in (0..cos.len()).step_by(BLOCK) {
+        let to = (from + BLOCK).min(cos.len());
+        let n = to - from;
+        let (cos, sin) = (&cos[from..to], &sin[from..to]);
+        let (x, y, weight) = (&targets.x[from..to], &targets.y[from..to], &targets.weight[from..to]);
+        let [plus, minus, open] = &mut block;
+        vectorised(
+            #[inline(always)]
+            || {
+                let splat = F64x8::splat;
+                let (turn_cos, turn_sin) = (splat(turn.re), splat(turn.im));
+                for at in (0..n).step_by(LANES) {
+                    let (c, s) = (F64x8::load(cos, at), F64x8::load(sin, at));
+                    let crank = (c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin);
+                    let [p, m] = kernel.at_both(crank.0, crank.1);
+                    let (x, y, w) = (F64x8::load(x, at), F64x8::load(y, at), F64x8::load(weight, at));
+                    let (dx, dy) = (x - p.coupler_point[0], y - p.coupler_point[1]);
+                    (w * (dx * dx + dy * dy)).store(plus, at);
+                    let (dx, dy) = (x - m.coupler_point[0], y - m.coupler_point[1]);
+                    (w * (dx * dx + dy * dy)).store(minus, at);
+                    (-p.gap).positive_part().min(splat(1.0)).store(open, at);
+                }
+            },
+        );
+        for (sum, part) in sums.iter_mut().zip(&block) {
             for at in (0..n).step_by(LANES) {
-                let (c, s) = (F64x8::load(cos, at), F64x8::load(sin, at));
-                let crank = (c * turn_cos - s * turn_sin, s * turn_cos + c * turn_sin);
-                let [p, m] = kernel.at_both(crank.0, crank.1);
-                let (x, y, w) = (F64x8::load(x, at), F64x8::load(y, at), F64x8::load(weight, at));
-                let (dx, dy) = (x - p.coupler_point[0], y - p.coupler_point[1]);
-                plus = plus + w * (dx * dx + dy * dy);
-                let (dx, dy) = (x - m.coupler_point[0], y - m.coupler_point[1]);
-                minus = minus + w * (dx * dx + dy * dy);
-                open = open + (-p.gap).positive_part().min(splat(1.0));
+                *sum = *sum + F64x8::load(part, at);
             }
-            TimedSums { cost: [plus.sum(), minus.sum()], open: open.sum() }
-        },
-    )
+        }
+    }
+    TimedSums { cost: [sums[0].sum(), sums[1].sum()], open: sums[2].sum() }
 }
 
 /// The coupler points of both assemblies at evenly spaced crank angles.

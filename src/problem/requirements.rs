@@ -125,6 +125,12 @@ impl Requirements {
         }
     }
 
+    /// Whether a row depends on the motion, and not on the shape alone.
+    pub fn depend_on_motion(&self) -> bool {
+        let used = self.require.transmission_over != Some(TransmissionOver::Cycle);
+        self.require.footprint_in.is_some() || (self.require.transmission_deg_min.is_some() && used)
+    }
+
     /// The sum of what the rows lack, in sizes of the target; 0 where all are met.
     pub fn lack(&self, aim: Option<LinkageType>, shape: &Shape, motion: &Motion<'_>) -> f64 {
         let mut lack = 0.0;

@@ -11,6 +11,7 @@ use crate::linkage::position::Kernel;
 use crate::linkage::{Complex, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 use crate::task::{AngleOffset, Timing};
+use std::f64::consts::TAU;
 
 /// Least squares over the design vector for prescribed timing.
 #[derive(Clone, Debug)]
@@ -68,11 +69,12 @@ impl<'a> TimedFit<'a> {
         self.angles.iter().map(|angle| angle + offset).collect()
     }
 
-    /// The motion between the least and the greatest crank angle.
+    /// The motion between the least and the greatest crank angle; the full turn of a closed target.
     pub fn motion(&self, x: &Design, shape: &Shape) -> Motion<'static> {
         let offset = self.offset(x, shape);
         let low = self.angles.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let high = if self.problem.task().closed() { high.max(low + TAU) } else { high };
         Motion::Stretch(low + offset, high + offset, self.setting.assembly)
     }
 

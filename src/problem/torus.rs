@@ -14,10 +14,13 @@
 //! The tangents are eliminated point by point in [`crate::solve::levenberg_marquardt`].
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
-use super::requirements::{Motion, Requirements};
+use super::requirements::{Motion, Requirements, assembly_of};
 use super::{Problem, Setting};
-use crate::linkage::{Complex, dot, turned, xy};
+use crate::linkage::mobility::linkage_type;
+use crate::linkage::{Complex, LinkageType, dot, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+
+use std::f64::consts::TAU;
 
 /// The positions of all points: (e_j, u_j).
 pub type Positions = Vec<[Complex; 2]>;
@@ -59,6 +62,30 @@ impl<'a> TorusFit<'a> {
     /// The requirements.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
+    }
+
+    /// The motion through the positions: a stretch of crank angle where the input turns fully.
+    pub fn motion<'p>(&self, shape: &Shape, positions: &'p Positions) -> Motion<'p> {
+        let turns = linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully);
+        let Some([e, u]) = positions.first().filter(|_| turns) else { return Motion::Positions(positions) };
+        let assembly = assembly_of(shape, *e, *u);
+        let task = self.problem.task();
+        if task.closed() || task.repeats_first() {
+            return Motion::Stretch(e.arg(), e.arg() + TAU, assembly);
+        }
+        let total = |direction: f64| -> f64 {
+            let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
+            positions.windows(2).map(step).sum()
+        };
+        let (forward, backward) = (total(1.0), total(-1.0));
+        if forward.min(backward) >= TAU {
+            return Motion::Stretch(e.arg(), e.arg() + TAU, assembly);
+        }
+        if forward <= backward {
+            Motion::Stretch(e.arg(), e.arg() + forward, assembly)
+        } else {
+            Motion::Stretch(e.arg() - backward, e.arg(), assembly)
+        }
     }
 
     /// Brings positions to the curves of a design; `false` where one cannot get there.
@@ -184,7 +211,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
 
     fn constraints(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
         let Some(shape) = self.space.shape(x) else { return };
-        self.requirements.rows(self.setting.aim, &shape, &Motion::Positions(state), &mut |row| {
+        self.requirements.rows(self.setting.aim, &shape, &self.motion(&shape, state), &mut |row| {
             each(&ConstraintRow {
                 value: row.value,
                 gradient: self.space.pull_back(x, &shape, &row.shape, 0.0),

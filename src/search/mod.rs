@@ -1,6 +1,7 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
 pub mod multistart;
+pub mod nearest;
 pub mod plan;
 pub mod population;
 pub mod rank;

@@ -8,10 +8,10 @@ use super::Budget;
 use super::rank::exact_sum_sq;
 use super::starts::{Start, Starts};
 use crate::assess::assess;
-use crate::linkage::mobility::wrapped;
-use crate::linkage::{AssemblyMode, Complex};
+use crate::linkage::mobility::{linkage_type, wrapped};
+use crate::linkage::{AssemblyMode, Complex, LinkageType};
 use crate::problem::design_space::{Design, Shape};
-use crate::problem::requirements::{Motion, assembly_of};
+use crate::problem::requirements::assembly_of;
 use crate::problem::timed::TimedFit;
 use crate::problem::torus::{Positions, TorusFit};
 use crate::problem::{Problem, Setting};
@@ -20,6 +20,7 @@ use crate::solve::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve, violation,
 };
 use crate::solve::streams::stream;
+use crate::task::referee::ORDER_TOLERANCE;
 use crate::task::{AngleOffset, Timing};
 use std::f64::consts::TAU;
 
@@ -119,7 +120,7 @@ fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     }
     let cost = fit.cost(&start.design, &start.positions)?;
     let shape = fit.space().shape(&start.design)?;
-    let motion = Motion::Positions(&start.positions);
+    let motion = fit.motion(&shape, &start.positions);
     let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
     Some(cost + scale * lack * lack)
 }
@@ -208,32 +209,39 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
 
 /// Crank angles (degrees, unwrapped along the motion) and assemblies of positions.
 fn reading(problem: &Problem, shape: &Shape, positions: &[[Complex; 2]]) -> (Vec<f64>, Vec<AssemblyMode>) {
-    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
-    let wrapped_angles: Vec<f64> = positions.iter().map(|[e, _]| e.arg()).collect();
-    let turns = crate::linkage::mobility::linkage_type(shape.links())
-        .is_some_and(|t| t.input_turns_fully() || t == crate::linkage::LinkageType::ChangePoint);
-    let mut angles = vec![wrapped_angles[0]];
-    // Along a full turn the way that is shorter in total; a rocking crank takes the short way each time.
+    let assemblies = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
+    let angles = positions.iter().map(|[e, _]| e.arg()).collect();
+    unwrapped(problem, shape.links(), angles, assemblies)
+}
+
+/// Crank angles (radians) unwrapped along the motion, in degrees: along a full turn the way that is shorter in
+/// total, for a rocking crank the short way each time. A last point that repeats the first is where the first
+/// is, a turn later.
+pub fn unwrapped(
+    problem: &Problem,
+    links: [f64; 4],
+    angles: Vec<f64>,
+    mut assemblies: Vec<AssemblyMode>,
+) -> (Vec<f64>, Vec<AssemblyMode>) {
+    let turns = linkage_type(links).is_some_and(|t| t.input_turns_fully() || t == LinkageType::ChangePoint);
     let total = |direction: f64| -> f64 {
-        wrapped_angles.windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
+        angles.windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
     };
     let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
-    for w in wrapped_angles.windows(2) {
+    let mut along = vec![angles[0]];
+    for w in angles.windows(2) {
         let step = if turns {
             let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
-            direction * if step > TAU - 1e-9 { step - TAU } else { step }
+            direction * if step > TAU - ORDER_TOLERANCE { step - TAU } else { step }
         } else {
             wrapped(w[1] - w[0])
         };
-        angles.push(angles[angles.len() - 1] + step);
+        along.push(along[along.len() - 1] + step);
     }
     if problem.task().repeats_first() {
-        let last = angles.len() - 1;
-        let around = if turns { direction * TAU } else { 0.0 };
-        angles[last] = angles[0] + around;
-        let mut assemblies = assemblies;
+        let last = along.len() - 1;
+        along[last] = along[0] + if turns { direction * TAU } else { 0.0 };
         assemblies[last] = assemblies[0];
-        return (angles.iter().map(|a| a.to_degrees()).collect(), assemblies);
     }
-    (angles.iter().map(|a| a.to_degrees()).collect(), assemblies)
+    (along.iter().map(|a| a.to_degrees()).collect(), assemblies)
 }

@@ -11,7 +11,7 @@ use crate::record::Candidate;
 use std::cmp::Ordering;
 
 /// Curves nearer to each other than this part of the target's size are one answer.
-pub const SAME_CURVE: f64 = 2e-3;
+pub const SAME_CURVE: f64 = 1e-2;
 /// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
 pub const EXACT: f64 = 1e-24;
 

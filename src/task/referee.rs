@@ -11,6 +11,7 @@
 use super::{PathTask, Timing};
 use crate::linkage::{
     AssemblyMode, Circuit, Complex, FourBar, InputRange, Joints, Mobility,
+    mobility::wrapped,
     transmission::{TransmissionExtremes, angle_opposite},
 };
 use serde::{Deserialize, Serialize};
@@ -115,27 +116,42 @@ pub fn judge(
     }
 
     let rocks = arc.is_some();
-    let parameter: Vec<f64> = (0..n)
+    let mut parameter: Vec<f64> = (0..n)
         .map(|j| match arc {
             None => crank_angles[j],
             Some(arc) => arc.parameter(crank_angles[j], assemblies[j]),
         })
         .collect();
+    if rocks {
+        // psi is a circle: each point the nearer way round from the one before it.
+        for j in 1..n {
+            parameter[j] = parameter[j - 1] + wrapped(parameter[j] - parameter[j - 1]);
+        }
+    }
     // The closing point is the first one again and says nothing of the order.
     let ordered = if task.repeats_first() { n - 1 } else { n };
     let course = if prescribed && !rocks {
         let direction = if parameter[n - 1] < parameter[0] { -1.0 } else { 1.0 };
         let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
         let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // A closed target is closed by turning on to its first point.
+        let high = if task.closed() { high.max(low + TAU) } else { high };
         Course { direction, range: [low, high], jumps: Vec::new() }
     } else if prescribed || !off_circuit.is_empty() {
-        // On one branch psi is monotone in the crank angle: the hull of what is used.
+        // The hull of what is used; within a branch psi is monotone in the crank angle.
         let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
         let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
         Course { direction, range: [low, high], jumps: Vec::new() }
     } else {
-        Course::through(&parameter[..ordered])
+        // Back at the first point, the motion has gone the whole way round; within one branch it turns back.
+        let whole = (task.closed() || task.repeats_first()) && (!rocks || !off_branch.is_empty());
+        let mut course = Course::through(&parameter[..ordered], whole);
+        if rocks && off_branch.is_empty() {
+            // On the branch t1 = -1 psi falls where the crank angle rises.
+            course.direction *= first.assembly.sign();
+        }
+        course
     };
     let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range: course.range };
 
@@ -167,7 +183,7 @@ struct Course {
 
 impl Course {
     /// The direction in which the parameter goes less far in total; it is in order when that is less than once around.
-    fn through(parameter: &[f64]) -> Course {
+    fn through(parameter: &[f64], whole: bool) -> Course {
         let along = |direction: f64| {
             let steps: Vec<f64> = parameter
                 .windows(2)
@@ -188,7 +204,7 @@ impl Course {
                 jumps.push(parameter.len() - 1);
             }
         }
-        let end = parameter[0] + direction * total.min(TAU);
+        let end = parameter[0] + direction * if whole { TAU } else { total.min(TAU) };
         Course { direction, range: [parameter[0].min(end), parameter[0].max(end)], jumps }
     }
 }

@@ -1,0 +1,129 @@
+//! The position kernel beside the machine's bound (one square root and one division a position) and beside a
+//! textbook solver by angles, in one run. Each is asserted to give the answer before it is timed.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use linkwright::linkage::dispatch::{instruction_set, vectorised};
+use linkwright::linkage::lane::{F64x8, Lane};
+use linkwright::linkage::position::{CouplerPoints, Kernel};
+use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use std::f64::consts::TAU;
+use std::hint::black_box;
+
+const POSITIONS: usize = 512;
+
+fn linkage() -> FourBar {
+    FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [4.0, 1.0],
+        crank: 2.0,
+        coupler: 5.0,
+        follower: 5.0,
+        crank_side: 5.0,
+        follower_side: 5.0,
+        assembly: AssemblyMode::Plus,
+        side: CouplerSide::Plus,
+    })
+    .expect("Romero's example is a linkage")
+}
+
+/// The textbook way: Freudenstein's half-angle formula for the coupler's angle, then its cosine and sine.
+fn textbook(linkage: &FourBar, angle: f64) -> [f64; 2] {
+    let [g, a, b, c] = linkage.links();
+    let theta2 = angle - linkage.ground_angle();
+    let k1 = g / a;
+    let k4 = g / b;
+    let k5 = (c * c - g * g - a * a - b * b) / (2.0 * a * b);
+    let (sin, cos) = theta2.sin_cos();
+    let d = cos - k1 + k4 * cos + k5;
+    let e = -2.0 * sin;
+    let f = k1 + (k4 - 1.0) * cos + k5;
+    let root = (e * e - 4.0 * d * f).max(0.0).sqrt();
+    let theta3 = 2.0 * ((-e - root) / (2.0 * d)).atan();
+    let offset = linkage.coupler_offset();
+    let coupler = theta3 + linkage.ground_angle() + offset.arg();
+    let pivot = linkage.crank_pivot();
+    [
+        pivot.re + a * angle.cos() + offset.norm() * coupler.cos(),
+        pivot.im + a * angle.sin() + offset.norm() * coupler.sin(),
+    ]
+}
+
+fn positions(c: &mut Criterion) {
+    let linkage = linkage();
+    let kernel = Kernel::new(&linkage);
+    let angles: Vec<f64> = (0..POSITIONS).map(|i| TAU * i as f64 / POSITIONS as f64).collect();
+    let cos: Vec<f64> = angles.iter().map(|a| a.cos()).collect();
+    let sin: Vec<f64> = angles.iter().map(|a| a.sin()).collect();
+    let mut out = CouplerPoints::with_room(POSITIONS);
+    out.fill(&kernel, &cos, &sin);
+    for (i, angle) in angles.iter().enumerate() {
+        let p = linkage.position(*angle).joints().expect("the crank turns fully").coupler_point;
+        assert_eq!((out.x[i], out.y[i]), (p.re, p.im), "lanes and scalar agree to the bit");
+        let [x, y] = textbook(&linkage, *angle);
+        assert!((x - p.re).hypot(y - p.im) < 1e-12 * 10.0, "the textbook agrees at {angle}: {x} {y} {p}");
+    }
+
+    let mut group = c.benchmark_group(format!("coupler position ({})", instruction_set()));
+    group.throughput(Throughput::Elements(POSITIONS as u64));
+    group.bench_function("bound: one sqrt and one div", |b| {
+        let mut roots = vec![0.0; POSITIONS];
+        b.iter(|| {
+            bound(black_box(&cos), &mut roots);
+            black_box(&mut roots);
+        });
+    });
+    group.bench_function("lanes", |b| {
+        b.iter(|| {
+            out.fill(black_box(&kernel), black_box(&cos), black_box(&sin));
+            black_box(&mut out);
+        });
+    });
+    group.bench_function("scalar, cos and sin tabulated", |b| {
+        b.iter(|| {
+            let mut sum = 0.0;
+            for (c, s) in cos.iter().zip(&sin) {
+                let at = kernel.at(black_box(*c), black_box(*s));
+                sum += if at.gap >= 0.0 { at.coupler_point[0] + at.coupler_point[1] } else { 0.0 };
+            }
+            black_box(sum)
+        });
+    });
+    group.bench_function("scalar, from the angle", |b| {
+        b.iter(|| {
+            let mut sum = 0.0;
+            for angle in &angles {
+                if let Some(joints) = linkage.position(black_box(*angle)).joints() {
+                    sum += joints.coupler_point.re;
+                }
+            }
+            black_box(sum)
+        });
+    });
+    group.bench_function("textbook, by angles", |b| {
+        b.iter(|| {
+            let mut sum = 0.0;
+            for angle in &angles {
+                sum += textbook(black_box(&linkage), black_box(*angle))[0];
+            }
+            black_box(sum)
+        });
+    });
+    group.finish();
+}
+
+/// sqrt(x + 2) and 1/(x + 2): independent, so that their throughputs add up and nothing else counts.
+fn bound(x: &[f64], out: &mut [f64]) {
+    vectorised(
+        #[inline(always)]
+        || {
+            let two = F64x8::splat(2.0);
+            for (x, out) in x.chunks_exact(8).zip(out.chunks_exact_mut(8)) {
+                let shifted = F64x8::load(x, 0) + two;
+                (shifted.sqrt() + shifted.recip()).store(out, 0);
+            }
+        },
+    );
+}
+
+criterion_group!(benches, positions);
+criterion_main!(benches);

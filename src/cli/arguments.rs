@@ -1,0 +1,134 @@
+//! What can be typed.
+
+use crate::report::compare::SortKey;
+use crate::schema::SchemaKind;
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Finds the four-bar linkage whose coupler point draws the path you ask for.
+#[derive(Debug, Parser)]
+#[command(
+    name = "linkwright",
+    version,
+    after_help = "Start with `linkwright new my-path`, then `linkwright synth my-path.toml`.\n\
+                  Exit codes: 0 something acceptable was found, 1 nothing acceptable, 2 bad input, \
+                  70 a bug, 130 interrupted (best so far saved)."
+)]
+pub struct Arguments {
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Find linkages for problem files (or bare points CSV files): the main job
+    Synth(Synth),
+    /// Check problem, linkage and points files without running anything
+    Check(Check),
+    /// Write a commented problem file that runs as it is
+    New(New),
+    /// Put results or linkages side by side
+    Compare(Compare),
+    /// Recompute every figure and verdict of a result
+    Verify(Verify),
+    /// Print the JSON Schema of a file, for editors
+    Schema {
+        /// problem or linkage
+        #[arg(value_parser = schema_kind)]
+        kind: SchemaKind,
+    },
+    /// Print a completion script for a shell
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Options of `synth`.
+#[derive(Debug, Args)]
+pub struct Synth {
+    /// Problem files (TOML) or points (CSV)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the results go (several files: a folder for each in it) [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// auto, least-squares, differential-evolution or genetic: as `--set solve.method=..`
+    #[arg(long, value_name = "METHOD")]
+    pub method: Option<String>,
+    /// Where every draw comes from: as `--set solve.seed=..`
+    #[arg(long, value_name = "N")]
+    pub seed: Option<String>,
+    /// Set any key of the problem file, e.g. --set solve.candidates=9
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    pub set: Vec<(String, String)>,
+    /// Threads [default: all cores]; they change the time, never a digit
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print the record (several files: an array of records) instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// No progress and no picture on the terminal
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Problem or linkage files (TOML) or points (CSV)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+}
+
+/// Options of `new`.
+#[derive(Debug, Args)]
+pub struct New {
+    /// The problem's name; NAME.toml is written here
+    pub name: String,
+    /// Take the target from this points CSV
+    #[arg(long, value_name = "POINTS")]
+    pub from: Option<PathBuf>,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// Results: a folder, a record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<String>,
+    /// The problem whose target bare linkages are measured on
+    #[arg(long, value_name = "PROBLEM")]
+    pub target: Option<PathBuf>,
+    /// Which figure ranks
+    #[arg(long, value_name = "KEY", default_value = "sum_sq", value_parser = sort_key)]
+    pub sort: SortKey,
+    /// Write the table as CSV too
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+}
+
+/// Options of `verify`.
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// A result's folder or record.json
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("write KEY=VALUE, for example solve.candidates=9".into()),
+    }
+}
+
+fn sort_key(text: &str) -> Result<SortKey, String> {
+    text.parse().map_err(|e: crate::report::compare::UnknownKey| e.to_string())
+}
+
+fn schema_kind(text: &str) -> Result<SchemaKind, String> {
+    text.parse().map_err(|e: crate::schema::UnknownKind| e.to_string())
+}

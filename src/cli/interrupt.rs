@@ -1,0 +1,18 @@
+//! Ctrl-C: the first ends the search with its best so far, the second ends the process.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+static CANCELLED: AtomicBool = AtomicBool::new(false);
+
+/// Watches for Ctrl-C from now on; the flag that it sets.
+pub fn watch() -> &'static AtomicBool {
+    let handler = || {
+        if CANCELLED.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+        super::terminal::tell("\ninterrupted: saving the best so far (Ctrl-C again to end at once)");
+    };
+    // A second handler in one process, or a platform without signals: then Ctrl-C ends the process as ever.
+    let _ = ctrlc::set_handler(handler);
+    &CANCELLED
+}

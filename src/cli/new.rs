@@ -1,0 +1,55 @@
+//! `new`: a problem file to start from.
+
+use super::arguments::New;
+use super::{Ended, terminal};
+use ariadne::ReportKind;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Runs the command.
+pub fn run(options: &New) -> Ended {
+    let name = options.name.strip_suffix(".toml").unwrap_or(&options.name);
+    if let Err(e) = crate::name::check(name) {
+        terminal::complain(&format!("{e}: {}", e.remedy()));
+        return Ended::Refused;
+    }
+    // The file that is named has to be a target before a problem file may point at it.
+    if let Some(from) = &options.from
+        && let Err(diagnostic) = crate::problem_file::from_points_file(from, &[])
+    {
+        terminal::diagnose(ReportKind::Error, &diagnostic);
+        return Ended::Refused;
+    }
+    let from = options.from.as_ref().map(|path| path.display().to_string());
+    let text = match crate::problem_template::problem_template(name, from.as_deref()) {
+        Ok(text) => text,
+        Err(e) => {
+            terminal::complain(&format!("{e}: {}", e.remedy()));
+            return Ended::Refused;
+        }
+    };
+    // What was written must run: a points file in another folder cannot be reached from the problem file.
+    if let Err(diagnostic) =
+        crate::problem_file::parse(&format!("{name}.toml"), &text, Some(Path::new("")), &[])
+    {
+        terminal::diagnose(ReportKind::Error, &diagnostic);
+        return Ended::Refused;
+    }
+    let path = PathBuf::from(format!("{name}.toml"));
+    let written = std::fs::File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
+    match written {
+        Ok(()) => {
+            let shown = path.display();
+            terminal::answer(&format!("Wrote {shown}. Next: linkwright synth {shown:?}\n"));
+            Ended::Good
+        }
+        Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {
+            terminal::complain(&format!("{} exists already; choose another name", path.display()));
+            Ended::Refused
+        }
+        Err(e) => {
+            terminal::complain(&format!("{}: {e}", path.display()));
+            Ended::Refused
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
+
+use crate::search::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Searches shorter than this show no progress.
+const QUIET_FOR: Duration = Duration::from_millis(700);
+/// Plain lines come at most this often.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+
+/// Shows where a search stands.
+pub struct Shown {
+    name: String,
+    start: Instant,
+    bar: Option<ProgressBar>,
+    last_line: Mutex<Instant>,
+    silent: bool,
+}
+
+impl Shown {
+    /// Progress of the problem `name`.
+    pub fn new(name: &str, silent: bool) -> Self {
+        let bar = (stderr().is_terminal() && !silent).then(|| {
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
+            let style = "{prefix} [{bar:30}] {pos}/{len} evaluations, {per_sec}, {eta} left  {msg}";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar.set_prefix(crate::report::text::clean(name));
+            bar
+        });
+        Shown { name: name.into(), start: Instant::now(), bar, last_line: Mutex::new(Instant::now()), silent }
+    }
+
+    /// Takes a word from the search.
+    pub fn update(&self, progress: &Progress) {
+        if self.silent || self.start.elapsed() < QUIET_FOR {
+            return;
+        }
+        let best = match progress.best_sum_sq {
+            Some(sum) if progress.accepted => format!("best {sum:.4e}"),
+            Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
+            None => "nothing acceptable yet".into(),
+        };
+        if let Some(bar) = &self.bar {
+            bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            bar.set_length(progress.budget);
+            bar.set_position(progress.evaluations.min(progress.budget));
+            bar.set_message(best);
+            return;
+        }
+        let Ok(mut last) = self.last_line.lock() else { return };
+        if last.elapsed() >= LINE_EVERY {
+            *last = Instant::now();
+            super::terminal::tell(&format!(
+                "{}: {} {} of {} evaluations, {best}",
+                crate::report::text::clean(&self.name),
+                progress.phase,
+                progress.evaluations,
+                progress.budget
+            ));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}

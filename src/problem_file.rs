@@ -1,0 +1,310 @@
+//! Problem files: TOML in, a [`ProblemSpec`] with every default filled in out.
+//!
+//! Three ways lead here and give the same diagnostics: a file, a text with `--set` overrides, a bare file of
+//! points. What stands under `[expect]` is read and checked and never reaches the specification.
+
+mod design;
+mod overrides;
+mod path;
+mod raw;
+
+pub(crate) use raw::RawProblem;
+
+use crate::diagnostic::Diagnostic;
+use crate::input_text;
+use crate::linkage::AssemblyMode;
+use crate::linkage_file::{check_format, checked_name};
+use crate::name;
+use crate::problem::spec::{
+    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, ProblemSpec, RequireSpec, SolveSpec,
+    TaskSpec, TimingSpec,
+};
+use crate::record::Unit;
+use crate::solve::population::PopulationError;
+use crate::task::AngleOffset;
+use crate::toml_text::TomlText;
+use crate::toml_values::{Corners, Count, OnlyTable};
+use raw::{RawExpect, RawRequire, RawSolve};
+use std::path::Path;
+
+/// The format of problem files that this program reads.
+pub const FORMAT: u64 = 1;
+
+/// A problem as its file gives it, checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProblemFile {
+    /// Its name; the file stem where the file has none.
+    pub name: String,
+    /// Where it comes from, in words.
+    pub source: Option<String>,
+    /// The unit that labels lengths.
+    pub unit: Option<Unit>,
+    /// What to search for and how, with every default filled in.
+    pub spec: ProblemSpec,
+    /// What is known of the answer; for tests and the suite, never for a search.
+    pub expect: Option<Expect>,
+    /// What was ignored or cannot succeed.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// What is known of a problem's answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Expect {
+    /// The least sum of squared errors that is known.
+    pub best_known_sum_sq: Option<f64>,
+    /// Answers that were published.
+    pub published: Vec<Published>,
+}
+
+/// A published answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Published {
+    /// Author and year.
+    pub source: String,
+    /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians); or empty.
+    pub vector: Vec<f64>,
+    /// Which way it closes.
+    pub t1: Option<AssemblyMode>,
+    /// The crank angles that were published, degrees from the ground line.
+    pub crank_deg: Option<Vec<f64>>,
+    /// The error that was printed.
+    pub printed_sum_sq: Option<f64>,
+    /// The error that the vector has when this project evaluates it.
+    pub recomputed_sum_sq: Option<f64>,
+    /// A remark.
+    pub note: Option<String>,
+}
+
+/// The problem of a file; `overrides` are dotted keys with values in TOML or bare words.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at what is wrong.
+pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse(&path.display().to_string(), &text, Some(folder_of(path)), overrides)
+}
+
+/// The problem of a text. `file_name` is shown in diagnostics and gives the default name; `folder` is where a
+/// points file is looked for, and without it `file = "..."` is refused.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at what is wrong.
+pub fn parse(
+    file_name: &str,
+    text: &str,
+    folder: Option<&Path>,
+    overrides: &[(String, String)],
+) -> Result<ProblemFile, Box<Diagnostic>> {
+    let plain = TomlText { file: file_name, text: input_text::without_mark(text) };
+    if plain.text.trim().is_empty() {
+        let help = "`linkwright new NAME` writes a problem file to start from";
+        return Err(Box::new(plain.about_file("the file is empty").with_help(help)));
+    }
+    let (file, text) = overrides::apply(&plain, overrides)?;
+    let toml = TomlText { file: &file, text: &text };
+    let mut raw: RawProblem = toml.read()?;
+    check_format(&toml, raw.format, FORMAT)?;
+    let name = match raw.name.take() {
+        None => name::from_file(file_name, "problem"),
+        given => checked_name(&toml, given, "problem")?,
+    };
+    let mut warnings = Vec::new();
+    let (path, task) =
+        path::path_of(&toml, raw.task.take().and_then(|t| t.0.path).map(|p| p.0), folder, &mut warnings)?;
+    let mut design = design::spec_of(&raw.design.0);
+    design::check(&toml, &design)?;
+    let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
+    warnings.extend(design::against_requirements(&toml, &design, &require)?);
+    let solve = solve_of(&toml, raw.solve.0)?;
+    let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
+    design.resolve(&task);
+    let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
+    Ok(ProblemFile { name, source: raw.source, unit: raw.unit, spec, expect, warnings })
+}
+
+/// A bare file of points as a problem with every default; its name is the file's.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at what is wrong.
+pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
+    let shown = path.display().to_string();
+    let Some(file) = path.file_name().and_then(|f| f.to_str()) else {
+        return Err(Box::new(
+            Diagnostic::new(shown, "", "the name of this file is not text").with_help("rename the file"),
+        ));
+    };
+    let text = format!("format = {FORMAT}\n[task.path]\nfile = {}\n", toml::Value::String(file.to_owned()));
+    parse(&shown, &text, Some(folder_of(path)), overrides)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+fn require_of(
+    toml: &TomlText<'_>,
+    raw: RawRequire,
+    timing: Option<&TimingSpec>,
+) -> Result<RequireSpec, Box<Diagnostic>> {
+    let refuse = |key: &str, message: String, help: &str| {
+        Err(Box::new(toml.at(&format!("require.{key}"), message).with_help(help)))
+    };
+    if let Some(t) = raw.transmission_deg_min
+        && !(0.0..=90.0).contains(&t.0)
+    {
+        let message = format!("transmission_deg_min = {} is not between 0 and 90 degrees", t.0);
+        return refuse(
+            "transmission_deg_min",
+            message,
+            "the angle meant is min(mu, 180 - mu): 90 is best, 30 to 40 is usual",
+        );
+    }
+    if let Some(r) = raw.link_ratio_max
+        && r.0 < 1.0
+    {
+        let message =
+            format!("link_ratio_max = {}: the longest link is at least as long as the shortest", r.0);
+        return refuse("link_ratio_max", message, "write 1 or more, such as 10");
+    }
+    for (key, corners) in [("pivots_in", raw.pivots_in), ("footprint_in", raw.footprint_in)] {
+        let Some([x0, y0, x1, y1]) = corners.map(corner_numbers) else { continue };
+        if !(x0 < x1 && y0 < y1) {
+            let message = format!("the box [{x0}, {y0}, {x1}, {y1}] is empty or the wrong way round");
+            return refuse(key, message, "write [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax");
+        }
+    }
+    if let Some(timing) = timing.filter(|t| t.offset != AngleOffset::Free)
+        && raw.direction != DirectionPolicy::Any
+    {
+        let offset = if timing.offset == AngleOffset::Fixed { "fixed" } else { "ground" };
+        return refuse(
+            "direction",
+            format!(
+                "the direction is already told by crank_deg, which is meant as written \
+                 with offset = \"{offset}\""
+            ),
+            "remove direction; to turn the other way, change the signs of crank_deg",
+        );
+    }
+    let default = RequireSpec::default();
+    let mut types = raw.types.map_or(default.types, |t| t.0);
+    types.sort_unstable();
+    types.dedup();
+    Ok(RequireSpec {
+        types,
+        transmission_deg_min: raw.transmission_deg_min.map(|t| t.0),
+        transmission_over: raw.transmission_over,
+        link_ratio_max: raw.link_ratio_max.map_or(default.link_ratio_max, |r| r.0),
+        pivots_in: raw.pivots_in.map(corner_numbers),
+        footprint_in: raw.footprint_in.map(corner_numbers),
+        order: raw.order,
+        direction: raw.direction,
+        circuit: raw.circuit,
+        branch: raw.branch,
+    })
+}
+
+fn corner_numbers(corners: Corners) -> [f64; 4] {
+    corners.0.map(|n| n.0)
+}
+
+fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnostic>> {
+    let default = SolveSpec::default();
+    let within = |key: &str, given: Option<Count>, default: u64, least: u64, most: u64| match given {
+        None => Ok(default),
+        Some(Count(value)) if (least..=most).contains(&value) => Ok(value),
+        Some(Count(value)) => Err(Box::new(
+            toml.at(&format!("solve.{key}"), format!("{key} = {value} is not between {least} and {most}"))
+                .with_help(format!("write a whole number from {least} to {most}; the default is {default}")),
+        )),
+    };
+    let seed = within("seed", raw.seed, default.seed, 0, i64::MAX as u64)?;
+    let candidates =
+        within("candidates", raw.candidates, default.candidates as u64, 1, MAX_CANDIDATES as u64)? as usize;
+    let evaluations = within("evaluations", raw.evaluations, default.evaluations, 1, MAX_EVALUATIONS)?;
+    if let Some(t) = raw.time_limit_s
+        && t.0 <= 0.0
+    {
+        let message = format!("time_limit_s = {}: a time limit must be positive", t.0);
+        return Err(Box::new(
+            toml.at("solve.time_limit_s", message)
+                .with_help("write seconds above 0, or remove the key for no limit"),
+        ));
+    }
+    let parameters = [
+        ("genetic", raw.genetic.0.check(), raw.genetic.0.population),
+        (
+            "differential-evolution",
+            raw.differential_evolution.0.check(),
+            raw.differential_evolution.0.population,
+        ),
+    ];
+    for (table, check, population) in parameters {
+        let refuse = |key: &str, message: String| toml.at(&format!("solve.{table}.{key}"), message);
+        match check {
+            Ok(()) => {}
+            Err(PopulationError::Parameter { name, value, requirement }) => {
+                let diagnostic = refuse(name, format!("{name} = {value} is out of range"));
+                return Err(Box::new(diagnostic.with_help(format!("write {requirement}"))));
+            }
+            Err(other) => return Err(Box::new(toml.at(&format!("solve.{table}"), other.to_string()))),
+        }
+        if population > MAX_POPULATION {
+            let diagnostic =
+                refuse("population", format!("population = {population} is above {MAX_POPULATION}"));
+            return Err(Box::new(diagnostic.with_help("a few hundred are usual")));
+        }
+    }
+    Ok(SolveSpec {
+        method: raw.method,
+        objective: raw.objective,
+        seed,
+        candidates,
+        evaluations,
+        time_limit_s: raw.time_limit_s.map(|t| t.0),
+        genetic: raw.genetic.0,
+        differential_evolution: raw.differential_evolution.0,
+    })
+}
+
+/// How many numbers a published vector has.
+const PUBLISHED_VECTOR: usize = 9;
+
+fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expect, Box<Diagnostic>> {
+    let not_negative = |path: String, value: Option<f64>| match value {
+        Some(v) if v < 0.0 => Err(Box::new(
+            toml.at(&path, format!("{v} is negative: a sum of squares is 0 or more"))
+                .with_help("write 0 or more"),
+        )),
+        other => Ok(other),
+    };
+    let best = not_negative("expect.best_known_sum_sq".into(), raw.best_known_sum_sq.map(|n| n.0))?;
+    let mut published = Vec::with_capacity(raw.published.len());
+    for (i, OnlyTable(p)) in raw.published.into_iter().enumerate() {
+        let path = |key: &str| format!("expect.published.{i}.{key}");
+        if !p.vector.is_empty() && p.vector.len() != PUBLISHED_VECTOR {
+            let message =
+                format!("a published vector has {PUBLISHED_VECTOR} numbers, this one {}", p.vector.len());
+            return Err(Box::new(toml.at(&path("vector"), message).with_help(
+                "[ground, crank, coupler, follower, rcx, rcy, x0, y0, theta0]; or leave it empty",
+            )));
+        }
+        if let Some(list) = p.crank_deg.as_ref().filter(|list| list.len() != points) {
+            let (points, angles) = (path::counted(points, "point"), path::counted(list.len(), "crank angle"));
+            let message = format!("{points} and {angles}");
+            return Err(Box::new(
+                toml.at(&path("crank_deg"), message).with_help("give one crank angle for each point"),
+            ));
+        }
+        published.push(Published {
+            source: p.source,
+            vector: p.vector.iter().map(|n| n.0).collect(),
+            t1: p.t1,
+            crank_deg: p.crank_deg.map(|list| list.iter().map(|n| n.0).collect()),
+            printed_sum_sq: not_negative(path("printed_sum_sq"), p.printed_sum_sq.map(|n| n.0))?,
+            recomputed_sum_sq: not_negative(path("recomputed_sum_sq"), p.recomputed_sum_sq.map(|n| n.0))?,
+            note: p.note,
+        });
+    }
+    Ok(Expect { best_known_sum_sq: best, published })
+}

@@ -1,0 +1,206 @@
+//! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
+
+use crate::linkage::{AssemblyMode, LinkageType};
+use crate::problem::spec::{DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver};
+use crate::record::Unit;
+use crate::solve::differential_evolution::DifferentialEvolutionParameters;
+use crate::solve::genetic::GeneticParameters;
+use crate::task::AngleOffset;
+use crate::toml_values::{BoundedXY, Bounds, Corners, Count, Number, OneOrMore, OnlyTable, XY};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A linkwright problem file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ProblemFile")]
+pub(crate) struct RawProblem {
+    /// 1.
+    #[schemars(required)]
+    pub format: Option<Count>,
+    /// 1 to 64 letters, digits, blanks and - _ . ; absent: the name of the file.
+    pub name: Option<String>,
+    /// Where the problem comes from.
+    pub source: Option<String>,
+    /// The unit of lengths.
+    pub unit: Option<Unit>,
+    /// What is wanted.
+    #[schemars(required)]
+    pub task: Option<OnlyTable<RawTask>>,
+    /// Where the parameters may lie.
+    #[serde(default)]
+    pub design: OnlyTable<RawDesign>,
+    /// What an acceptable linkage satisfies.
+    #[serde(default)]
+    pub require: OnlyTable<RawRequire>,
+    /// How to search.
+    #[serde(default)]
+    pub solve: OnlyTable<RawSolve>,
+    /// What is known of the answer; no search reads it.
+    pub expect: Option<OnlyTable<RawExpect>>,
+}
+
+/// What is wanted: a path.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Task")]
+pub(crate) struct RawTask {
+    /// A path to trace.
+    #[schemars(required)]
+    pub path: Option<OnlyTable<RawPath>>,
+}
+
+/// A path to trace: points, or a file of points.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Path")]
+pub(crate) struct RawPath {
+    /// The target points, each [x, y]; this or file.
+    pub points: Option<Vec<XY>>,
+    /// A CSV file beside the problem file, with columns x, y and optionally crank_deg, weight, tolerance.
+    pub file: Option<String>,
+    /// Whether the target is a closed curve.
+    #[serde(default)]
+    pub closed: bool,
+    /// The largest error accepted at any point.
+    pub tolerance: Option<Number>,
+    /// Prescribed crank angles; absent: any.
+    pub timing: Option<OnlyTable<RawTiming>>,
+}
+
+/// Prescribed crank angles.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Timing")]
+pub(crate) struct RawTiming {
+    /// One a point, degrees, counter-clockwise positive.
+    pub crank_deg: Option<Vec<Number>>,
+    /// What they are measured from.
+    #[serde(default)]
+    pub offset: AngleOffset,
+}
+
+/// Where the parameters may lie: a number fixes, [min, max] bounds.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Design")]
+pub(crate) struct RawDesign {
+    /// The fixed pivot of the crank.
+    #[serde(rename = "A")]
+    pub crank_pivot: Option<BoundedXY>,
+    /// The fixed pivot of the follower.
+    #[serde(rename = "B")]
+    pub follower_pivot: Option<BoundedXY>,
+    /// |AC|, the crank.
+    pub a: Option<Bounds>,
+    /// |CD|, the coupler.
+    pub b: Option<Bounds>,
+    /// |BD|, the follower.
+    pub c: Option<Bounds>,
+    /// |CP|.
+    pub d: Option<Bounds>,
+    /// |DP|.
+    pub e: Option<Bounds>,
+    /// |AB|.
+    pub ground: Option<Bounds>,
+    /// The direction from A to B, degrees from the x axis.
+    pub ground_angle_deg: Option<Bounds>,
+    /// P along the line from C to D, from C.
+    pub coupler_x: Option<Bounds>,
+    /// P across the line from C to D, positive to its left.
+    pub coupler_y: Option<Bounds>,
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Require")]
+pub(crate) struct RawRequire {
+    /// The types allowed; absent: any.
+    #[serde(rename = "type")]
+    pub types: Option<OneOrMore<LinkageType>>,
+    /// The least transmission angle, min(mu, 180 - mu), 0 to 90 degrees.
+    pub transmission_deg_min: Option<Number>,
+    /// Over which motion it is judged.
+    pub transmission_over: Option<TransmissionOver>,
+    /// The longest over the shortest of ground, a, b, c.
+    pub link_ratio_max: Option<Number>,
+    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    pub pivots_in: Option<Corners>,
+    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
+    pub footprint_in: Option<Corners>,
+    /// Whether the points must be passed in order.
+    #[serde(default)]
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    #[serde(default)]
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    #[serde(default)]
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    #[serde(default)]
+    pub branch: OnePolicy,
+}
+
+/// How to search and when to stop.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Solve")]
+pub(crate) struct RawSolve {
+    /// The method.
+    #[serde(default)]
+    pub method: Method,
+    /// What is minimised.
+    #[serde(default)]
+    pub objective: Objective,
+    /// Every draw comes from this number.
+    pub seed: Option<Count>,
+    /// How many distinct answers are wanted.
+    pub candidates: Option<Count>,
+    /// How many evaluations of the objective at most.
+    pub evaluations: Option<Count>,
+    /// Seconds of search at most.
+    pub time_limit_s: Option<Number>,
+    /// The genetic algorithm's parameters.
+    #[serde(default)]
+    pub genetic: OnlyTable<GeneticParameters>,
+    /// Differential evolution's parameters.
+    #[serde(default, rename = "differential-evolution")]
+    pub differential_evolution: OnlyTable<DifferentialEvolutionParameters>,
+}
+
+/// What is known of the answer.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Expect")]
+pub(crate) struct RawExpect {
+    /// The least sum of squared errors that is known.
+    pub best_known_sum_sq: Option<Number>,
+    /// Answers that were published.
+    #[serde(default)]
+    pub published: Vec<OnlyTable<RawPublished>>,
+}
+
+/// An answer that was published.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Published")]
+pub(crate) struct RawPublished {
+    /// Author and year.
+    pub source: String,
+    /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
+    #[serde(default)]
+    pub vector: Vec<Number>,
+    /// Which way it closes: 1: D lies left of the line from C to B; -1: right.
+    #[schemars(with = "Option<i64>")]
+    pub t1: Option<AssemblyMode>,
+    /// The crank angles that were published, degrees from the ground line.
+    pub crank_deg: Option<Vec<Number>>,
+    /// The error that was printed.
+    pub printed_sum_sq: Option<Number>,
+    /// The error that the vector has when this project evaluates it.
+    pub recomputed_sum_sq: Option<Number>,
+    /// A remark.
+    pub note: Option<String>,
+}

@@ -1,0 +1,80 @@
+//! A commented problem file to start from: it runs as it is, for someone with a motor and a path.
+
+use crate::name::{self, NameError};
+
+/// A closed path that a crank-rocker of the usual proportions draws, in mm.
+const SAMPLE_POINTS: &str = "\
+# The points to pass, in order, in the unit above. Many points: file = \"points.csv\" (columns x,y).
+points = [
+    [27.1, 91.3], [45.1, 111.6], [45.9, 123.1], [33.2, 126.0], [14.7, 120.1], [-3.5, 106.8],
+    [-17.8, 89.5], [-26.6, 71.8], [-29.1, 57.1], [-25.0, 48.7], [-14.4, 50.9], [3.3, 66.7],
+]
+closed = true                   # the path ends where it begins
+tolerance = 0.5                 # the largest error accepted at any point; remove to take the best there is
+";
+
+/// The text of a problem file called `name`, with sample points or with those of a CSV file that lies beside
+/// it.
+///
+/// # Errors
+/// [`NameError`] when the name is none.
+pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String, NameError> {
+    name::check(name)?;
+    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    let points = match points_file {
+        None => SAMPLE_POINTS.to_owned(),
+        Some(file) => format!(
+            "# The points to pass, in order: columns x,y and optionally crank_deg, weight, tolerance.\n\
+             file = {}\n\
+             closed = false                  # true: the path ends where it begins\n\
+             # tolerance = 0.5               # the largest error accepted at any point\n",
+            quoted(file)
+        ),
+    };
+    Ok(HEAD.replace("NAME", &quoted(name)) + &points + TAIL)
+}
+
+const HEAD: &str = "\
+# A problem for linkwright: run it with `linkwright synth`, check it with `linkwright check`.
+# Lines that start with # are comments; remove the # to use a key.
+format = 1
+name = NAME
+# source = \"author, year\"       # where the points come from
+unit = \"mm\"                     # mm, cm, m or in: labels lengths, scales drawings
+
+[task.path]
+";
+
+const TAIL: &str = r#"
+# Does it matter at which crank angle each point is passed? One angle a point, counter-clockwise positive.
+# [task.path.timing]
+# crank_deg = [0, 30, 60]
+# offset = "free"               # only the increments count; "fixed": from the x axis; "ground": from A to B
+
+# Where the linkage may be. A number fixes, [min, max] bounds; what is silent is set from the path's size.
+[design]
+# A = [0, 0]                    # pivot of the crank: where the motor sits
+# B = [[50, 200], [-50, 50]]    # pivot of the follower: x between 50 and 200, y between -50 and 50
+# a = [10, 60]                  # crank
+# b = [20, 200]                 # coupler
+# c = [20, 200]                 # follower
+# ground = [50, 200]            # from A to B
+# coupler_x = [-100, 200]       # the tracing point along the coupler, from the crank's pin
+# coupler_y = [-100, 100]       # and across it
+
+# What an answer must satisfy.
+[require]
+type = ["crank-rocker", "double-crank"]   # a motor on the crank can turn fully
+transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam
+# link_ratio_max = 10           # longest over shortest link; 20 where silent
+# pivots_in = [-100, -100, 250, 250]      # xmin, ymin, xmax, ymax: where there is room for the two pivots
+# footprint_in = [-150, -150, 300, 300]   # where there is room for all of it as it moves
+# direction = "ccw"             # or "cw": which way the crank turns
+
+# How to search.
+[solve]
+candidates = 5                  # how many different answers
+seed = 1                        # the same seed gives the same answers; another one may give others
+# evaluations = 200000          # how long to search
+# time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
+"#;

@@ -1,0 +1,227 @@
+//! The few shapes of an SVG, in pixels with y down, and the view that brings the plane there with y up.
+
+use super::scene::Bounds;
+use super::text::xml;
+use crate::linkage::Complex;
+use std::fmt::Write;
+
+/// Colours that stay apart for colour-blind eyes (Okabe and Ito 2008) on a light ground.
+pub(super) mod palette {
+    pub(in crate::report) const PAPER: &str = "#ffffff";
+    pub(in crate::report) const INK: &str = "#1f2a36";
+    pub(in crate::report) const MUTED: &str = "#66717d";
+    pub(in crate::report) const FAINT: &str = "#c3cad2";
+    pub(in crate::report) const CURVE: &str = "#0072b2";
+    pub(in crate::report) const TARGET: &str = "#d55e00";
+    pub(in crate::report) const TARGET_TEXT: &str = "#a34700";
+    pub(in crate::report) const COUPLER: &str = "#e69f00";
+    pub(in crate::report) const BAR: &str = "#d6dde4";
+    pub(in crate::report) const BAR_EDGE: &str = "#45525f";
+}
+
+/// A place on the canvas, pixels, y down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spot {
+    pub(super) x: f64,
+    pub(super) y: f64,
+}
+
+impl Spot {
+    pub(super) fn new(x: f64, y: f64) -> Self {
+        Spot { x, y }
+    }
+
+    pub(super) fn distance(self, other: Spot) -> f64 {
+        (self.x - other.x).hypot(self.y - other.y)
+    }
+}
+
+/// A rectangle on the canvas.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Area {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    pub(super) width: f64,
+    pub(super) height: f64,
+}
+
+impl Area {
+    pub(super) fn shrunk(self, by: f64) -> Area {
+        Area {
+            x: self.x + by,
+            y: self.y + by,
+            width: (self.width - 2.0 * by).max(1.0),
+            height: (self.height - 2.0 * by).max(1.0),
+        }
+    }
+}
+
+/// From the plane to the canvas: one scale for both axes, y up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct View {
+    pub(super) scale: f64,
+    from: Complex,
+    to: Spot,
+}
+
+impl View {
+    /// The box in the middle of the area, as large as it fits.
+    pub(super) fn fit(bounds: &Bounds, area: Area) -> View {
+        let by_width = area.width / bounds.width();
+        let by_height = area.height / bounds.height();
+        let scale = by_width.min(by_height);
+        let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        let to = Spot::new(area.x + 0.5 * area.width, area.y + 0.5 * area.height);
+        View { scale, from: bounds.centre(), to }
+    }
+
+    pub(super) fn spot(&self, p: Complex) -> Spot {
+        Spot::new(
+            self.to.x + self.scale * (p.re - self.from.re),
+            self.to.y - self.scale * (p.im - self.from.im),
+        )
+    }
+}
+
+/// A coordinate to a hundredth of a pixel, kept within what viewers can read.
+pub(super) fn px(value: f64) -> String {
+    let value = if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 };
+    let text = format!("{value:.2}");
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+}
+
+/// Where a text starts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// SVG elements, one after the other.
+#[derive(Default)]
+pub(super) struct Canvas {
+    pub(super) body: String,
+}
+
+// Writing to a String cannot fail, so the results of `write!` are dropped.
+impl Canvas {
+    pub(super) fn raw(&mut self, element: &str) {
+        self.body.push_str(element);
+        self.body.push('\n');
+    }
+
+    pub(super) fn line(&mut self, a: Spot, b: Spot, attributes: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<line x1="{}" y1="{}" x2="{}" y2="{}" {attributes}/>"#,
+            px(a.x),
+            px(a.y),
+            px(b.x),
+            px(b.y)
+        );
+    }
+
+    pub(super) fn circle(&mut self, at: Spot, radius: f64, attributes: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<circle cx="{}" cy="{}" r="{}" {attributes}/>"#,
+            px(at.x),
+            px(at.y),
+            px(radius)
+        );
+    }
+
+    pub(super) fn area(&mut self, area: Area, attributes: &str) {
+        let _ = writeln!(
+            self.body,
+            r#"<rect x="{}" y="{}" width="{}" height="{}" {attributes}/>"#,
+            px(area.x),
+            px(area.y),
+            px(area.width),
+            px(area.height)
+        );
+    }
+
+    /// A polyline through the spots; those that don't move by a third of a pixel are left out.
+    pub(super) fn path(&mut self, spots: &[Spot], closed: bool, attributes: &str) {
+        const STEP: f64 = 0.33;
+        let Some(&first) = spots.first() else { return };
+        let mut data = format!("M{} {}", px(first.x), px(first.y));
+        let mut last = first;
+        for (i, &spot) in spots.iter().enumerate().skip(1) {
+            if spot.distance(last) >= STEP || (i + 1 == spots.len() && !closed) {
+                let _ = write!(data, "L{} {}", px(spot.x), px(spot.y));
+                last = spot;
+            }
+        }
+        data.push_str(if closed { "Z" } else { "" });
+        let _ = writeln!(self.body, r#"<path d="{data}" {attributes}/>"#);
+    }
+
+    /// Dots of one colour in one element.
+    pub(super) fn dots(&mut self, spots: &[Spot], diameter: f64, colour: &str) {
+        if spots.is_empty() {
+            return;
+        }
+        let data: String = spots.iter().map(|s| format!("M{} {}h0", px(s.x), px(s.y))).collect();
+        let _ = writeln!(
+            self.body,
+            r#"<path d="{data}" fill="none" stroke="{colour}" stroke-width="{}" stroke-linecap="round"/>"#,
+            px(diameter)
+        );
+    }
+
+    /// Foreign text is cleaned and escaped here and nowhere else.
+    pub(super) fn text(&mut self, at: Spot, anchor: Anchor, attributes: &str, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let _ = writeln!(
+            self.body,
+            r#"<text x="{}" y="{}" text-anchor="{anchor}" {attributes}>{}</text>"#,
+            px(at.x),
+            px(at.y),
+            xml(text)
+        );
+    }
+
+    /// A bar of a round length with its label above, its left end at `at`.
+    pub(super) fn scale_bar(&mut self, at: Spot, length_px: f64, label: &str) {
+        let ink = format!(r#"stroke="{}" stroke-width="1.5""#, palette::INK);
+        let (left, right) = (at, Spot::new(at.x + length_px, at.y));
+        self.line(left, right, &ink);
+        for end in [left, right] {
+            self.line(Spot::new(end.x, end.y - 4.0), Spot::new(end.x, end.y + 4.0), &ink);
+        }
+        let middle = Spot::new(0.5 * (left.x + right.x), at.y - 7.0);
+        self.text(middle, Anchor::Middle, &format!(r#"font-size="12" fill="{}""#, palette::INK), label);
+    }
+
+    /// The whole document. `title` and `description` are read by screen readers.
+    pub(super) fn document(self, width: f64, height: f64, title: &str, description: &str) -> String {
+        format!(
+            concat!(
+                r#"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" "#,
+                r#"role="img" font-family="Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif">"#,
+                "\n<title>{title}</title>\n<desc>{description}</desc>\n",
+                r#"<rect width="{w}" height="{h}" fill="{paper}"/>"#,
+                "\n{body}</svg>\n"
+            ),
+            w = px(width),
+            h = px(height),
+            title = xml(title),
+            description = xml(description),
+            paper = palette::PAPER,
+            body = self.body
+        )
+    }
+}
+
+/// About how wide a text is in the usual sans-serif faces.
+pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
+    0.56 * font_size * super::text::columns_of(text) as f64
+}

@@ -1,0 +1,416 @@
+//! The drawing of a scene: curve, linkage, target, labels.
+
+use super::canvas::{Anchor, Canvas, Spot, View, palette, px};
+use super::labels::Labels;
+use super::scene::{Bounds, Pose, Scene};
+use crate::linkage::{Complex, Joints};
+use std::collections::BTreeSet;
+
+/// How much is drawn and how thick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Detail {
+    /// 1 for a page, less for small multiples.
+    pub(super) weight: f64,
+    /// The same for the target points.
+    pub(super) target_weight: f64,
+    /// Letters at the joints and numbers at the target points.
+    pub(super) letters: bool,
+    /// The numbers of the target points.
+    pub(super) numbers: bool,
+    /// The linkage itself; else only the curve and the target.
+    pub(super) linkage: bool,
+    /// Of the coupler curve only what lies in here.
+    pub(super) clip: Option<Bounds>,
+}
+
+/// Numbers are drawn at every point up to this many, else at round ones.
+const NUMBERED: usize = 20;
+/// More target points than this are plain dots.
+const MARKED: usize = 150;
+
+/// Draws the scene.
+pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
+    let mut labels = Labels::default();
+    let pose = scene.pose.filter(|_| detail.linkage);
+    if let Some(pose) = &pose {
+        ground(canvas, scene, view, detail);
+        pin_paths(canvas, scene, view, detail);
+        mark_linkage(&mut labels, scene, view, pose);
+        coupler_triangle(canvas, scene, view, pose, detail);
+    }
+    curves(canvas, &mut labels, scene, view, detail);
+    let marks = Marks::new(scene, view, detail);
+    whiskers(canvas, &mut labels, &marks, detail);
+    if let Some(pose) = &pose {
+        linkage(canvas, scene, view, pose, detail);
+    }
+    targets(canvas, &mut labels, &marks, detail);
+    if let Some(pose) = &pose {
+        coupler_point(canvas, view, pose, detail);
+        if detail.letters {
+            letters(canvas, &mut labels, scene, view, pose);
+        }
+    }
+    if detail.numbers {
+        numbers(canvas, &mut labels, scene, view, marks.radius);
+    }
+}
+
+/// The coupler curve of the first circuit, and others that are used, dashed.
+fn curves(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, detail: Detail) {
+    for (i, circuit) in scene.circuits.iter().enumerate() {
+        let points: Vec<Complex> = circuit.iter().map(|joints| joints.coupler_point).collect();
+        let dashes = if i == 0 { "" } else { r#" stroke-dasharray="6 5""# };
+        let attributes = format!(
+            concat!(
+                r#"fill="none" stroke="{}" stroke-width="{:.2}" "#,
+                r#"stroke-linejoin="round" stroke-linecap="round"{}"#
+            ),
+            palette::CURVE,
+            2.4 * detail.weight,
+            dashes
+        );
+        let (strands, closed) = strands(&points, detail.clip.as_ref());
+        for strand in strands {
+            let spots: Vec<Spot> = strand.iter().map(|p| view.spot(*p)).collect();
+            canvas.path(&spots, closed, &attributes);
+            mark_path(labels, &spots);
+        }
+    }
+}
+
+/// The parts of a closed curve inside a box, each with its neighbours outside; and whether it is all of it.
+fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, bool) {
+    let Some(clip) = clip.filter(|clip| !points.iter().all(|p| clip.holds(*p))) else {
+        return (vec![points.to_vec()], true);
+    };
+    let n = points.len();
+    let inside = |i: usize| clip.holds(points[i % n]);
+    // From a point outside, so that no part is cut in two.
+    let start = (0..n).find(|i| !inside(*i)).unwrap_or(0);
+    let mut strands = Vec::new();
+    let mut strand: Vec<Complex> = Vec::new();
+    for i in start..start + n {
+        if inside(i + 1) || inside(i) {
+            if strand.is_empty() {
+                strand.push(points[i % n]);
+            }
+            strand.push(points[(i + 1) % n]);
+        } else if !strand.is_empty() {
+            strands.push(std::mem::take(&mut strand));
+        }
+    }
+    if !strand.is_empty() {
+        strands.push(strand);
+    }
+    (strands, false)
+}
+
+fn mark_path(labels: &mut Labels, spots: &[Spot]) {
+    let mut last: Option<Spot> = None;
+    for &spot in spots {
+        if last.is_none_or(|last| last.distance(spot) >= 4.0) {
+            labels.mark(spot);
+            last = Some(spot);
+        }
+    }
+}
+
+/// The line A-B, and under each fixed pivot a hatched stand.
+fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
+    let Some(linkage) = &scene.linkage else { return };
+    let pivots = [linkage.crank_pivot(), linkage.follower_pivot()].map(|p| view.spot(p));
+    let faint =
+        format!(r#"stroke="{}" stroke-width="{:.2}" stroke-dasharray="2 5""#, palette::MUTED, detail.weight);
+    canvas.line(pivots[0], pivots[1], &faint);
+    let w = detail.weight;
+    for pivot in pivots {
+        let (half, top, base) = (11.0 * w, pivot.y, pivot.y + 16.0 * w);
+        let stand =
+            [Spot::new(pivot.x, top), Spot::new(pivot.x + half, base), Spot::new(pivot.x - half, base)];
+        let edge = format!(
+            r#"fill="{}" stroke="{}" stroke-width="{:.2}" stroke-linejoin="round""#,
+            palette::PAPER,
+            palette::BAR_EDGE,
+            1.4 * w
+        );
+        canvas.path(&stand, true, &edge);
+        let stroke =
+            format!(r#"stroke="{}" stroke-width="{:.2}" stroke-linecap="round""#, palette::BAR_EDGE, 1.4 * w);
+        canvas.line(Spot::new(pivot.x - 1.5 * half, base), Spot::new(pivot.x + 1.5 * half, base), &stroke);
+        for i in 0..6 {
+            let x = pivot.x + half * (-1.3 + 0.56 * f64::from(i));
+            canvas.line(Spot::new(x, base), Spot::new(x - 4.5 * w, base + 5.5 * w), &stroke);
+        }
+    }
+}
+
+/// The paths of C and D.
+fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
+    let attributes =
+        format!(r#"fill="none" stroke="{}" stroke-width="{:.2}""#, palette::FAINT, 1.1 * detail.weight);
+    let pins: [fn(&Joints) -> Complex; 2] = [|joints| joints.crank_pin, |joints| joints.follower_pin];
+    for circuit in &scene.circuits {
+        for pin in pins {
+            let spots: Vec<Spot> = circuit.iter().map(|joints| view.spot(pin(joints))).collect();
+            canvas.path(&spots, true, &attributes);
+        }
+    }
+}
+
+/// A, B, C, D, P on the canvas.
+fn joint_spots(scene: &Scene, view: &View, pose: &Pose) -> Option<[Spot; 5]> {
+    let linkage = scene.linkage.as_ref()?;
+    let joints = &pose.joints;
+    let all = [
+        linkage.crank_pivot(),
+        linkage.follower_pivot(),
+        joints.crank_pin,
+        joints.follower_pin,
+        joints.coupler_point,
+    ];
+    Some(all.map(|p| view.spot(p)))
+}
+
+/// The coupler's triangle, shaded.
+fn coupler_triangle(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
+    let Some([_, _, c, d, p]) = joint_spots(scene, view, pose) else { return };
+    let triangle = format!(
+        concat!(
+            r#"fill="{}" fill-opacity="0.22" stroke="{}" "#,
+            r#"stroke-width="{:.2}" stroke-linejoin="round""#
+        ),
+        palette::COUPLER,
+        palette::BAR_EDGE,
+        1.8 * detail.weight
+    );
+    canvas.path(&[c, d, p], true, &triangle);
+}
+
+/// Crank, coupler side C-D and follower as bars, pins on top.
+fn linkage(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
+    let Some([a, b, c, d, _]) = joint_spots(scene, view, pose) else { return };
+    let w = detail.weight;
+    for (from, to) in [(a, c), (c, d), (b, d)] {
+        for (colour, width) in [(palette::BAR_EDGE, 9.5 * w), (palette::BAR, 6.5 * w)] {
+            canvas.line(
+                from,
+                to,
+                &format!(r#"stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round""#),
+            );
+        }
+    }
+    for (joint, radius) in [(a, 5.2), (b, 5.2), (c, 4.2), (d, 4.2)] {
+        let pin = format!(
+            r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
+            palette::PAPER,
+            palette::BAR_EDGE,
+            1.8 * w
+        );
+        canvas.circle(joint, radius * w, &pin);
+    }
+}
+
+fn coupler_point(canvas: &mut Canvas, view: &View, pose: &Pose, detail: Detail) {
+    let at = view.spot(pose.joints.coupler_point);
+    let attributes = format!(
+        r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
+        palette::CURVE,
+        palette::PAPER,
+        1.2 * detail.weight
+    );
+    canvas.circle(at, 4.4 * detail.weight, &attributes);
+}
+
+/// A target point's place, and the place of the coupler point instead.
+struct Mark {
+    index: usize,
+    spot: Spot,
+    reached: Option<Spot>,
+}
+
+/// How the target points are drawn.
+struct Marks {
+    list: Vec<Mark>,
+    radius: f64,
+    many: bool,
+}
+
+impl Marks {
+    /// Of many points those that fall on a pixel of their own: a hundred thousand would drown the drawing.
+    fn new(scene: &Scene, view: &View, detail: Detail) -> Self {
+        let n = scene.targets.len();
+        let many = n > MARKED;
+        let size = match n {
+            0..=40 => 4.6,
+            41..=MARKED => 3.2,
+            _ => 1.6,
+        };
+        let mut drawn: BTreeSet<(i64, i64)> = BTreeSet::new();
+        let mut list = Vec::new();
+        for target in &scene.targets {
+            let spot = view.spot(target.at);
+            if !many || drawn.insert(((spot.x * 1.5) as i64, (spot.y * 1.5) as i64)) {
+                let reached = target.reached.map(|p| view.spot(p));
+                list.push(Mark { index: target.index, spot, reached });
+            }
+        }
+        Marks { list, radius: size * detail.target_weight, many }
+    }
+}
+
+/// A line from each target point to where the coupler point is instead, wherever that can be seen.
+fn whiskers(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
+    let mut data = String::new();
+    for mark in &marks.list {
+        let Some(reached) = mark.reached else { continue };
+        // What stays inside the ring is not a whisker but a blot.
+        if mark.spot.distance(reached) > marks.radius {
+            labels.mark_line(mark.spot, reached);
+            data.push_str(&format!(
+                "M{} {}L{} {}",
+                px(mark.spot.x),
+                px(mark.spot.y),
+                px(reached.x),
+                px(reached.y)
+            ));
+        }
+    }
+    if !data.is_empty() {
+        let (width, opacity) = if marks.many { (0.8, 0.45) } else { (1.6, 1.0) };
+        canvas.raw(&format!(
+            r#"<path d="{data}" fill="none" stroke="{}" stroke-width="{:.2}" stroke-opacity="{opacity}"/>"#,
+            palette::TARGET,
+            width * detail.weight
+        ));
+    }
+}
+
+/// Target points as rings, dots where there are many, the first one filled and larger.
+fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
+    let spots: Vec<Spot> = marks.list.iter().map(|mark| mark.spot).collect();
+    spots.iter().for_each(|spot| labels.mark(*spot));
+    let (radius, w) = (marks.radius, detail.target_weight);
+    if marks.many {
+        canvas.dots(&spots, 2.0 * radius, palette::TARGET);
+    } else {
+        let ring = format!(
+            r#"fill="{}" fill-opacity="0.75" stroke="{}" stroke-width="{:.2}""#,
+            palette::PAPER,
+            palette::TARGET,
+            1.7 * w
+        );
+        spots.iter().for_each(|spot| canvas.circle(*spot, radius, &ring));
+        let reached: Vec<Spot> = marks.list.iter().filter_map(|mark| mark.reached).collect();
+        canvas.dots(&reached, 3.4 * w, palette::CURVE);
+    }
+    if let Some(first) = marks.list.first().filter(|mark| mark.index == 0) {
+        let filled = format!(
+            r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
+            palette::TARGET,
+            palette::PAPER,
+            1.0 * w
+        );
+        canvas.circle(first.spot, (1.5 * radius).max(5.0 * w), &filled);
+    }
+}
+
+/// What labels keep off, apart from the curve and the points.
+fn mark_linkage(labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
+    let Some([a, b, c, d, p]) = joint_spots(scene, view, pose) else { return };
+    for (from, to) in [(a, c), (c, d), (b, d), (c, p), (d, p)] {
+        labels.mark_line(from, to);
+        labels.mark_line(from, to);
+    }
+    for pivot in [a, b] {
+        for y in [8.0, 16.0, 20.0] {
+            labels.mark_line(Spot::new(pivot.x - y, pivot.y + y), Spot::new(pivot.x + y, pivot.y + y));
+        }
+    }
+}
+
+/// A B C D P.
+fn letters(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
+    let Some([a, b, c, d, p]) = joint_spots(scene, view, pose) else { return };
+    let above = Spot::new(0.0, -1.0);
+    let joints = [
+        ("P", p, away(p, &[c, d])),
+        ("C", c, away(c, &[a, d, p])),
+        ("D", d, away(d, &[b, c, p])),
+        ("A", a, plus(away(a, &[c]), above)),
+        ("B", b, plus(away(b, &[d]), above)),
+    ];
+    for (letter, joint, towards) in joints {
+        if let Some(at) = labels.place(letter, 15.0, joint, 9.0, towards, true) {
+            let attributes = format!(
+                concat!(
+                    r#"font-size="15" font-weight="600" fill="{}" "#,
+                    r#"stroke="{}" stroke-width="3" stroke-linejoin="round" paint-order="stroke""#
+                ),
+                palette::INK,
+                palette::PAPER
+            );
+            canvas.text(at, Anchor::Middle, &attributes, letter);
+        }
+    }
+}
+
+/// The direction away from the neighbours, straight up where they cancel.
+fn away(joint: Spot, neighbours: &[Spot]) -> Spot {
+    let mut sum = Spot::new(0.0, 0.0);
+    for neighbour in neighbours {
+        let distance = joint.distance(*neighbour);
+        if distance > 0.0 {
+            sum =
+                plus(sum, Spot::new((joint.x - neighbour.x) / distance, (joint.y - neighbour.y) / distance));
+        }
+    }
+    if sum.x.hypot(sum.y) < 0.2 { Spot::new(0.0, -1.0) } else { sum }
+}
+
+fn plus(a: Spot, b: Spot) -> Spot {
+    Spot::new(a.x + b.x, a.y + b.y)
+}
+
+/// Numbers at the target points: all where they are few, else 0 and round steps.
+fn numbers(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, radius: f64) {
+    let n = scene.targets.len();
+    let few = n <= NUMBERED;
+    let step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000]
+        .into_iter()
+        .find(|step| n <= NUMBERED * step / if *step > 1 { 2 } else { 1 })
+        .unwrap_or(50_000);
+    let mut bounds = Bounds::default();
+    scene.targets.iter().for_each(|target| bounds.hold(target.at));
+    let centre = view.spot(bounds.centre());
+    let attributes = format!(
+        concat!(
+            r#"font-size="11" fill="{}" stroke="{}" stroke-width="2.5" "#,
+            r#"stroke-linejoin="round" paint-order="stroke""#
+        ),
+        palette::TARGET_TEXT,
+        palette::PAPER
+    );
+    for target in scene.targets.iter().filter(|target| target.index % step == 0) {
+        let spot = view.spot(target.at);
+        let towards = Spot::new(spot.x - centre.x, spot.y - centre.y);
+        // Points in one place, such as a last one that repeats the first, share a label.
+        if scene.targets.iter().take(target.index).any(|other| other.at == target.at) && few {
+            continue;
+        }
+        let mut number = target.index.to_string();
+        for other in scene.targets.iter().filter(|t| few && t.index > target.index && t.at == target.at) {
+            number.push_str(&format!(", {}", other.index));
+        }
+        if let Some(at) = labels.place(
+            &number,
+            11.0,
+            spot,
+            radius + if target.index == 0 { 5.0 } else { 3.0 },
+            towards,
+            target.index == 0,
+        ) {
+            canvas.text(at, Anchor::Middle, &attributes, &number);
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! A table of text with aligned columns, and the few colours that a terminal may show.
+
+use super::text::columns_of;
+
+/// Whether text carries terminal colours. The words say everything by themselves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colour {
+    /// Plain text.
+    #[default]
+    Never,
+    /// ANSI colours.
+    Always,
+}
+
+/// What a piece of text is, for its colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ink {
+    Plain,
+    Strong,
+    Faint,
+    Good,
+    Bad,
+}
+
+impl Colour {
+    pub(super) fn paint(self, ink: Ink, text: &str) -> String {
+        let code = match ink {
+            Ink::Plain => "",
+            Ink::Strong => "1",
+            Ink::Faint => "2",
+            Ink::Good => "32",
+            Ink::Bad => "31",
+        };
+        if self == Colour::Never || code.is_empty() || text.is_empty() {
+            text.to_owned()
+        } else {
+            format!("\x1b[{code}m{text}\x1b[0m")
+        }
+    }
+}
+
+/// How a column stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Align {
+    Left,
+    Right,
+}
+
+/// A table: heads, rows of cells, each with its ink.
+pub(super) struct Grid {
+    heads: Vec<(&'static str, Align)>,
+    rows: Vec<Vec<(String, Ink)>>,
+}
+
+impl Grid {
+    pub(super) fn new(heads: &[(&'static str, Align)]) -> Self {
+        Grid { heads: heads.to_vec(), rows: Vec::new() }
+    }
+
+    /// Cells beyond the heads are left out, missing ones are empty.
+    pub(super) fn row(&mut self, cells: Vec<(String, Ink)>) {
+        self.rows.push(cells);
+    }
+
+    /// The lines, each after two spaces, columns two spaces apart.
+    pub(super) fn render(&self, colour: Colour) -> String {
+        let widths: Vec<usize> = (0..self.heads.len())
+            .map(|i| {
+                let cells = self.rows.iter().filter_map(|row| row.get(i)).map(|cell| columns_of(&cell.0));
+                cells.fold(columns_of(self.heads[i].0), usize::max)
+            })
+            .collect();
+        let heads: Vec<(String, Ink)> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
+        let mut out = String::new();
+        for row in std::iter::once(&heads).chain(&self.rows) {
+            // Spaces wait until something follows them, so that no line ends in spaces.
+            let mut spaces = 0;
+            for (i, (&(_, align), &width)) in self.heads.iter().zip(&widths).enumerate() {
+                let (text, ink) = row.get(i).map_or(("", Ink::Plain), |cell| (cell.0.as_str(), cell.1));
+                let free = width - columns_of(text).min(width);
+                spaces += 2 + if align == Align::Right { free } else { 0 };
+                if !text.is_empty() {
+                    out.extend(std::iter::repeat_n(' ', spaces));
+                    out.push_str(&colour.paint(ink, text));
+                    spaces = 0;
+                } else {
+                    spaces += columns_of(text);
+                }
+                spaces += if align == Align::Left { free } else { 0 };
+            }
+            out.push('\n');
+        }
+        out
+    }
+}

@@ -1,0 +1,30 @@
+//! What a person sees of a run: text, drawings and tables, all pure functions of a
+//! [`Record`](crate::record::Record).
+//!
+//! The same record gives the same bytes: nothing here reads a clock, a host or a terminal. A record may come
+//! from anywhere, so names in it are arbitrary text (cleaned for the terminal, escaped for XML) and its lists
+//! may be empty or of unequal lengths: what is missing is left out. Curves are drawn by the linkage's own
+//! kinematics, figures are those of the record. Points count from 0, as everywhere.
+//!
+//! | for | call |
+//! |---|---|
+//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`plot::terminal_plot`] |
+//! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`] |
+//! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
+//! | several results | [`compare::compare`] |
+
+mod canvas;
+pub mod compare;
+pub mod contact_sheet;
+pub mod csv;
+mod figure;
+mod grid;
+mod labels;
+pub mod plot;
+mod scene;
+pub mod svg;
+pub mod table;
+pub mod text;
+mod words;
+
+pub use grid::Colour;

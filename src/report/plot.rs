@@ -1,0 +1,209 @@
+//! A small plot for the terminal: the target points and the coupler curve, both axes to one scale.
+
+use super::scene::{Bounds, Scene, round_length};
+use super::text::brief;
+use super::words;
+use crate::linkage::Complex;
+use crate::record::Record;
+
+/// What a plot is drawn with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Glyphs {
+    /// Braille characters, eight dots each.
+    #[default]
+    Braille,
+    /// ASCII alone.
+    Ascii,
+}
+
+/// The sizes that a plot is kept within, in characters.
+const WIDTHS: (usize, usize) = (16, 400);
+const HEIGHTS: (usize, usize) = (4, 200);
+
+/// The most target points that are marked, evenly chosen.
+const MOST_MARKS: usize = 40;
+/// How far everything is set in.
+const INDENT: usize = 2;
+
+/// A target smaller than this part of its curve fills the plot, and the curve runs out of it.
+const SMALL_TARGET: f64 = 0.2;
+
+/// The target points and the coupler curve of `record.candidates[index]` (without such a candidate the points
+/// alone), at most `width` by `height` characters with a line below that says what is what. A character is
+/// taken to be twice as high as wide.
+pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize, glyphs: Glyphs) -> String {
+    let scene = Scene::new(record, record.candidates.get(index));
+    if scene.targets.is_empty() {
+        return "  nothing to plot\n".to_owned();
+    }
+    let target = scene.target_bounds();
+    let whole = scene.curve_bounds();
+    let small = target.extent() < SMALL_TARGET * whole.extent();
+    let bounds = if small { target.padded(0.5) } else { whole };
+    let mut raster = Raster::fit(
+        &bounds,
+        width.clamp(WIDTHS.0, WIDTHS.1) - INDENT,
+        height.clamp(HEIGHTS.0 + 1, HEIGHTS.1) - 1,
+        glyphs,
+    );
+    for circuit in &scene.circuits {
+        for (i, joints) in circuit.iter().enumerate() {
+            let next = circuit[(i + 1) % circuit.len()].coupler_point;
+            raster.line(joints.coupler_point, next);
+        }
+    }
+    let (first, other) = match glyphs {
+        Glyphs::Braille => ('●', '○'),
+        Glyphs::Ascii => ('@', 'o'),
+    };
+    // Many points would hide the curve. The first one last, so that no other one hides it.
+    let every = scene.targets.len().div_ceil(MOST_MARKS);
+    for point in scene.targets.iter().rev().filter(|point| point.index % every == 0) {
+        raster.mark(point.at, if point.index == 0 { first } else { other });
+    }
+    let mut out = raster.render();
+    let curve = match (scene.circuits.is_empty(), glyphs) {
+        (true, _) => "",
+        (false, Glyphs::Braille) => "  ⠤⠒ coupler curve",
+        (false, Glyphs::Ascii) => "  . coupler curve",
+    };
+    let thinned = if every > 1 { format!(", 1 in {every}") } else { String::new() };
+    let columns = 10.0_f64.min(raster.columns as f64);
+    let length = round_length(columns * raster.unit_of_column());
+    let count = (length / raster.unit_of_column()).round().max(1.0) as usize;
+    let ruler = match glyphs {
+        Glyphs::Braille => "─".repeat(count),
+        Glyphs::Ascii => "-".repeat(count),
+    };
+    out.push_str(&format!(
+        "{:INDENT$}{other} target{thinned}  {first} point 0{curve}  {ruler} {}{}\n",
+        "",
+        brief(length, 3),
+        words::unit_suffix(record)
+    ));
+    out
+}
+
+/// Dots in character cells.
+struct Raster {
+    columns: usize,
+    rows: usize,
+    glyphs: Glyphs,
+    /// Dots a unit of length, and the plane's point at the middle of the raster.
+    scale: f64,
+    centre: Complex,
+    /// One byte of Braille dots a cell.
+    cells: Vec<u8>,
+    marks: Vec<Option<char>>,
+}
+
+impl Raster {
+    /// Dots in a cell, across and down.
+    fn dots(glyphs: Glyphs) -> (usize, usize) {
+        match glyphs {
+            Glyphs::Braille => (2, 4),
+            Glyphs::Ascii => (1, 1),
+        }
+    }
+
+    /// How many times as high as wide a dot is.
+    fn aspect(glyphs: Glyphs) -> f64 {
+        match glyphs {
+            Glyphs::Braille => 1.0,
+            Glyphs::Ascii => 2.0,
+        }
+    }
+
+    /// A raster in the shape of the box, inside of `columns` by `rows`.
+    fn fit(bounds: &Bounds, columns: usize, rows: usize, glyphs: Glyphs) -> Self {
+        let (across, down) = Self::dots(glyphs);
+        let aspect = Self::aspect(glyphs);
+        let wide = (columns * across - 1) as f64;
+        let high = (rows * down - 1) as f64 * aspect;
+        let scale = (wide / bounds.width()).min(high / bounds.height());
+        let scale = if scale.is_finite() && scale > 0.0 { scale } else { 1.0 };
+        let cells = |length: f64, dots: usize, most: usize| {
+            (((length * scale).round() as usize).saturating_add(1)).div_ceil(dots).clamp(1, most)
+        };
+        let columns = cells(bounds.width(), across, columns);
+        let rows = cells(bounds.height() / aspect, down, rows);
+        let n = columns * rows;
+        Raster {
+            columns,
+            rows,
+            glyphs,
+            scale,
+            centre: bounds.centre(),
+            cells: vec![0; n],
+            marks: vec![None; n],
+        }
+    }
+
+    fn unit_of_column(&self) -> f64 {
+        Self::dots(self.glyphs).0 as f64 / self.scale
+    }
+
+    /// Dots across and down, not yet rounded.
+    fn place(&self, p: Complex) -> (f64, f64) {
+        let (across, down) = Self::dots(self.glyphs);
+        let x = 0.5 * ((self.columns * across - 1) as f64) + self.scale * (p.re - self.centre.re);
+        let y = 0.5 * ((self.rows * down - 1) as f64)
+            - self.scale * (p.im - self.centre.im) / Self::aspect(self.glyphs);
+        (x, y)
+    }
+
+    /// The cell of a dot and its place in there; `None` outside.
+    fn cell(&self, x: f64, y: f64) -> Option<(usize, usize, usize)> {
+        let (across, down) = Self::dots(self.glyphs);
+        let (x, y) = (x.round(), y.round());
+        if !(x >= 0.0 && y >= 0.0 && x < (self.columns * across) as f64 && y < (self.rows * down) as f64) {
+            return None;
+        }
+        let (x, y) = (x as usize, y as usize);
+        Some(((y / down) * self.columns + x / across, x % across, y % down))
+    }
+
+    fn line(&mut self, from: Complex, to: Complex) {
+        let ((x, y), (to_x, to_y)) = (self.place(from), self.place(to));
+        let steps = (to_x - x).abs().max((to_y - y).abs()).ceil();
+        // A longer chord runs far outside: its ends say enough.
+        let steps = if steps.is_finite() && steps < 4096.0 { steps.max(1.0) as usize } else { 1 };
+        for i in 0..=steps {
+            let t = i as f64 / steps as f64;
+            if let Some((cell, column, row)) = self.cell(x + t * (to_x - x), y + t * (to_y - y)) {
+                // Dots 1 2 3 7 down the left, 4 5 6 8 down the right.
+                const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
+                self.cells[cell] |= DOTS[column][row];
+            }
+        }
+    }
+
+    fn mark(&mut self, p: Complex, glyph: char) {
+        let (x, y) = self.place(p);
+        if let Some((cell, ..)) = self.cell(x, y) {
+            self.marks[cell] = Some(glyph);
+        }
+    }
+
+    fn render(&self) -> String {
+        let mut out = String::new();
+        for row in 0..self.rows {
+            let line: String = (0..self.columns)
+                .map(|column| {
+                    let cell = row * self.columns + column;
+                    match (self.marks[cell], self.cells[cell], self.glyphs) {
+                        (Some(mark), ..) => mark,
+                        (None, 0, _) => ' ',
+                        (None, dots, Glyphs::Braille) => {
+                            char::from_u32(0x2800 + u32::from(dots)).unwrap_or('.')
+                        }
+                        (None, _, Glyphs::Ascii) => '.',
+                    }
+                })
+                .collect();
+            out.push_str(format!("{:INDENT$}{line}", "").trim_end());
+            out.push('\n');
+        }
+        out
+    }
+}

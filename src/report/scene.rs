@@ -1,0 +1,236 @@
+//! What there is to draw of a candidate: target points, the circuits used, and one position of the linkage.
+
+use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
+use crate::record::{Candidate, Record};
+use std::f64::consts::TAU;
+
+/// Samples of a circuit for a drawing: half a degree of the crank, far below a pixel.
+pub(super) const SAMPLES: usize = 720;
+
+/// A target point and where the coupler point is instead.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    pub(super) index: usize,
+    pub(super) at: Complex,
+    pub(super) reached: Option<Complex>,
+}
+
+/// The linkage at one position.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    /// The target point it stands at; `None` where no position of a point closes.
+    pub(super) target: Option<usize>,
+    pub(super) joints: Joints,
+}
+
+/// A candidate, ready to be drawn. Without a candidate, the target alone.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scene {
+    pub(super) linkage: Option<FourBar>,
+    pub(super) targets: Vec<Target>,
+    /// The joints along each circuit used, the first point's first.
+    pub(super) circuits: Vec<Vec<Joints>>,
+    pub(super) pose: Option<Pose>,
+}
+
+impl Scene {
+    pub(super) fn new(record: &Record, candidate: Option<&Candidate>) -> Self {
+        let positions = candidate.map_or(Vec::new(), positions);
+        let reach = |j: usize| {
+            let (angle, assembly) = *positions.get(j)?;
+            Some(candidate?.linkage.position_with(angle, assembly).joints()?.coupler_point)
+        };
+        let points = &record.problem.resolved.task.path.points;
+        let targets = points
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE))
+            .map(|(index, p)| Target { index, at: point(*p), reached: reach(index) })
+            .collect();
+        let Some(candidate) = candidate else { return Scene { targets, ..Scene::default() } };
+        let circuits = circuits(candidate, SAMPLES);
+        let pose = legible_pose(&candidate.linkage, &positions)
+            .or_else(|| Some(Pose { target: None, joints: *circuits.first()?.first()? }));
+        Scene { linkage: Some(candidate.linkage), targets, circuits, pose }
+    }
+
+    /// The box of the target points and what they are compared with.
+    pub(super) fn target_bounds(&self) -> Bounds {
+        let mut bounds = Bounds::default();
+        for target in &self.targets {
+            bounds.hold(target.at);
+            target.reached.into_iter().for_each(|p| bounds.hold(p));
+        }
+        bounds
+    }
+
+    /// The box of the target points and the coupler curve.
+    pub(super) fn curve_bounds(&self) -> Bounds {
+        let mut bounds = self.target_bounds();
+        self.circuits.iter().flatten().for_each(|joints| bounds.hold(joints.coupler_point));
+        bounds
+    }
+
+    /// The box of everything, over the whole motion.
+    pub(super) fn bounds(&self) -> Bounds {
+        let mut bounds = self.curve_bounds();
+        if let Some(linkage) = &self.linkage {
+            bounds.hold(linkage.crank_pivot());
+            bounds.hold(linkage.follower_pivot());
+        }
+        for joints in self.circuits.iter().flatten() {
+            bounds.hold(joints.crank_pin);
+            bounds.hold(joints.follower_pin);
+        }
+        bounds
+    }
+}
+
+/// Crank angle (radians) and assembly at each point that has both.
+fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
+    candidate.crank_deg.iter().map(|angle| angle.to_radians()).zip(candidate.t1_at.iter().copied()).collect()
+}
+
+/// The circuit of the first point: crank angle (radians) and assembly at any position of it.
+pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
+    let linkage = &candidate.linkage;
+    positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite()).unwrap_or_else(|| {
+        let mobility = linkage.mobility();
+        let arc = mobility.arc(crate::linkage::Circuit { index: 0 });
+        (arc.map_or(0.0, |arc| arc.middle), linkage.assembly())
+    })
+}
+
+/// The joints along every circuit on which a point is reached, `samples` positions each.
+pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>> {
+    let linkage = &candidate.linkage;
+    let mobility = linkage.mobility();
+    let mut seen = Vec::new();
+    let mut circuits = Vec::new();
+    let first = first_position(candidate);
+    for (angle, assembly) in std::iter::once(first).chain(positions(candidate)) {
+        let circuit = mobility.branch(angle, assembly).circuit;
+        let rocks = mobility.arc(circuit).is_some();
+        // Where the input turns fully the assemblies are apart, where it rocks they are one circuit.
+        let key = (circuit.index, (!rocks).then_some(assembly));
+        if !angle.is_finite() || seen.contains(&key) {
+            continue;
+        }
+        seen.push(key);
+        let curve = CouplerCurve::through(linkage, angle, assembly, 8);
+        let joints: Vec<Joints> = (0..samples)
+            .filter_map(|i| {
+                let (angle, assembly) = curve.position_at(TAU * i as f64 / samples as f64);
+                linkage.position_with(angle, assembly).joints()
+            })
+            .collect();
+        if !joints.is_empty() {
+            circuits.push(joints);
+        }
+    }
+    circuits
+}
+
+/// The position at the first target point, or where that is hard to read (joints close together) the one at
+/// which the closest two joints are farthest apart.
+fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
+    /// The first point is kept while its closest joints are at least this part of the best spacing.
+    const GOOD_ENOUGH: f64 = 0.6;
+    let spacing = |joints: &Joints| {
+        let all = [
+            linkage.crank_pivot(),
+            linkage.follower_pivot(),
+            joints.crank_pin,
+            joints.follower_pin,
+            joints.coupler_point,
+        ];
+        let pairs = (0..5).flat_map(|i| (0..i).map(move |j| (i, j)));
+        pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let poses: Vec<(Pose, f64)> = positions
+        .iter()
+        .enumerate()
+        .filter_map(|(j, (angle, assembly))| {
+            let joints = linkage.position_with(*angle, *assembly).joints()?;
+            Some((Pose { target: Some(j), joints }, spacing(&joints)))
+        })
+        .collect();
+    // The first of equals.
+    let best = poses.iter().rev().max_by(|x, y| x.1.total_cmp(&y.1))?;
+    let first = poses.first()?;
+    Some(if first.0.target == Some(0) && first.1 >= GOOD_ENOUGH * best.1 { first.0 } else { best.0 })
+}
+
+/// A box that grows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Bounds { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] }
+    }
+}
+
+impl Bounds {
+    pub(super) fn hold(&mut self, p: Complex) {
+        for (axis, x) in [p.re, p.im].into_iter().enumerate() {
+            if x.is_finite() {
+                self.low[axis] = self.low[axis].min(x);
+                self.high[axis] = self.high[axis].max(x);
+            }
+        }
+    }
+
+    /// 0 for an empty box.
+    pub(super) fn width(&self) -> f64 {
+        (self.high[0] - self.low[0]).max(0.0)
+    }
+
+    /// 0 for an empty box.
+    pub(super) fn height(&self) -> f64 {
+        (self.high[1] - self.low[1]).max(0.0)
+    }
+
+    /// The longer side.
+    pub(super) fn extent(&self) -> f64 {
+        self.width().max(self.height())
+    }
+
+    pub(super) fn diagonal(&self) -> f64 {
+        self.width().hypot(self.height())
+    }
+
+    /// The origin for an empty box.
+    pub(super) fn centre(&self) -> Complex {
+        if self.low[0] > self.high[0] || self.low[1] > self.high[1] {
+            return Complex::new(0.0, 0.0);
+        }
+        Complex::new(0.5 * (self.low[0] + self.high[0]), 0.5 * (self.low[1] + self.high[1]))
+    }
+
+    /// Larger by `part` of the longer side on every side; one unit wide where it had no extent.
+    pub(super) fn padded(&self, part: f64) -> Bounds {
+        let pad = if self.extent() > 0.0 { part * self.extent() } else { 0.5 };
+        let (c, w, h) = (self.centre(), 0.5 * self.width() + pad, 0.5 * self.height() + pad);
+        Bounds { low: [c.re - w, c.im - h], high: [c.re + w, c.im + h] }
+    }
+
+    pub(super) fn holds(&self, p: Complex) -> bool {
+        (self.low[0]..=self.high[0]).contains(&p.re) && (self.low[1]..=self.high[1]).contains(&p.im)
+    }
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is at most `length`; 1 for what isn't positive.
+pub(super) fn round_length(length: f64) -> f64 {
+    if !(length > 0.0 && length.is_finite()) {
+        return 1.0;
+    }
+    let exponent = length.log10().floor() as i32;
+    let candidates = (exponent - 1..=exponent + 1).flat_map(|e| [1, 2, 5].map(|m| (m, e)));
+    // Through text, so that the length is the decimal number that is printed.
+    let decimal = |(m, e): (i32, i32)| format!("{m}e{e}").parse::<f64>().unwrap_or(1.0);
+    candidates.map(decimal).filter(|c| *c <= length && *c > 0.0).fold(f64::MIN_POSITIVE, f64::max)
+}

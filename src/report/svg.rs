@@ -1,0 +1,236 @@
+//! One candidate as a drawing: a self-contained SVG with the linkage, its coupler curve, the target and the
+//! figures. A target that is small beside its linkage gets an enlarged view of its own.
+
+use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
+use super::figure::{Detail, draw};
+use super::scene::{SAMPLES, Scene, circuits, round_length};
+use super::text::{brief, clean, shortened, significant};
+use super::words;
+use crate::problem::spec::TransmissionOver;
+use crate::record::{Candidate, Record};
+
+const WIDTH: f64 = 900.0;
+const MARGIN: f64 = 30.0;
+/// The drawing's height follows its shape between these.
+const HEIGHTS: std::ops::RangeInclusive<f64> = 320.0..=620.0;
+/// Room for letters and stands around the geometry.
+const PADDING: f64 = 34.0;
+/// Below this part of the frame the target is drawn again, enlarged.
+const SMALL_TARGET: f64 = 0.2;
+/// The most samples of the coupler curve in the enlarged view.
+const MOST_SAMPLES: usize = 144_000;
+
+/// The drawing of `record.candidates[index]`; the target alone where there is no such candidate.
+pub fn candidate_svg(record: &Record, index: usize) -> String {
+    let candidate = record.candidates.get(index);
+    let scene = Scene::new(record, candidate);
+    let bounds = scene.bounds();
+    let small = candidate.is_some() && scene.target_bounds().extent() < SMALL_TARGET * bounds.extent();
+    let mut canvas = Canvas::default();
+
+    let title = words::problem_name(record);
+    let top = heading(&mut canvas, record, candidate, &title);
+    let inner = WIDTH - 2.0 * MARGIN;
+    let main_width = if small { 0.58 * inner } else { inner };
+    let shape = bounds.padded(0.0);
+    let wanted = (main_width - 2.0 * PADDING) * shape.height() / shape.width().max(f64::MIN_POSITIVE);
+    let height = (wanted + 2.0 * PADDING).clamp(*HEIGHTS.start(), *HEIGHTS.end());
+    let area = Area { x: MARGIN, y: top, width: main_width, height };
+    let view = View::fit(&shape, area.shrunk(PADDING));
+
+    let all = Detail {
+        weight: 1.0,
+        target_weight: if small { 0.5 } else { 1.0 },
+        letters: true,
+        numbers: !small,
+        linkage: true,
+        clip: None,
+    };
+    draw(&mut canvas, &scene, &view, all);
+    if small {
+        let side = 0.38 * inner;
+        let panel = Area {
+            x: WIDTH - MARGIN - side,
+            y: top + 0.5 * (height - side.min(height)),
+            width: side,
+            height: side.min(height),
+        };
+        enlarged(&mut canvas, record, candidate, &scene, &view, panel);
+    }
+
+    let footer = top + height + 26.0;
+    scale_bar(&mut canvas, record, &view, Spot::new(MARGIN, footer), 0.25 * main_width);
+    legend(&mut canvas, footer, candidate.is_some());
+    let bottom = caption(&mut canvas, record, candidate, &scene, footer + 34.0);
+    let description = candidate.map_or("the target alone".to_owned(), |c| figures(record, c).join("; "));
+    canvas.document(WIDTH, bottom + 18.0, &format!("{title}, {}", standing(record, candidate)), &description)
+}
+
+/// `candidate 1 of 5`.
+fn standing(record: &Record, candidate: Option<&Candidate>) -> String {
+    candidate
+        .map_or("no candidate".to_owned(), |c| format!("candidate {} of {}", c.rank, record.candidates.len()))
+}
+
+/// Title, standing and source; returns where the drawing starts.
+fn heading(canvas: &mut Canvas, record: &Record, candidate: Option<&Candidate>, title: &str) -> f64 {
+    let room = WIDTH - 2.0 * MARGIN;
+    let standing = standing(record, candidate);
+    let left = |size: f64, taken: f64| ((room - taken) / text_width("x", size)) as usize;
+    let name = shortened(title, left(21.0, text_width(&standing, 14.0) + 20.0));
+    let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+    canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &name);
+    let muted = |size: u8| format!(r#"font-size="{size}" fill="{}""#, palette::MUTED);
+    canvas.text(Spot::new(WIDTH - MARGIN, 42.0), Anchor::End, &muted(14), &standing);
+    match record.problem.source.as_deref().map(clean).filter(|source| !source.is_empty()) {
+        Some(source) => {
+            let source = shortened(&source, left(13.0, 0.0));
+            canvas.text(Spot::new(MARGIN, 63.0), Anchor::Start, &muted(13), &source);
+            76.0
+        }
+        None => 56.0,
+    }
+}
+
+/// The target and the curve beside it, in a panel that is tied to its place in the drawing.
+fn enlarged(
+    canvas: &mut Canvas,
+    record: &Record,
+    candidate: Option<&Candidate>,
+    scene: &Scene,
+    view: &View,
+    panel: Area,
+) {
+    let bounds = scene.target_bounds().padded(0.06);
+    let inside = Area { x: 0.0, y: 0.0, width: panel.width, height: panel.height };
+    let zoom = View::fit(&bounds, inside.shrunk(PADDING));
+    // What the panel shows, in the plane and then in the drawing.
+    let (half_width, half_height) =
+        (0.5 * panel.width / zoom.scale * view.scale, 0.5 * panel.height / zoom.scale * view.scale);
+    let centre = view.spot(bounds.centre());
+    let shown = Area {
+        x: centre.x - half_width,
+        y: centre.y - half_height,
+        width: 2.0 * half_width,
+        height: 2.0 * half_height,
+    };
+    let thin = format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED);
+    canvas.area(shown, &thin);
+    for (dy_shown, dy_panel) in [(0.0, 0.0), (shown.height, panel.height)] {
+        let from = Spot::new(shown.x + shown.width, shown.y + dy_shown);
+        let to = Spot::new(panel.x, panel.y + dy_panel);
+        canvas.line(from, to, &format!(r#"stroke="{}" stroke-width="1""#, palette::FAINT));
+    }
+
+    let ratio = scene.bounds().extent() / bounds.extent().max(f64::MIN_POSITIVE);
+    let samples = (SAMPLES as f64 * ratio).clamp(SAMPLES as f64, MOST_SAMPLES as f64) as usize;
+    let part = Scene { circuits: candidate.map_or(Vec::new(), |c| circuits(c, samples)), ..scene.clone() };
+    let mut within = Canvas::default();
+    within.area(inside, &format!(r#"fill="{}""#, palette::PAPER));
+    let clip = Some(bounds.padded(1.0));
+    draw(
+        &mut within,
+        &part,
+        &zoom,
+        Detail { weight: 1.0, target_weight: 1.0, letters: false, numbers: true, linkage: false, clip },
+    );
+    scale_bar(&mut within, record, &zoom, Spot::new(14.0, panel.height - 14.0), 0.3 * panel.width);
+    let label = format!("target, {} times as large", brief(zoom.scale / view.scale, 2));
+    let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+    within.text(Spot::new(panel.width - 10.0, 19.0), Anchor::End, &muted, &label);
+    canvas.raw(&format!(
+        r#"<svg x="{}" y="{}" width="{}" height="{}" overflow="hidden">"#,
+        px(panel.x),
+        px(panel.y),
+        px(panel.width),
+        px(panel.height)
+    ));
+    canvas.body.push_str(&within.body);
+    canvas.raw("</svg>");
+    canvas.area(panel, &format!(r#"fill="none" stroke="{}" stroke-width="1.2" rx="3""#, palette::MUTED));
+}
+
+/// A bar of a round length, at most `most` pixels long.
+fn scale_bar(canvas: &mut Canvas, record: &Record, view: &View, at: Spot, most: f64) {
+    let length = round_length(most / view.scale);
+    let label = format!("{}{}", brief(length, 3), words::unit_suffix(record));
+    canvas.scale_bar(at, length * view.scale, &label);
+}
+
+/// What the marks are, from the right.
+fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
+    let text = format!(r#"font-size="12" fill="{}""#, palette::INK);
+    let mut x = WIDTH - MARGIN;
+    if with_curve {
+        x -= text_width("coupler curve", 12.0);
+        canvas.text(Spot::new(x, y), Anchor::Start, &text, "coupler curve");
+        let line = format!(r#"stroke="{}" stroke-width="2.4" stroke-linecap="round""#, palette::CURVE);
+        canvas.line(Spot::new(x - 30.0, y - 4.0), Spot::new(x - 8.0, y - 4.0), &line);
+        x -= 50.0;
+    }
+    for (label, filled) in [("target", false), ("target point 0", true)] {
+        x -= text_width(label, 12.0);
+        canvas.text(Spot::new(x, y), Anchor::Start, &text, label);
+        let fill = if filled { palette::TARGET } else { "none" };
+        let mark = format!(r#"fill="{fill}" stroke="{}" stroke-width="1.7""#, palette::TARGET);
+        canvas.circle(Spot::new(x - 13.0, y - 4.0), if filled { 5.4 } else { 4.6 }, &mark);
+        x -= 38.0;
+    }
+}
+
+/// The figures in words: errors, then the linkage.
+fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
+    let unit = words::unit_suffix(record);
+    let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
+    [
+        format!(
+            "rms error {}{unit}, largest {}{unit} at point {}, rms to the curve {}{unit}",
+            significant(error.rms, 4),
+            significant(error.max, 4),
+            error.max_at,
+            significant(error.to_curve.rms, 4)
+        ),
+        format!(
+            "{}, worst transmission angle {}° ({}), link ratio {}, {}",
+            candidate.linkage_type,
+            significant(transmission.worst, 3),
+            match transmission.over {
+                TransmissionOver::Cycle => "full turn",
+                TransmissionOver::Used => "part used",
+            },
+            significant(candidate.link_ratio, 3),
+            words::verdict(record, candidate).replacen("no:", "not accepted:", 1)
+        ),
+    ]
+}
+
+/// The figures under the drawing; returns where they end.
+fn caption(
+    canvas: &mut Canvas,
+    record: &Record,
+    candidate: Option<&Candidate>,
+    scene: &Scene,
+    top: f64,
+) -> f64 {
+    let mut lines = candidate.map_or(Vec::new(), |c| figures(record, c).to_vec());
+    if let Some(pose) = &scene.pose {
+        let drawn = pose.target.map_or("drawn at no target point: the loop is open there".to_owned(), |j| {
+            format!("drawn at point {j}")
+        });
+        if let Some(last) = lines.last_mut() {
+            last.push_str(&format!("; {drawn}"));
+        }
+    } else if candidate.is_some() {
+        lines.push("the links of this candidate cannot be joined".to_owned());
+    } else {
+        lines.push("no linkage to draw".to_owned());
+    }
+    let ink = format!(r#"font-size="13" fill="{}""#, palette::INK);
+    let room = ((WIDTH - 2.0 * MARGIN) / text_width("x", 13.0)) as usize;
+    let mut y = top;
+    for line in &lines {
+        canvas.text(Spot::new(MARGIN, y), Anchor::Start, &ink, &shortened(line, room));
+        y += 19.0;
+    }
+    y - 19.0
+}

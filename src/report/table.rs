@@ -1,0 +1,274 @@
+//! What `synth` prints: the candidates of a run, or one line a file for a batch.
+
+use super::grid::{Align, Colour, Grid, Ink};
+use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
+use super::words;
+use crate::linkage::FourBar;
+use crate::record::{Candidate, Record, Unit};
+
+/// The width that everything is laid out for.
+pub const COLUMNS: usize = 100;
+
+/// The candidates of a run: what was asked, a row for each, why the others weren't accepted, the best linkage
+/// to copy, and how the search ended.
+pub fn candidates_table(record: &Record, colour: Colour) -> String {
+    let mut out = heading(record, colour);
+    out.push('\n');
+    if record.candidates.is_empty() {
+        out.push_str("  No candidate was found.\n");
+    } else {
+        out.push_str(&rows(record, colour));
+        out.push_str(&notes(record));
+        out.push_str(&best(record));
+    }
+    out.push('\n');
+    out.push_str(&ending(record));
+    out
+}
+
+/// Name, source, points, size, timing.
+fn heading(record: &Record, colour: Colour) -> String {
+    let path = &record.problem.resolved.task.path;
+    let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
+    out.push('\n');
+    let mut facts = vec![count(path.points.len(), "point")];
+    if let Ok(task) = path.to_task() {
+        facts.push(format!("size {}{}", brief(task.size(), 4), words::unit_suffix(record)));
+    }
+    facts.push(words::timing(record).to_owned());
+    if path.closed {
+        facts.push("closed".to_owned());
+    }
+    out.push_str(&wrapped("  ", "  ", &facts.join(", "), COLUMNS));
+    if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
+        out.push_str(&wrapped("  ", "  ", &source, COLUMNS));
+    }
+    out
+}
+
+fn count(n: usize, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(n as u64), if n == 1 { "" } else { "s" })
+}
+
+fn rows(record: &Record, colour: Colour) -> String {
+    use Align::{Left, Right};
+    let mut grid = Grid::new(&[
+        ("#", Right),
+        ("sum of sq", Right),
+        ("rms", Right),
+        ("max", Right),
+        ("at", Right),
+        ("to curve", Right),
+        ("type", Left),
+        ("transmission", Right),
+        ("ratio", Right),
+        ("verdict", Left),
+    ]);
+    for candidate in &record.candidates {
+        let transmission = &candidate.transmission_deg;
+        let ink = if candidate.accepted { Ink::Good } else { Ink::Bad };
+        let plain = |text: String| (text, Ink::Plain);
+        grid.row(vec![
+            (candidate.rank.to_string(), Ink::Strong),
+            plain(significant(candidate.error.sum_sq, 6)),
+            plain(significant(candidate.error.rms, 4)),
+            plain(significant(candidate.error.max, 4)),
+            plain(candidate.error.max_at.to_string()),
+            plain(significant(candidate.error.to_curve.rms, 4)),
+            plain(candidate.linkage_type.name().to_owned()),
+            plain(format!("{}° {:<5}", significant(transmission.worst, 3), words::over(transmission.over))),
+            plain(significant(candidate.link_ratio, 3)),
+            (shortened(&words::verdict(record, candidate), 24), ink),
+        ]);
+    }
+    grid.render(colour)
+}
+
+/// What the columns mean and why candidates weren't accepted.
+fn notes(record: &Record) -> String {
+    let unit = record.problem.unit.map_or(String::new(), |unit| {
+        // "in in" would be read twice.
+        format!(" Lengths in {}.", if unit == Unit::In { "inches" } else { unit.label() })
+    });
+    let mut out = String::from("\n");
+    let key = format!(
+        "max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
+         transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
+         (used). ratio: longest to shortest link.{unit}"
+    );
+    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    // A hundred refusals for the same reason are one line.
+    let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
+    for candidate in record.candidates.iter().filter(|c| !c.accepted) {
+        let objections = words::objections(record, candidate);
+        let text = objections.into_iter().map(|o| o.sentence).collect::<Vec<_>>().join("; ");
+        match refusals.iter_mut().find(|(_, other)| *other == text) {
+            Some((ranks, _)) => ranks.push(candidate.rank),
+            None => refusals.push((vec![candidate.rank], text)),
+        }
+    }
+    if !refusals.is_empty() {
+        out.push_str("\n  Not accepted\n");
+    }
+    for (ranks, text) in refusals {
+        let lead = ranks.iter().map(|rank| format!("#{rank}")).collect::<Vec<_>>().join(" ");
+        out.push_str(&wrapped("    ", "      ", &format!("{lead}: {text}"), COLUMNS));
+    }
+    out
+}
+
+/// The best linkage: its motion in words, its parameters as TOML.
+fn best(record: &Record) -> String {
+    let Some(candidate) = record.candidates.first() else { return String::new() };
+    let mut out = format!("\n  Best linkage (#{})", candidate.rank);
+    if let Some(motion) = motion(candidate) {
+        out.push_str(&format!(": {motion}"));
+    }
+    out.push('\n');
+    out.push_str(&linkage_toml(&candidate.linkage, COLUMNS));
+    out
+}
+
+/// `crank from 31.102° to 371.1°, counter-clockwise`, or `crank between 11.459° and 51.566°, to and fro`.
+fn motion(candidate: &Candidate) -> Option<String> {
+    let angles = &candidate.crank_deg;
+    let (first, last) = (*angles.first()?, *angles.last()?);
+    if !angles.iter().all(|angle| angle.is_finite()) {
+        return None;
+    }
+    let way = match (angles.is_sorted(), angles.iter().rev().is_sorted()) {
+        (true, true) => return Some(format!("crank at {}°", brief(first, 5))),
+        (true, false) => "counter-clockwise",
+        (false, true) => "clockwise",
+        (false, false) => {
+            let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
+            let greatest = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            return Some(format!(
+                "crank between {}° and {}°, to and fro",
+                brief(least, 5),
+                brief(greatest, 5)
+            ));
+        }
+    };
+    Some(format!("crank from {}° to {}°, {way}", brief(first, 5), brief(last, 5)))
+}
+
+/// The linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
+fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    let pair = |p: crate::linkage::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
+    let parts = [
+        format!("A = {},", pair(a)),
+        format!("B = {},", pair(b)),
+        format!("a = {},", exact(linkage.crank())),
+        format!("b = {},", exact(linkage.coupler())),
+        format!("c = {},", exact(linkage.follower())),
+        format!("d = {},", exact(linkage.crank_side())),
+        format!("e = {},", exact(linkage.follower_side())),
+        format!("t1 = {},", linkage.assembly().sign()),
+        format!("t2 = {} }}", linkage.side().sign()),
+    ];
+    // No line breaks inside of a value.
+    let unbroken = parts.map(|part| part.replace(' ', "\u{a0}")).join(" ");
+    wrapped("    linkage = { ", "      ", &unbroken, columns).replace('\u{a0}', " ")
+}
+
+/// Method, seed, cost, why it ended.
+fn ending(record: &Record) -> String {
+    let used: Vec<String> =
+        record.method.used.iter().map(|m| clean(m)).filter(|m| !m.is_empty()).take(12).collect();
+    let used = if used.is_empty() { String::new() } else { format!(" by {}", used.join(", ")) };
+    let mut text = format!(
+        "Search{used} (seed {}) ended: {}. {} of the objective, {}.",
+        record.seed,
+        words::reason(record.termination.reason),
+        count(record.evaluations.objective as usize, "evaluation"),
+        count(record.evaluations.positions as usize, "position"),
+    );
+    if !record.termination.reproducible {
+        text.push_str(" A run that is cut short by the clock or by hand cannot be repeated to the digit.");
+    }
+    wrapped("  ", "  ", &text, COLUMNS)
+}
+
+/// One file of a batch.
+#[derive(Clone, Copy, Debug)]
+pub struct BatchRow<'a> {
+    /// What to call it.
+    pub name: &'a str,
+    /// What came of it.
+    pub outcome: BatchOutcome<'a>,
+}
+
+/// What came of one file of a batch.
+#[derive(Clone, Copy, Debug)]
+pub enum BatchOutcome<'a> {
+    /// It ran.
+    Ran(&'a Record),
+    /// It couldn't run, for this reason.
+    Refused(&'a str),
+}
+
+/// A row for each file of a batch and a line that counts them.
+pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
+    use Align::{Left, Right};
+    let mut grid = Grid::new(&[
+        ("problem", Left),
+        ("points", Right),
+        ("best sum of sq", Right),
+        ("rms", Right),
+        ("max", Right),
+        ("accepted", Right),
+        ("status", Left),
+    ]);
+    let (mut good, mut without) = (0, 0);
+    let mut refused = Vec::new();
+    for file in files {
+        let plain = |text: String| (text, Ink::Plain);
+        let name = plain(shortened(&clean(file.name), 30));
+        match file.outcome {
+            BatchOutcome::Ran(record) => {
+                let accepted = record.candidates.iter().filter(|c| c.accepted).count();
+                *(if accepted > 0 { &mut good } else { &mut without }) += 1;
+                let ink = if accepted > 0 { Ink::Good } else { Ink::Bad };
+                let best = record.candidates.first().map(|c| &c.error);
+                let figure = |of: fn(&crate::record::ErrorRecord) -> f64, digits| {
+                    best.map_or(String::new(), |error| significant(of(error), digits))
+                };
+                grid.row(vec![
+                    name,
+                    plain(grouped(record.problem.resolved.task.path.points.len() as u64)),
+                    plain(figure(|e| e.sum_sq, 6)),
+                    plain(figure(|e| e.rms, 4)),
+                    plain(figure(|e| e.max, 4)),
+                    (format!("{accepted} of {}", record.candidates.len()), ink),
+                    plain(words::reason_name(record.termination.reason).to_owned()),
+                ]);
+            }
+            BatchOutcome::Refused(why) => {
+                refused.push(wrapped(
+                    "  ",
+                    "    ",
+                    &format!("{}: {}", clean(file.name), clean(why)),
+                    COLUMNS,
+                ));
+                let mut cells = vec![name];
+                cells.extend(std::iter::repeat_n(plain(String::new()), 5));
+                cells.push(("refused".to_owned(), Ink::Bad));
+                grid.row(cells);
+            }
+        }
+    }
+    let mut out = if files.is_empty() { String::new() } else { grid.render(colour) + "\n" };
+    let mut parts = vec![format!("{good} with an accepted linkage")];
+    if without > 0 {
+        parts.push(format!("{without} without"));
+    }
+    if !refused.is_empty() {
+        parts.push(format!("{} refused", refused.len()));
+        out.push_str(&refused.concat());
+        out.push('\n');
+    }
+    out.push_str(&format!("  {}: {}.\n", count(files.len(), "file"), parts.join(", ")));
+    out
+}

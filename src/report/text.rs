@@ -1,0 +1,206 @@
+//! Numbers and foreign text made fit for a terminal, for XML and for a spreadsheet.
+
+/// What stands in place of a number that isn't finite.
+pub const NO_NUMBER: &str = "-";
+
+/// Decimal exponents that are written without `e`: 0.0001 up to below a million.
+const PLAIN_EXPONENTS: std::ops::RangeInclusive<i32> = -4..=5;
+
+/// `value` with `digits` significant digits, such as `0.02240`, `31.42`, `7.416e-7`; 0 is `0`.
+///
+/// ```
+/// use linkwright::report::text::significant;
+/// assert_eq!(significant(0.022396524, 4), "0.02240");
+/// assert_eq!(significant(9.99996, 4), "10.00");
+/// assert_eq!(significant(7.4157e-7, 4), "7.416e-7");
+/// assert_eq!(significant(f64::NAN, 4), "-");
+/// ```
+pub fn significant(value: f64, digits: usize) -> String {
+    if !value.is_finite() {
+        return NO_NUMBER.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = digits.max(1);
+    let scientific = format!("{:.*e}", digits - 1, value);
+    // The exponent after rounding: 9.9999 may have become 1.000e1.
+    let exponent = scientific.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    if !PLAIN_EXPONENTS.contains(&exponent) {
+        return scientific;
+    }
+    let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// As [`significant`] without zeros at the end of the decimals: `30`, `0.5`.
+pub fn brief(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    let (mantissa, exponent) = match text.split_once('e') {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (text.as_str(), None),
+    };
+    let short =
+        if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
+    match exponent {
+        Some(exponent) => format!("{short}e{exponent}"),
+        None => short.to_owned(),
+    }
+}
+
+/// The shortest text that reads back as the same number; empty for a number that isn't finite.
+///
+/// ```
+/// use linkwright::report::text::exact;
+/// assert_eq!((exact(5.0), exact(0.1), exact(1e-300)), ("5".into(), "0.1".into(), "1e-300".into()));
+/// ```
+pub fn exact(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// A whole number in groups of three: `12,345`.
+pub fn grouped(value: u64) -> String {
+    let digits = value.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// The longest foreign text that is shown.
+pub const LONGEST_TEXT: usize = 200;
+
+/// Foreign text on one line, without anything that commands a terminal or turns the reading direction:
+/// control characters become a space or nothing, runs of spaces one space, and what exceeds
+/// [`LONGEST_TEXT`] characters is cut.
+///
+/// ```
+/// assert_eq!(linkwright::report::text::clean("a\x1b[31mb\n c\u{202e}"), "a[31mb c");
+/// ```
+pub fn clean(text: &str) -> String {
+    let mut clean = String::new();
+    // Far more than is shown: a name of a gigabyte costs no more than this.
+    for c in text.chars().take(16 * LONGEST_TEXT) {
+        if c.is_whitespace() {
+            if !clean.ends_with(' ') {
+                clean.push(' ');
+            }
+        } else if !c.is_control() && !is_invisible(c) {
+            clean.push(c);
+        }
+    }
+    shortened(clean.trim(), LONGEST_TEXT)
+}
+
+/// Marks of reading direction, joiners, separators, tags and non-characters.
+fn is_invisible(c: char) -> bool {
+    matches!(c,
+        '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
+        | '\u{2060}'..='\u{206f}' | '\u{fdd0}'..='\u{fdef}' | '\u{feff}' | '\u{fff0}'..='\u{fffb}'
+        | '\u{e0000}'..='\u{e0fff}')
+        || (c as u32) & 0xfffe == 0xfffe
+}
+
+/// At most `columns` columns of a text, with an ellipsis where it was cut.
+pub fn shortened(text: &str, columns: usize) -> String {
+    if columns_of(text) <= columns {
+        return text.to_owned();
+    }
+    let mut short = String::new();
+    let mut used = 0;
+    for c in text.chars() {
+        used += columns_of_char(c);
+        if used >= columns {
+            break;
+        }
+        short.push(c);
+    }
+    short.truncate(short.trim_end().len());
+    short.push('…');
+    short
+}
+
+/// As [`shortened`], cut in front: of a path the end tells most.
+pub fn shortened_in_front(text: &str, columns: usize) -> String {
+    let reversed: String = text.chars().rev().collect();
+    shortened(&reversed, columns).chars().rev().collect()
+}
+
+/// How many columns of a terminal a text takes.
+pub fn columns_of(text: &str) -> usize {
+    text.chars().map(columns_of_char).sum()
+}
+
+/// 0 for combining marks, 2 for the blocks that terminals draw wide, else 1.
+fn columns_of_char(c: char) -> usize {
+    match c as u32 {
+        0x300..=0x36f | 0x1ab0..=0x1aff | 0x20d0..=0x20ff | 0xfe00..=0xfe0f => 0,
+        0x1100..=0x115f
+        | 0x2e80..=0xa4cf
+        | 0xac00..=0xd7a3
+        | 0xf900..=0xfaff
+        | 0xfe30..=0xfe6f
+        | 0xff00..=0xff60
+        | 0xffe0..=0xffe6
+        | 0x1f300..=0x1faff
+        | 0x20000..=0x3fffd => 2,
+        _ => 1,
+    }
+}
+
+/// Cleaned foreign text as XML character data or attribute value.
+///
+/// ```
+/// assert_eq!(linkwright::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
+/// ```
+pub fn xml(text: &str) -> String {
+    let mut escaped = String::new();
+    for c in clean(text).chars() {
+        match c {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\'' => escaped.push_str("&#39;"),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+/// Cleaned foreign text for a CSV cell: what a spreadsheet would take for a formula gets an apostrophe.
+pub fn cell(text: &str) -> String {
+    let clean = clean(text);
+    if clean.starts_with(['=', '+', '-', '@']) { format!("'{clean}") } else { clean }
+}
+
+/// Words in lines of at most `columns` columns, each after `indent`, the first after `lead`.
+pub fn wrapped(lead: &str, indent: &str, text: &str, columns: usize) -> String {
+    let mut out = String::new();
+    let mut line = lead.to_owned();
+    let mut empty = true;
+    for word in text.split(' ').filter(|w| !w.is_empty()) {
+        if !empty && columns_of(&line) + 1 + columns_of(word) > columns {
+            out.push_str(&line);
+            out.push('\n');
+            line = indent.to_owned();
+            empty = true;
+        }
+        if !empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        empty = false;
+    }
+    out.push_str(line.trim_end());
+    out.push('\n');
+    out
+}

@@ -1,0 +1,236 @@
+//! Verdicts, requirements and endings in plain words.
+
+use super::text::{brief, clean, exact};
+use crate::problem::spec::{OnePolicy, OrderPolicy, TransmissionOver};
+use crate::record::{Candidate, Figure, Reason, Record, Requirement};
+use crate::task::{AngleOffset, Defect};
+
+/// One reason why a candidate isn't accepted.
+pub(super) struct Objection {
+    /// A word for a narrow column: `transmission`.
+    pub(super) key: String,
+    /// A sentence part: `worst transmission angle 12.3°, at least 30° asked`.
+    pub(super) sentence: String,
+}
+
+/// Why a candidate isn't accepted, in the order: requirements, defects, tolerance. Empty for an accepted one.
+pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objection> {
+    if candidate.accepted {
+        return Vec::new();
+    }
+    let forbidden: Vec<&Defect> =
+        candidate.defects.iter().filter(|defect| is_forbidden(record, defect)).collect();
+    let mut list: Vec<Objection> = candidate
+        .requirements
+        .iter()
+        .filter(|r| !r.met && !forbidden.iter().any(|defect| defect.name() == r.name))
+        .map(of_requirement)
+        .collect();
+    list.extend(forbidden.iter().map(|d| Objection { key: d.name().to_owned(), sentence: of_defect(d) }));
+    if !candidate.requirements.iter().any(|r| r.name == "tolerance") {
+        list.extend(of_tolerance(record, candidate));
+    }
+    if list.is_empty() {
+        list.push(Objection { key: "reason not recorded".into(), sentence: "reason not recorded".into() });
+    }
+    list
+}
+
+fn is_forbidden(record: &Record, defect: &Defect) -> bool {
+    let require = &record.problem.resolved.require;
+    match defect {
+        Defect::Order { .. } => require.order == OrderPolicy::Required,
+        Defect::Branch { .. } => require.branch == OnePolicy::One,
+        Defect::Circuit { .. } => require.circuit == OnePolicy::One,
+    }
+}
+
+/// A defect as a sentence part.
+pub(super) fn of_defect(defect: &Defect) -> String {
+    match defect {
+        Defect::Order { at } => format!("out of order at {}", points(at)),
+        Defect::Branch { at } => format!("passes a toggle: {} on another branch than point 0", points(at)),
+        Defect::Circuit { at } => {
+            format!("{} out of reach from point 0 without taking the linkage apart", points(at))
+        }
+    }
+}
+
+/// `point 3`, `points 3, 7 and 9`, `points 1 to 17`, `points 0, 2, 5, 8, 11 and 4 more`.
+fn points(at: &[usize]) -> String {
+    const SHOWN: usize = 5;
+    match at {
+        [] => "some point".to_owned(),
+        [only] => format!("point {only}"),
+        [first, .., last] if at.len() > 2 && at.windows(2).all(|w| w[0].checked_add(1) == Some(w[1])) => {
+            format!("points {first} to {last}")
+        }
+        [most @ .., last] if at.len() <= SHOWN => format!("points {} and {last}", joined(most)),
+        _ => format!("points {} and {} more", joined(&at[..SHOWN]), at.len() - SHOWN),
+    }
+}
+
+fn joined(at: &[usize]) -> String {
+    at.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+}
+
+fn of_requirement(requirement: &Requirement) -> Objection {
+    let (mut value, mut limit) = (figure(&requirement.value, short), figure(&requirement.limit, short));
+    if value == limit {
+        // Rounding must not make a missed limit look met.
+        (value, limit) = (figure(&requirement.value, exact), figure(&requirement.limit, exact));
+    }
+    let (key, sentence) = match requirement.name.as_str() {
+        "type" => ("type", format!("type {value}, asked for {limit}")),
+        "transmission_deg_min" => {
+            ("transmission", format!("worst transmission angle {value}°, at least {limit}° asked"))
+        }
+        "link_ratio_max" => ("link ratio", format!("link ratio {value}, at most {limit} asked")),
+        "pivots_in" => ("pivots", format!("fixed pivots span [{value}], outside of [{limit}]")),
+        "footprint_in" => ("footprint", format!("the motion spans [{value}], outside of [{limit}]")),
+        "direction" => ("direction", format!("turns {value}, {limit} asked")),
+        "tolerance" => ("tolerance", format!("largest error {value}, tolerance {limit}")),
+        other => {
+            if let (Some(key), Figure::Numbers(_)) = (other.strip_prefix("design."), &requirement.limit) {
+                let key = clean(key);
+                let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");
+                return Objection { key, sentence };
+            }
+            let name = clean(other);
+            let name = if name.is_empty() { "a requirement".to_owned() } else { name };
+            let sentence = format!("{name}: {value}, limit {limit}");
+            return Objection { key: name, sentence };
+        }
+    };
+    Objection { key: key.to_owned(), sentence }
+}
+
+fn short(value: f64) -> String {
+    brief(value, 5)
+}
+
+fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
+    match figure {
+        Figure::Number(value) => number(*value),
+        Figure::Numbers(values) => values.iter().take(8).map(|v| number(*v)).collect::<Vec<_>>().join(", "),
+        Figure::Word(word) => clean(word),
+        Figure::Words(words) => {
+            clean(&words.iter().take(8).map(|w| clean(w)).collect::<Vec<_>>().join(" or "))
+        }
+    }
+}
+
+/// The point at which the tolerance is exceeded most, where one was asked.
+fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
+    let path = &record.problem.resolved.task.path;
+    let tolerance = path.tolerance.as_ref()?;
+    let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    let (excess, j, error, limit) = path
+        .points
+        .iter()
+        .zip(tolerance)
+        .zip(positions)
+        .enumerate()
+        .filter_map(|(j, ((target, limit), (angle, assembly)))| {
+            let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
+            let error = (crate::linkage::point(*target) - joints.coupler_point).norm();
+            Some((error - limit, j, error, *limit))
+        })
+        .max_by(|x, y| x.0.total_cmp(&y.0))?;
+    let (mut shown, mut allowed) = (short(error), short(limit));
+    if shown == allowed {
+        (shown, allowed) = (exact(error), exact(limit));
+    }
+    (excess > 0.0).then(|| Objection {
+        key: "tolerance".to_owned(),
+        sentence: format!("error {shown} at point {j}, tolerance {allowed}"),
+    })
+}
+
+/// `accepted`, or `no: transmission, order`, or `no: transmission +2`.
+pub(super) fn verdict(record: &Record, candidate: &Candidate) -> String {
+    let objections = objections(record, candidate);
+    match objections.as_slice() {
+        [] if candidate.defects.is_empty() => "accepted".to_owned(),
+        [] => format!("accepted ({})", defect_names(candidate)),
+        [only] => format!("no: {}", only.key),
+        [first, second] if first.key.len() + second.key.len() <= 16 => {
+            format!("no: {}, {}", first.key, second.key)
+        }
+        [first, rest @ ..] => format!("no: {} +{}", first.key, rest.len()),
+    }
+}
+
+/// `order, branch`.
+pub(super) fn defect_names(candidate: &Candidate) -> String {
+    candidate.defects.iter().map(Defect::name).collect::<Vec<_>>().join(", ")
+}
+
+/// Over which motion a transmission angle was judged.
+pub(super) fn over(over: TransmissionOver) -> &'static str {
+    match over {
+        TransmissionOver::Cycle => "cycle",
+        TransmissionOver::Used => "used",
+    }
+}
+
+/// As it stands in records: `time-limit`.
+pub(super) fn reason_name(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Converged => "converged",
+        Reason::TargetReached => "target-reached",
+        Reason::Stalled => "stalled",
+        Reason::EvaluationLimit => "evaluation-limit",
+        Reason::TimeLimit => "time-limit",
+        Reason::Cancelled => "cancelled",
+    }
+}
+
+/// Why the search ended, as a clause after "ended:".
+pub(super) fn reason(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Converged => "converged, the best answer was found again and again from different starts",
+        Reason::TargetReached => "target reached, as many good enough answers as were asked for",
+        Reason::Stalled => "stalled, out of ideas before the budget was used up",
+        Reason::EvaluationLimit => "the budget of evaluations was used up",
+        Reason::TimeLimit => "the time limit was reached",
+        Reason::Cancelled => "cancelled, these are the best answers until then",
+    }
+}
+
+/// The timing of the target.
+pub(super) fn timing(record: &Record) -> &'static str {
+    match record.problem.resolved.task.path.timing.as_ref().map(|timing| timing.offset) {
+        None => "free timing",
+        Some(AngleOffset::Free) => "prescribed timing, offset free",
+        Some(AngleOffset::Fixed) => "prescribed timing, from the x axis",
+        Some(AngleOffset::Ground) => "prescribed timing, from the line A-B",
+    }
+}
+
+/// The problem's name; never empty.
+pub(super) fn problem_name(record: &Record) -> String {
+    let name = clean(&record.problem.name);
+    if name.is_empty() { "unnamed problem".to_owned() } else { name }
+}
+
+/// ` mm`, or nothing where lengths have no unit.
+pub(super) fn unit_suffix(record: &Record) -> String {
+    record.problem.unit.map_or(String::new(), |unit| format!(" {}", unit.label()))
+}
+
+/// The names of what stands in the way of acceptance, for files: the problem file's keys where they exist.
+pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
+    let forbidden = candidate.defects.iter().filter(|defect| is_forbidden(record, defect));
+    let mut names: Vec<String> = forbidden.map(|defect| defect.name().to_owned()).collect();
+    for requirement in candidate.requirements.iter().filter(|r| !r.met) {
+        let name = clean(&requirement.name).replace(';', ",");
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    if !candidate.accepted && !candidate.requirements.iter().any(|r| r.name == "tolerance") {
+        names.extend(of_tolerance(record, candidate).map(|objection| objection.key));
+    }
+    names
+}

@@ -1,0 +1,237 @@
+//! Is a record true? Every figure and verdict recomputed from its problem and its linkages.
+
+use crate::assess::{MET_TOLERANCE, assess};
+use crate::linkage::mobility::wrapped;
+use crate::problem::Problem;
+use crate::problem::spec::DirectionPolicy;
+use crate::record::{Candidate, FORMAT, Figure, Record, Requirement};
+use crate::run::{RunError, digest};
+use crate::task::{AngleOffset, Timing};
+
+/// Figures may differ by this part of themselves ..
+pub const RELATIVE: f64 = 1e-9;
+/// .. plus this part of the target's size (squared sums: of its square).
+pub const ABSOLUTE: f64 = 1e-12;
+/// Crank angles of prescribed timing may differ by this from the prescribed ones, degrees.
+const TIMING_DEG: f64 = 1e-9;
+
+/// Something in a record that is not so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch {
+    /// The candidate's rank; `None`: the record as a whole.
+    pub rank: Option<usize>,
+    /// Which figure or verdict.
+    pub what: String,
+    /// What the record says.
+    pub recorded: String,
+    /// What was found.
+    pub found: String,
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if let Some(rank) = self.rank {
+            write!(f, "candidate {rank}: ")?;
+        }
+        write!(f, "{} is recorded as {}, but it is {}", self.what, self.recorded, self.found)
+    }
+}
+
+/// Recomputes everything; an empty list: the record is true.
+///
+/// # Errors
+/// [`RunError`] when the record's problem is no problem.
+pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
+    let spec = &record.problem.resolved;
+    let problem = Problem::new(spec.clone())?;
+    let mut mismatches = Vec::new();
+    let mut whole = |what: &str, recorded: String, found: String| {
+        if recorded != found {
+            mismatches.push(Mismatch { rank: None, what: what.into(), recorded, found });
+        }
+    };
+    whole("format", record.format.to_string(), FORMAT.to_string());
+    whole("problem.digest", record.problem.digest.clone(), digest(spec)?);
+    whole("seed", record.seed.to_string(), spec.solve.seed.to_string());
+    whole("method.asked", record.method.asked.name().into(), spec.solve.method.name().into());
+    for (i, candidate) in record.candidates.iter().enumerate() {
+        whole("rank", candidate.rank.to_string(), (i + 1).to_string());
+    }
+    for candidate in &record.candidates {
+        let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
+        against.candidate(&problem, candidate);
+    }
+    Ok(mismatches)
+}
+
+struct Against<'a> {
+    rank: usize,
+    mismatches: &'a mut Vec<Mismatch>,
+}
+
+impl Against<'_> {
+    fn differ(&mut self, what: &str, recorded: String, found: String) {
+        self.mismatches.push(Mismatch { rank: Some(self.rank), what: what.into(), recorded, found });
+    }
+
+    fn number(&mut self, what: &str, recorded: f64, found: f64, scale: f64) {
+        let near = (recorded - found).abs() <= RELATIVE * found.abs() + ABSOLUTE * scale;
+        if !(near || recorded == found) {
+            self.differ(what, format!("{recorded:e}"), format!("{found:e}"));
+        }
+    }
+
+    fn candidate(&mut self, problem: &Problem, recorded: &Candidate) {
+        let n = problem.task().len();
+        if recorded.crank_deg.len() != n || recorded.t1_at.len() != n {
+            let has = format!("{} and {}", recorded.crank_deg.len(), recorded.t1_at.len());
+            self.differ("the number of crank_deg and t1_at", has, format!("{n} points"));
+            return;
+        }
+        let found = assess(problem, &recorded.linkage, &recorded.crank_deg, &recorded.t1_at);
+        let Some(found) = found else {
+            self.differ("the linkage", "closed at every point".into(), "open at one of them".into());
+            return;
+        };
+        let size = problem.task().size();
+        // A sum of squares of errors near e changes by 2 e times the change of e.
+        let sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (n as f64).sqrt();
+        let (r, f) = (&recorded.error, &found.error);
+        self.number("error.objective", r.objective, f.objective, sq(f.objective));
+        self.number("error.sum_sq", r.sum_sq, f.sum_sq, sq(f.sum_sq));
+        self.number("error.rms", r.rms, f.rms, size);
+        self.number("error.max", r.max, f.max, size);
+        self.number("error.rms_over_size", r.rms_over_size, f.rms_over_size, 1.0);
+        self.number("error.to_curve.sum_sq", r.to_curve.sum_sq, f.to_curve.sum_sq, sq(f.to_curve.sum_sq));
+        self.number("error.to_curve.rms", r.to_curve.rms, f.to_curve.rms, size);
+        self.number("error.to_curve.max", r.to_curve.max, f.to_curve.max, size);
+        if r.max_at != f.max_at {
+            // Another point may stand in the place of an equal maximum.
+            let angles = (&recorded.crank_deg, &recorded.t1_at);
+            let radians: Vec<f64> = angles.0.iter().map(|d| d.to_radians()).collect();
+            let equal = problem
+                .task()
+                .errors(&recorded.linkage, &radians, angles.1)
+                .and_then(|e| e.structural.get(r.max_at).map(|s| s.norm()))
+                .is_some_and(|there| f.max - there <= RELATIVE * f.max + ABSOLUTE * size);
+            if !equal {
+                self.differ("error.max_at", r.max_at.to_string(), f.max_at.to_string());
+            }
+        }
+        self.number("grashof_margin", recorded.grashof_margin, found.grashof_margin, size);
+        self.number("link_ratio", recorded.link_ratio, found.link_ratio, 1.0);
+        let (r, f) = (&recorded.transmission_deg, &found.transmission_deg);
+        // Near 0 and 180 degrees an angle moves as the root of the lengths' rounding.
+        for (what, r, f) in [
+            ("transmission_deg.min", r.min, f.min),
+            ("transmission_deg.max", r.max, f.max),
+            ("transmission_deg.worst", r.worst, f.worst),
+        ] {
+            let from_flat = f.min(180.0 - f).max(1e-5).to_radians().sin();
+            self.number(what, r, f, 180.0 / from_flat);
+        }
+        if r.over != f.over {
+            self.differ("transmission_deg.over", format!("{:?}", r.over), format!("{:?}", f.over));
+        }
+        if recorded.linkage_type != found.linkage_type {
+            self.differ("type", recorded.linkage_type.to_string(), found.linkage_type.to_string());
+        }
+        if recorded.defects != found.defects {
+            let names = |c: &Candidate| {
+                let list: Vec<String> = c.defects.iter().map(|d| format!("{d:?}")).collect();
+                if list.is_empty() { "none".to_string() } else { list.join(", ") }
+            };
+            self.differ("defects", names(recorded), names(&found));
+        }
+        self.timing(problem, recorded);
+        self.requirements(recorded, &found);
+    }
+
+    fn requirements(&mut self, recorded: &Candidate, found: &Candidate) {
+        let names = |c: &Candidate| c.requirements.iter().map(|r| r.name.clone()).collect::<Vec<_>>();
+        if names(recorded) != names(found) {
+            self.differ("the list of requirements", names(recorded).join(", "), names(found).join(", "));
+            return;
+        }
+        let mut doubtful = false;
+        for (r, f) in recorded.requirements.iter().zip(&found.requirements) {
+            if r.limit != f.limit {
+                self.differ(&format!("{}.limit", r.name), format!("{:?}", r.limit), format!("{:?}", f.limit));
+            }
+            match (&r.value, &f.value) {
+                (Figure::Number(r_value), Figure::Number(f_value)) => {
+                    let scale = f_value.abs().max(1.0) * 1e4;
+                    self.number(&format!("{}.value", r.name), *r_value, *f_value, scale);
+                }
+                (Figure::Numbers(r_values), Figure::Numbers(f_values))
+                    if r_values.len() == f_values.len() =>
+                {
+                    for (r_value, f_value) in r_values.iter().zip(f_values) {
+                        let scale = f_value.abs().max(1.0) * 1e4;
+                        self.number(&format!("{}.value", r.name), *r_value, *f_value, scale);
+                    }
+                }
+                (r_value, f_value) if r_value == f_value => {}
+                (r_value, f_value) => {
+                    self.differ(&format!("{}.value", r.name), format!("{r_value:?}"), format!("{f_value:?}"));
+                }
+            }
+            if r.met != f.met {
+                if within_margin(f) {
+                    doubtful = true;
+                } else {
+                    let word = |met| if met { "met" } else { "not met" };
+                    self.differ(&r.name, word(r.met).into(), word(f.met).into());
+                }
+            }
+        }
+        if recorded.accepted != found.accepted && !doubtful {
+            self.differ("accepted", recorded.accepted.to_string(), found.accepted.to_string());
+        }
+    }
+
+    /// The crank angles are the prescribed ones, whichever way the timing lets them run.
+    fn timing(&mut self, problem: &Problem, recorded: &Candidate) {
+        let Timing::Prescribed { offset, .. } = problem.task().timing() else { return };
+        let Some(written) = &problem.spec().task.path.timing else { return };
+        let Some((first, written_first)) = recorded.crank_deg.first().zip(written.crank_deg.first()) else {
+            return;
+        };
+        let base = match offset {
+            AngleOffset::Free => 0.0,
+            AngleOffset::Fixed => *written_first,
+            AngleOffset::Ground => written_first + recorded.linkage.ground_angle().to_degrees(),
+        };
+        let off = |direction: f64| {
+            let worst = recorded
+                .crank_deg
+                .iter()
+                .zip(&written.crank_deg)
+                .map(|(has, wants)| ((has - first) - direction * (wants - written_first)).abs());
+            worst.fold(0.0, f64::max)
+        };
+        let either = *offset == AngleOffset::Free;
+        let mut worst = if either { off(1.0).min(off(-1.0)) } else { off(1.0) };
+        if *offset != AngleOffset::Free {
+            worst = worst.max(wrapped((first - base).to_radians()).to_degrees().abs());
+        }
+        let slack = TIMING_DEG * (1.0 + first.abs() + written_first.abs());
+        if worst > slack {
+            self.differ("crank_deg", "the prescribed angles".into(), format!("off by {worst:e} degrees"));
+        }
+        debug_assert!(either || problem.spec().require.direction == DirectionPolicy::Any);
+    }
+}
+
+/// Whether a requirement's value lies so near its limit that the verdict is rounding's.
+fn within_margin(found: &Requirement) -> bool {
+    let near = |value: f64, limit: f64| (value - limit).abs() <= 2.0 * MET_TOLERANCE * limit.abs().max(1.0);
+    match (&found.value, &found.limit) {
+        (Figure::Number(value), Figure::Number(limit)) => near(*value, *limit),
+        (Figure::Number(value), Figure::Numbers(limits)) => limits.iter().any(|l| near(*value, *l)),
+        (Figure::Numbers(values), Figure::Numbers(limits)) => {
+            values.iter().zip(limits).any(|(value, limit)| near(*value, *limit))
+        }
+        _ => false,
+    }
+}
