@@ -65,7 +65,9 @@ fn load(argument: &str, target: Option<&(ProblemFile, Problem)>) -> Result<Vec<E
         Some((folder, rank)) if !path.exists() => match rank.parse::<usize>() {
             Ok(rank) if rank >= 1 => (folder, Some(rank)),
             _ => {
-                return Err(refuse(&format!("{argument}: after the colon stands a candidate's rank, from 1")));
+                return Err(refuse(&format!(
+                    "{argument}: after the colon stands a candidate's rank, from 1"
+                )));
             }
         },
         _ => (argument, None),

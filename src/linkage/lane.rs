@@ -87,6 +87,7 @@ impl F64x8 {
         ((l[0] + l[4]) + (l[2] + l[6])) + ((l[1] + l[5]) + (l[3] + l[7]))
     }
 
+    #[expect(clippy::needless_range_loop, reason = "indexed loops over arrays become vector instructions")]
     #[inline(always)]
     fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let mut out = [0.0; LANES];
@@ -96,6 +97,7 @@ impl F64x8 {
         F64x8(out)
     }
 
+    #[expect(clippy::needless_range_loop, reason = "indexed loops over arrays become vector instructions")]
     #[inline(always)]
     fn map(self, f: impl Fn(f64) -> f64) -> Self {
         let mut out = [0.0; LANES];
@@ -159,6 +161,7 @@ impl Lane for F64x8 {
     fn min(self, other: Self) -> Self {
         self.zip(other, Lane::min)
     }
+    #[expect(clippy::needless_range_loop, reason = "indexed loops over arrays become vector instructions")]
     #[inline(always)]
     fn at_least(self, limit: Self, yes: Self, no: Self) -> Self {
         let mut out = [0.0; LANES];

@@ -289,7 +289,7 @@ impl FourBar {
             ("e", p.follower_side),
         ];
         for (key, value) in numbers {
-            if !(value.abs() <= MAX_MAGNITUDE) {
+            if value.is_nan() || value.abs() > MAX_MAGNITUDE {
                 return Err(LinkageError::NotFinite { key, value });
             }
         }
@@ -355,7 +355,7 @@ impl FourBar {
             return Err(LinkageError::DistanceNegative { key: "Z1", value: v.coupler_point });
         }
         for (key, value) in [("Z1", v.coupler_point), ("beta_deg", v.beta_deg)] {
-            if !(value.abs() <= MAX_MAGNITUDE) {
+            if value.is_nan() || value.abs() > MAX_MAGNITUDE {
                 return Err(LinkageError::NotFinite { key, value });
             }
         }

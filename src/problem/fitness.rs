@@ -378,10 +378,10 @@ impl Sampled {
     ) -> Option<(f64, f64)> {
         let which = usize::from(assembly == AssemblyMode::Minus);
         let mut sq = [f64::INFINITY; CURVE_SAMPLES];
-        for i in 0..CURVE_SAMPLES {
-            let (dx, dy) = (self.x[which][i] - target.re, self.y[which][i] - target.im);
-            let distance = dx * dx + dy * dy;
-            sq[i] = if self.gap[i] >= 0.0 { distance } else { f64::INFINITY };
+        let points = self.x[which].iter().zip(&self.y[which]).zip(&self.gap);
+        for (sq, ((x, y), gap)) in sq.iter_mut().zip(points) {
+            let (dx, dy) = (x - target.re, y - target.im);
+            *sq = if *gap >= 0.0 { dx * dx + dy * dy } else { f64::INFINITY };
         }
         let best = (0..CURVE_SAMPLES)
             .filter(|&i| sq[i].is_finite() && reachable(i))

@@ -48,7 +48,7 @@ pub fn coupler_direction(ratios: &Ratios, e: Complex, t: f64) -> Option<Complex>
     let f2 = w.norm_sqr();
     let sigma = 0.5 * (q * q - r * r + f2);
     let h2 = q * q * f2 - sigma * sigma;
-    if !(h2 > 0.0) || f2 == 0.0 {
+    if h2.is_nan() || h2 <= 0.0 || f2 == 0.0 {
         return None;
     }
     Some(w * Complex::new(sigma, t * h2.sqrt()) / (f2 * q))

@@ -350,6 +350,7 @@ fn type_rows(
 }
 
 /// Joints over a motion, without allocation.
+#[expect(clippy::large_enum_variant, reason = "one at a time, on the stack, so that nothing is allocated")]
 enum Swept<'a> {
     Samples {
         linkage: FourBar,

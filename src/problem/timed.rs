@@ -111,7 +111,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
             // The very toggle has no derivative, and beyond it the loop is open.
-            if !(at.gap > 0.0) {
+            if at.gap.is_nan() || at.gap <= 0.0 {
                 return None;
             }
             let (x, y) = (target.re - at.coupler_point[0], target.im - at.coupler_point[1]);

@@ -67,9 +67,9 @@ pub fn search(
     let fitness = PathFitness::new(problem);
     let spec = &problem.spec().solve;
     let mut algorithm: Box<dyn Generations> = match which {
-        Population::Genetic => Box::new(Genetic::new(spec.genetic.clone())?),
+        Population::Genetic => Box::new(Genetic::new(spec.genetic)?),
         Population::DifferentialEvolution => {
-            Box::new(DifferentialEvolution::new(spec.differential_evolution.clone())?)
+            Box::new(DifferentialEvolution::new(spec.differential_evolution)?)
         }
         Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
     };

@@ -475,3 +475,67 @@ fn bounded_step<const N: usize>(
 
 /// Steps in a row that hardly reduce before a solve counts as converged.
 const QUIET_STEPS: usize = 3;
+
+/// Blocks and constraint rows of a problem at a point.
+fn linearised<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    x: &[f64; N],
+    state: &P::State,
+) -> Option<(Vec<PointBlock<N>>, Vec<ConstraintRow<N>>)> {
+    let (mut blocks, mut rows) = (Vec::new(), Vec::new());
+    if !problem.linearise(x, state, &mut |block| blocks.push(*block)) {
+        return None;
+    }
+    problem.constraints(x, state, &mut |row| rows.push(*row));
+    Some((blocks, rows))
+}
+
+/// How far the derivatives of a problem are from central differences: the largest |analytic - difference| /
+/// (1 + |analytic|) over all residuals (by x and along the tangents) and constraints (by x).
+///
+/// `steps` gives the difference's step for each shared unknown, 0 leaves it out; `along` is the step of the
+/// points' own unknowns. `None` where a neighbour cannot be evaluated. A right derivative leaves what the
+/// differences themselves have: the square of the step times the third derivative, and rounding over the step.
+pub fn derivative_error<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    x: &[f64; N],
+    state: &P::State,
+    steps: &[f64; N],
+    along: f64,
+) -> Option<f64> {
+    let (blocks, rows) = linearised(problem, x, state)?;
+    let mut worst: f64 = 0.0;
+    let mut compare = |analytic: f64, difference: f64| {
+        worst = worst.max((analytic - difference).abs() / (1.0 + analytic.abs()));
+    };
+    let still = vec![0.0; problem.points()];
+    let at = |to: &[f64; N], tau: &[f64]| {
+        let mut moved = state.clone();
+        problem.retract(x, state, tau, to, &mut moved).then(|| linearised(problem, to, &moved)).flatten()
+    };
+    for i in (0..N).filter(|&i| steps[i] != 0.0) {
+        let (mut up, mut down) = (*x, *x);
+        up[i] += steps[i];
+        down[i] -= steps[i];
+        let (above, below) = (at(&up, &still)?, at(&down, &still)?);
+        for (block, (u, d)) in blocks.iter().zip(above.0.iter().zip(&below.0)) {
+            for axis in 0..2 {
+                compare(block.jacobian[axis][i], (u.residual[axis] - d.residual[axis]) / (2.0 * steps[i]));
+            }
+        }
+        for (row, (u, d)) in rows.iter().zip(above.1.iter().zip(&below.1)) {
+            compare(row.gradient[i], (u.value - d.value) / (2.0 * steps[i]));
+        }
+    }
+    let moves = blocks.iter().any(|block| block.tangent != [0.0, 0.0]);
+    if moves {
+        let (forward, backward) = (vec![along; problem.points()], vec![-along; problem.points()]);
+        let (above, below) = (at(x, &forward)?, at(x, &backward)?);
+        for (block, (u, d)) in blocks.iter().zip(above.0.iter().zip(&below.0)) {
+            for axis in 0..2 {
+                compare(block.tangent[axis], (u.residual[axis] - d.residual[axis]) / (2.0 * along));
+            }
+        }
+    }
+    Some(worst)
+}

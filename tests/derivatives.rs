@@ -1,0 +1,145 @@
+//! The derivatives that the local searches use, by the public check, on random starts of every kind of task.
+
+mod common;
+
+use common::parse;
+use linkwright::problem::Problem;
+use linkwright::problem::timed::TimedFit;
+use linkwright::problem::torus::TorusFit;
+use linkwright::search::starts::{Start, Starts};
+use linkwright::solve::levenberg_marquardt::{
+    BlockLeastSquares, LmOptions, LmOutcome, derivative_error, solve,
+};
+use linkwright::solve::streams::stream;
+
+/// Differences of 1e-6 of a number near 1 carry 1e-10 of rounding and 1e-12 of curvature; starts near a toggle
+/// have third derivatives of up to some thousands.
+const STEP: f64 = 1e-6;
+const CLOSE: f64 = 2e-5;
+
+const POINTS: &str = "points = [[0, 0], [1, 0.4], [1.6, 1.1], [1.2, 1.9], [0.3, 2], [-0.5, 1.2]]";
+
+fn problem(tables: &str) -> Problem {
+    let text = format!("format = 1\n[task.path]\n{POINTS}\nclosed = true\n{tables}");
+    Problem::new(parse(&text).spec).expect("it is one")
+}
+
+const REQUIRE: &str =
+    "[require]\ntransmission_deg_min = 35\npivots_in = [-3, -3, 3, 3]\nlink_ratio_max = 5\n";
+
+fn cases() -> Vec<(&'static str, Problem)> {
+    let timing = |offset: &str| {
+        format!("[task.path.timing]\ncrank_deg = [0, 55, 118, 182, 241, 303]\noffset = \"{offset}\"\n")
+    };
+    let cycle = "transmission_over = \"cycle\"\n";
+    vec![
+        ("offset free", problem(&(timing("free") + REQUIRE + cycle))),
+        ("offset fixed", problem(&(timing("fixed") + REQUIRE + cycle))),
+        ("offset ground", problem(&(timing("ground") + REQUIRE + cycle))),
+        (
+            "polar ground",
+            problem(
+                &(timing("ground")
+                    + "[design]\nground = [0.5, 9]\nd = [0.1, 9]\ncoupler_x = [-9, 9]\n"
+                    + REQUIRE
+                    + cycle),
+            ),
+        ),
+        (
+            "distances",
+            problem(&(timing("free") + "[design]\nd = [0.1, 9]\ne = [0.1, 9]\n" + REQUIRE + cycle)),
+        ),
+        ("footprint", problem(&(timing("free") + "[require]\nfootprint_in = [-2, -2, 3, 3]\n"))),
+        ("used", problem(&(timing("free") + REQUIRE + "transmission_over = \"used\"\n"))),
+        ("free timing", problem(&(REQUIRE.to_string() + cycle))),
+        (
+            "free timing, types",
+            problem("[require]\ntype = [\"double-rocker\", \"rocker-crank\"]\nbranch = \"any\"\n"),
+        ),
+        (
+            "free timing, polar",
+            problem(
+                "[design]\nground = [0.5, 9]\nground_angle_deg = [-80, 80]\ne = [0.5, 9]\ncoupler_y = [-9, 9]\n",
+            ),
+        ),
+    ]
+}
+
+/// Steps in the numbers that are free and not at a bound.
+fn steps<const N: usize>(fit: &impl BlockLeastSquares<N>, x: &[f64; N]) -> [f64; N] {
+    let mut steps = [0.0; N];
+    for (step, (value, (low, high))) in steps.iter_mut().zip(x.iter().zip(fit.bounds())) {
+        if value - low > 10.0 * STEP && high - value > 10.0 * STEP {
+            *step = STEP;
+        }
+    }
+    steps
+}
+
+#[test]
+fn residuals_tangents_and_constraints_agree_with_central_differences() {
+    for (name, problem) in cases() {
+        let starts = Starts::new(&problem);
+        let mut draws = stream(11, 0);
+        let mut errors = Vec::new();
+        for _ in 0..4000 {
+            if errors.len() == 60 {
+                break;
+            }
+            let Some(Start { design, setting, mut positions }) = starts.draw(&mut draws) else { continue };
+            let error = if positions.is_empty() {
+                let fit = TimedFit::new(&problem, setting).expect("the timing is prescribed");
+                if fit.cost(&design, &()).is_none() {
+                    continue;
+                }
+                derivative_error(&fit, &design, &(), &steps(&fit, &design), STEP)
+            } else {
+                let fit = TorusFit::new(&problem, setting);
+                if !fit.settle(&design, &mut positions) {
+                    continue;
+                }
+                derivative_error(&fit, &design, &positions, &steps(&fit, &design), STEP)
+            };
+            errors.extend(error);
+        }
+        assert_eq!(errors.len(), 60, "{name}");
+        errors.sort_by(f64::total_cmp);
+        // A few starts lie so near a toggle, or have two joints so nearly extreme together, that a difference
+        // says nothing; a wrong derivative is wrong everywhere.
+        assert!(errors[50] <= CLOSE, "{name}: {:e}", errors[50]);
+    }
+}
+
+#[test]
+fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
+    for (name, problem) in cases() {
+        let starts = Starts::new(&problem);
+        let mut draws = stream(12, 0);
+        let options = LmOptions {
+            max_steps: 60,
+            max_rounds: 4,
+            relative_reduction: 1e-10,
+            exact_cost: 0.0,
+            feasibility: 1e-9,
+            hopeless_cost: f64::INFINITY,
+        };
+        for start in std::iter::repeat_with(|| starts.draw(&mut draws)).take(400).flatten().take(20) {
+            let (x, cost, before, outcome, bounds) = if start.positions.is_empty() {
+                let fit = TimedFit::new(&problem, start.setting).expect("the timing is prescribed");
+                let before = fit.cost(&start.design, &());
+                let end = solve(&fit, start.design, (), &options, &|| false);
+                (end.x, end.cost, before, end.outcome, *fit.bounds())
+            } else {
+                let fit = TorusFit::new(&problem, start.setting);
+                let before = fit.cost(&start.design, &start.positions);
+                let end = solve(&fit, start.design, start.positions, &options, &|| false);
+                (end.x, end.cost, before, end.outcome, *fit.bounds())
+            };
+            for (value, (low, high)) in x.iter().zip(bounds) {
+                assert!((low..=high).contains(value), "{name}: {value} outside [{low}, {high}]");
+            }
+            assert_eq!(before.is_none(), outcome == LmOutcome::NoStart, "{name}");
+            assert!(outcome == LmOutcome::NoStart || cost.is_finite(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! What is required is held by the search, and what the search calls accepted the referee accepts.
+
+mod common;
+
+use common::{parse, run_on};
+use linkwright::record::{Figure, Record};
+use linkwright::verify::verify;
+use proptest::prelude::*;
+
+/// Twelve points of an egg-shaped curve with extra tables.
+fn egg(tables: &str) -> String {
+    let points: Vec<String> = (0..12)
+        .map(|i| {
+            let t = (30.0 * f64::from(i)).to_radians();
+            format!(
+                "[{:.4}, {:.4}]",
+                40.0 * t.cos() + 6.0 * (2.0 * t).cos(),
+                22.0 * t.sin() + 5.0 * (2.0 * t).sin()
+            )
+        })
+        .collect();
+    format!("format = 1\n[task.path]\npoints = [{}]\nclosed = true\n{tables}", points.join(", "))
+}
+
+fn accepted_and_true(text: &str) -> Record {
+    let record = run_on(2, parse(text));
+    assert_eq!(verify(&record).expect("the problem is one"), Vec::new(), "{text}");
+    assert!(record.candidates.first().is_some_and(|c| c.accepted), "nothing acceptable for {text}");
+    record
+}
+
+fn requirement(record: &Record, name: &str) -> Figure {
+    let row = record.candidates[0].requirements.iter().find(|r| r.name == name);
+    row.unwrap_or_else(|| panic!("{name} is listed")).value.clone()
+}
+
+#[test]
+fn each_requirement_is_met_where_it_binds() {
+    let free = accepted_and_true(&egg("[require]\ntype = [\"crank-rocker\"]\n"));
+    let cases = [
+        "transmission_deg_min = 45",
+        "link_ratio_max = 2.5",
+        "pivots_in = [-60, -60, 60, 0]",
+        "footprint_in = [-90, -90, 90, 90]",
+        "direction = \"cw\"",
+    ];
+    for line in cases {
+        let record = accepted_and_true(&egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{line}\n")));
+        // A requirement can only cost.
+        assert!(
+            record.candidates[0].error.sum_sq >= free.candidates[0].error.sum_sq * (1.0 - 1e-6),
+            "{line}"
+        );
+    }
+}
+
+#[test]
+fn a_binding_transmission_angle_is_used_up_to_its_limit() {
+    let record = accepted_and_true(&egg("[require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 45\n"));
+    let Figure::Number(worst) = requirement(&record, "transmission_deg_min") else { panic!("a number") };
+    assert!((45.0 - 1e-5..45.1).contains(&worst), "{worst}");
+}
+
+#[test]
+fn every_type_can_be_asked_for() {
+    for kind in ["crank-rocker", "double-crank", "rocker-crank", "double-rocker", "triple-rocker"] {
+        let record = accepted_and_true(&format!(
+            "format = 1\n[task.path]\npoints = [[0, 0], [10, 3], [20, 5], [30, 5], [40, 3], [50, 0]]\n\
+             [require]\ntype = [\"{kind}\"]\n"
+        ));
+        assert_eq!(record.candidates[0].linkage_type.name(), kind);
+    }
+}
+
+#[test]
+fn fixed_and_derived_values_are_kept_to_the_last_figure() {
+    let record = accepted_and_true(&egg(
+        "[design]\nA = [-30, -40]\nB = [[20, 80], [-60, 20]]\nground = 70\na = 15\nd = [30, 90]\n",
+    ));
+    let linkage = record.candidates[0].linkage;
+    assert_eq!((linkage.crank_pivot().re, linkage.crank_pivot().im), (-30.0, -40.0));
+    assert_eq!(linkage.crank(), 15.0);
+    assert!((linkage.ground() - 70.0).abs() <= 70.0 * 1e-7);
+    assert!((30.0 - 1e-5..=90.0 + 1e-5).contains(&linkage.crank_side()));
+}
+
+#[test]
+fn distances_to_the_coupler_point_can_be_the_coordinates() {
+    let record = accepted_and_true(&egg("[design]\nb = 80\nd = [20, 90]\ne = [20, 90]\n"));
+    let linkage = record.candidates[0].linkage;
+    assert_eq!(linkage.coupler(), 80.0);
+    assert!(
+        (20.0..=90.0).contains(&linkage.crank_side()) && (20.0..=90.0).contains(&linkage.follower_side())
+    );
+}
+
+#[test]
+fn a_flat_ground_stays_flat() {
+    let record = accepted_and_true(&egg("[design]\nground_angle_deg = 0\n"));
+    let linkage = record.candidates[0].linkage;
+    assert_eq!(linkage.crank_pivot().im, linkage.follower_pivot().im);
+}
+
+#[test]
+fn ground_timing_counts_from_the_line_between_the_pivots() {
+    let record = accepted_and_true(
+        "format = 1\n[task.path]\npoints = [[0, 0], [2, 6], [7, 9], [13, 9], [18, 6], [20, 0]]\n\
+         [task.path.timing]\ncrank_deg = [30, 60, 90, 120, 150, 180]\noffset = \"ground\"\n",
+    );
+    let candidate = &record.candidates[0];
+    let off = candidate.crank_deg[0] - 30.0 - candidate.linkage.ground_angle().to_degrees();
+    assert!((off / 360.0 - (off / 360.0).round()).abs() < 1e-12);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_is_called_accepted_verifies(
+        transmission in prop::option::of(0.0..50.0f64),
+        ratio in prop::option::of(1.5..30.0f64),
+        half in prop::option::of(30.0..200.0f64),
+        footprint in prop::option::of(60.0..300.0f64),
+        timed in any::<bool>(),
+        branch_any in any::<bool>(),
+        kinds in prop::sample::subsequence(vec!["crank-rocker", "double-crank", "rocker-crank", "double-rocker", "triple-rocker"], 0..4),
+        seed in 0..1000u32,
+    ) {
+        let mut tables = String::new();
+        if timed {
+            let angles: Vec<String> = (0..12).map(|i| (30 * i).to_string()).collect();
+            tables += &format!("[task.path.timing]\ncrank_deg = [{}]\n", angles.join(", "));
+        }
+        tables += "[require]\n";
+        if let Some(x) = transmission { tables += &format!("transmission_deg_min = {x:.3}\n"); }
+        if let Some(x) = ratio { tables += &format!("link_ratio_max = {x:.3}\n"); }
+        if let Some(x) = half { tables += &format!("pivots_in = [-{x:.3}, -{x:.3}, {x:.3}, {x:.3}]\n"); }
+        if let Some(x) = footprint { tables += &format!("footprint_in = [-{x:.3}, -{x:.3}, {x:.3}, {x:.3}]\n"); }
+        if branch_any { tables += "branch = \"any\"\n"; }
+        if !kinds.is_empty() { tables += &format!("type = {kinds:?}\n"); }
+        tables += &format!("[solve]\nseed = {seed}\nevaluations = 12000\n");
+        let text = egg(&tables);
+        let record = run_on(2, parse(&text));
+        prop_assert_eq!(verify(&record).expect("the problem is one"), Vec::new(), "{}", text);
+    }
+}

@@ -1,0 +1,103 @@
+//! The house as lib.rs draws it: which room may use which.
+
+mod common;
+
+use common::root;
+use std::path::{Path, PathBuf};
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).expect("it is there") {
+        let path = entry.expect("it can be read").path();
+        if path.is_dir() {
+            files.extend(sources(&path));
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            files.push(path);
+        }
+    }
+    files
+}
+
+/// The rooms of the crate that a file's code names.
+fn used(path: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(path).expect("it is text");
+    let mut rooms = Vec::new();
+    for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
+        for part in line.split("crate::").skip(1) {
+            // `use crate::{linkage, task::..}` names several at once.
+            let names: Vec<&str> = match part.strip_prefix('{') {
+                Some(list) => list.trim_end_matches(|c: char| "};".contains(c)).split(", ").collect(),
+                None => vec![part],
+            };
+            for name in names {
+                let room: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+                if !room.is_empty() {
+                    rooms.push(room);
+                }
+            }
+        }
+    }
+    rooms
+}
+
+#[test]
+fn every_room_uses_only_what_the_picture_allows() {
+    let allowed: &[(&str, &[&str])] = &[
+        ("linkage", &["linkage"]),
+        ("task", &["task", "linkage"]),
+        ("solve", &["solve"]),
+        ("problem", &["problem", "task", "linkage", "solve"]),
+        ("search", &["search", "problem", "task", "linkage", "solve", "assess", "record"]),
+        ("report", &["report", "linkage", "task", "problem", "record"]),
+        ("record.rs", &["linkage", "task", "problem"]),
+        ("assess.rs", &["linkage", "task", "problem", "record"]),
+        ("run.rs", &["problem", "record", "search", "solve", "task"]),
+        ("verify.rs", &["assess", "linkage", "problem", "record", "run", "task"]),
+        ("results_folder.rs", &["record"]),
+        ("diagnostic.rs", &[]),
+        ("name.rs", &[]),
+    ];
+    for (room, may) in allowed {
+        let path = root().join("src").join(room);
+        let files = if path.is_dir() { sources(&path) } else { vec![path] };
+        for file in files {
+            for name in used(&file) {
+                assert!(may.contains(&name.as_str()), "{} uses crate::{name}", file.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_command_line_stays_in_its_room() {
+    for file in sources(&root().join("src")) {
+        let inside = file.components().any(|c| c.as_os_str() == "cli");
+        let text = std::fs::read_to_string(&file).expect("it is text");
+        for name in ["clap", "indicatif", "ctrlc", "ariadne"] {
+            let names_it = text.lines().any(|l| {
+                let l = l.trim_start();
+                !l.starts_with("//")
+                    && (l.contains(&format!("{name}::")) || l.contains(&format!("use {name}")))
+            });
+            assert!(inside || !names_it, "{} names {name}", file.display());
+        }
+    }
+}
+
+#[test]
+fn argmin_is_named_in_one_file_and_unsafe_code_stands_in_one() {
+    for file in sources(&root().join("src")) {
+        let text = std::fs::read_to_string(&file).expect("it is text");
+        let code = |line: &&str| !line.trim_start().starts_with("//");
+        let has = |word: &str| text.lines().filter(code).any(|line| line.contains(word));
+        let is = |name: &str| file.ends_with(name);
+        assert!(
+            !has("argmin::") || is("argmin_bridge.rs") || is("population_tests.rs"),
+            "{}",
+            file.display()
+        );
+        assert!(!has("unsafe ") || is("dispatch.rs"), "{}", file.display());
+    }
+    let main = std::fs::read_to_string(root().join("src/main.rs")).expect("it is text");
+    assert!(main.lines().count() < 40);
+}
