@@ -216,6 +216,18 @@ pub enum Figure {
     Words(Vec<String>),
 }
 
+impl std::fmt::Display for Figure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        match self {
+            Figure::Number(number) => write!(f, "{number}"),
+            Figure::Numbers(numbers) => f.write_str(&list(numbers.iter().map(f64::to_string).collect())),
+            Figure::Word(word) => f.write_str(word),
+            Figure::Words(words) => f.write_str(&list(words.clone())),
+        }
+    }
+}
+
 /// A requirement of a candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Requirement {

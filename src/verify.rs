@@ -138,7 +138,8 @@ impl Against<'_> {
         }
         if recorded.defects != found.defects {
             let names = |c: &Candidate| {
-                let list: Vec<String> = c.defects.iter().map(|d| format!("{d:?}")).collect();
+                let list: Vec<String> =
+                    c.defects.iter().map(|d| format!("{} at {:?}", d.name(), d.at())).collect();
                 if list.is_empty() { "none".to_string() } else { list.join(", ") }
             };
             self.differ("defects", names(recorded), names(&found));
@@ -156,7 +157,7 @@ impl Against<'_> {
         let mut doubtful = false;
         for (r, f) in recorded.requirements.iter().zip(&found.requirements) {
             if r.limit != f.limit {
-                self.differ(&format!("{}.limit", r.name), format!("{:?}", r.limit), format!("{:?}", f.limit));
+                self.differ(&format!("{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
             }
             match (&r.value, &f.value) {
                 (Figure::Number(r_value), Figure::Number(f_value)) => {
@@ -173,7 +174,7 @@ impl Against<'_> {
                 }
                 (r_value, f_value) if r_value == f_value => {}
                 (r_value, f_value) => {
-                    self.differ(&format!("{}.value", r.name), format!("{r_value:?}"), format!("{f_value:?}"));
+                    self.differ(&format!("{}.value", r.name), r_value.to_string(), f_value.to_string());
                 }
             }
             if r.met != f.met {

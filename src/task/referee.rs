@@ -53,6 +53,13 @@ impl Defect {
             Defect::Circuit { .. } => "circuit",
         }
     }
+
+    /// The points that show it, counted from 0.
+    pub fn at(&self) -> &[usize] {
+        match self {
+            Defect::Order { at } | Defect::Branch { at } | Defect::Circuit { at } => at,
+        }
+    }
 }
 
 /// The part of the motion between the first and the last target point.
