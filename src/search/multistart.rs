@@ -25,11 +25,11 @@ use crate::task::{AngleOffset, Timing};
 use std::f64::consts::TAU;
 
 /// Starts drawn and screened in a round.
-const SCREEN: usize = 160;
+pub const SCREEN: usize = 160;
 /// Starts fitted for a few steps.
-const SHORT: usize = 8;
+pub const SHORT: usize = 8;
 /// Starts fitted to the end.
-const LONG: usize = 3;
+pub const LONG: usize = 3;
 /// Steps of a short and of a long fit.
 const SHORT_STEPS: usize = 24;
 const LONG_STEPS: usize = 300;
