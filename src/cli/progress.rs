@@ -4,6 +4,7 @@ use crate::search::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// Searches shorter than this show no progress.
@@ -18,6 +19,8 @@ pub struct Shown {
     bar: Option<ProgressBar>,
     last_line: Mutex<Instant>,
     silent: bool,
+    /// Whether the bar has been put on the terminal.
+    drawn: AtomicBool,
 }
 
 impl Shown {
@@ -25,14 +28,21 @@ impl Shown {
     pub fn new(name: &str, silent: bool) -> Self {
         let bar = (stderr().is_terminal() && !silent).then(|| {
             let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
-            let style = "{prefix} [{bar:30}] {pos}/{len} evaluations, {per_sec}, {eta} left  {msg}";
+            let style = "{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}";
             bar.set_style(
                 ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
             );
             bar.set_prefix(crate::report::text::clean(name));
             bar
         });
-        Shown { name: name.into(), start: Instant::now(), bar, last_line: Mutex::new(Instant::now()), silent }
+        Shown {
+            name: name.into(),
+            start: Instant::now(),
+            bar,
+            last_line: Mutex::new(Instant::now()),
+            silent,
+            drawn: AtomicBool::new(false),
+        }
     }
 
     /// Takes a word from the search.
@@ -46,7 +56,11 @@ impl Shown {
             None => "nothing acceptable yet".into(),
         };
         if let Some(bar) = &self.bar {
-            bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            if !self.drawn.swap(true, Ordering::Relaxed) {
+                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            }
+            let rate = progress.evaluations as f64 / self.start.elapsed().as_secs_f64();
+            let best = format!("{}/s, {best}", crate::report::text::grouped(rate as u64));
             bar.set_length(progress.budget);
             bar.set_position(progress.evaluations.min(progress.budget));
             bar.set_message(best);
