@@ -83,7 +83,7 @@ fn a_fitness_evaluation_allocates_nothing() {
 
 #[test]
 fn filling_a_curve_allocates_nothing() {
-    let linkage = linkwright::linkage_file::load(&root().join("problems/linkages/romero.toml"))
+    let linkage = linkwright::linkage_file::load(&root().join("problems/seeds/romero.toml"))
         .expect("it is one")
         .linkage;
     let kernel = Kernel::new(&linkage);

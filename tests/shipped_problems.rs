@@ -9,7 +9,10 @@ use linkwright::record::Record;
 
 #[test]
 fn every_problem_loads_without_a_warning_and_survives_a_round_trip() {
-    for path in shipped("toml").iter().filter(|p| !p.parent().is_some_and(|d| d.ends_with("linkages"))) {
+    for path in shipped("toml")
+        .iter()
+        .filter(|p| !p.parent().is_some_and(|d| d.ends_with("linkages") || d.ends_with("seeds")))
+    {
         let file = load(path, &[]);
         assert!(file.warnings.is_empty(), "{}: {:?}", path.display(), file.warnings);
         assert_eq!(path.file_stem().and_then(|s| s.to_str()), Some(file.name.as_str()));
@@ -31,7 +34,10 @@ fn every_published_problem_has_a_source_and_an_expectation() {
 
 #[test]
 fn every_four_bar_linkage_file_survives_a_round_trip() {
-    for path in shipped("toml").iter().filter(|p| p.parent().is_some_and(|d| d.ends_with("linkages"))) {
+    for path in shipped("toml")
+        .iter()
+        .filter(|p| p.parent().is_some_and(|d| d.ends_with("linkages") || d.ends_with("seeds")))
+    {
         let Ok(file) = linkage_file::load(path) else { continue };
         let text = linkage_file::to_toml(&file.name, file.unit, &file.linkage);
         let again = linkage_file::parse("again.toml", &text).unwrap_or_else(|e| panic!("{e}"));

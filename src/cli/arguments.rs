@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::analysis::PositionMethod;
 use crate::report::compare::SortKey;
 use crate::schema::SchemaKind;
 use clap::{Args, Parser, Subcommand};
@@ -33,6 +34,10 @@ pub enum Command {
     Compare(Compare),
     /// Recompute every figure and verdict of a result
     Verify(Verify),
+    /// Positions, velocities, accelerations and mobility of a linkage file
+    Analyze(Analyze),
+    /// The other two linkages of the same coupler curve
+    Cognates(Cognates),
     /// Print the JSON Schema of a file, for editors
     Schema {
         /// problem or linkage
@@ -116,6 +121,66 @@ pub struct Verify {
     /// A result's folder or record.json
     #[arg(required = true, value_name = "RESULT")]
     pub results: Vec<PathBuf>,
+}
+
+/// Options of `analyze`.
+#[derive(Debug, Args)]
+pub struct Analyze {
+    /// A linkage file (TOML)
+    #[arg(value_name = "LINKAGE")]
+    pub linkage: PathBuf,
+    /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
+    #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = finite)]
+    pub angle: Option<Vec<f64>>,
+    /// This many crank angles, evenly over a full turn
+    #[arg(long, value_name = "N", conflicts_with = "angle", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub cycle: Option<u32>,
+    /// Speed of the crank, rad/s
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
+    pub omega: Option<f64>,
+    /// Speed of the crank, turns a minute
+    #[arg(long, value_name = "N", conflicts_with = "omega", allow_negative_numbers = true, value_parser = finite)]
+    pub rpm: Option<f64>,
+    /// Acceleration of the crank, rad/s^2
+    #[arg(long, value_name = "A", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
+    pub alpha: f64,
+    /// Methods side by side: natural, algebraic, complex, fixed-point
+    #[arg(long, value_name = "METHOD,..", value_delimiter = ',', value_parser = super::analyze::methods)]
+    pub method: Vec<PositionMethod>,
+    /// All four configurations (t1, t2), not the file's alone
+    #[arg(long)]
+    pub all_configurations: bool,
+    /// Write every row as CSV
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Draw the sheets into one SVG file
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `cognates`.
+#[derive(Debug, Args)]
+pub struct Cognates {
+    /// A linkage file (TOML)
+    #[arg(value_name = "LINKAGE")]
+    pub linkage: PathBuf,
+    /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
+    #[arg(long, value_name = "DIR", default_value = "", hide_default_value = true)]
+    pub out: PathBuf,
+    /// Draw all three together
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.abs() <= crate::linkage::MAX_MAGNITUDE => Ok(number),
+        Ok(_) => Err("a finite number below 1e12 in magnitude is needed".into()),
+        Err(_) => Err("this is not a number".into()),
+    }
 }
 
 fn key_value(text: &str) -> Result<(String, String), String> {

@@ -3,6 +3,7 @@
 //! stdout carries the answer, stderr progress and diagnostics. Exit codes: 0 done, 1 ran but nothing is
 //! acceptable (or a check failed), 2 bad input or usage, 70 a bug of ours, 130 interrupted.
 
+mod analyze;
 mod arguments;
 mod check;
 mod compare;
@@ -64,6 +65,8 @@ fn dispatch(command: Command) -> Ended {
         Command::New(options) => new::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::Verify(options) => verify::run(&options),
+        Command::Analyze(options) => analyze::run(&options),
+        Command::Cognates(options) => analyze::cognates(&options),
         Command::Schema { kind } => {
             terminal::answer(&format!("{:#}\n", crate::schema::schema(kind)));
             Ended::Good

@@ -15,11 +15,15 @@
 //! mecanismo de cuatro barras utilizando coordenadas naturales". Points of the plane are complex numbers.
 //! This room imports nothing else of the crate.
 
+pub mod assembly_condition;
+pub mod cognate;
 pub mod coupler_curve;
 pub mod dispatch;
 pub mod gradient;
 pub mod lane;
+pub mod loop_closure;
 pub mod mobility;
+pub mod motion;
 pub mod position;
 pub mod transmission;
 

@@ -13,6 +13,9 @@
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
 //! | several results | [`compare::compare`] |
 
+pub mod analysis_csv;
+pub mod analysis_sheets;
+pub mod analysis_text;
 mod canvas;
 pub mod compare;
 pub mod contact_sheet;

@@ -287,8 +287,11 @@ impl Flooded {
 
 /// The linkage of a file under `problems/linkages`.
 pub fn shipped_linkage(name: &str) -> FourBar {
-    let path = format!("{}/problems/linkages/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    let folders =
+        ["linkages", "seeds"].map(|f| format!("{}/problems/{f}/{name}.toml", env!("CARGO_MANIFEST_DIR")));
+    let found = folders.iter().find(|path| std::path::Path::new(path).is_file());
+    let path = found.unwrap_or_else(|| panic!("no linkage file {name}"));
+    let text = std::fs::read_to_string(path).unwrap_or_else(|e| panic!("{path}: {e}"));
     let mut table: toml::Table = text.parse().unwrap_or_else(|e| panic!("{path}: {e}"));
     assert_eq!(table["name"].as_str(), Some(name));
     if let Some(vector_loop) = table.remove("vector_loop") {

@@ -1,0 +1,143 @@
+//! `analyze` and `cognates`: what a given linkage does.
+
+use super::arguments::{Analyze, Cognates};
+use super::{Ended, terminal};
+use crate::analysis::{PositionMethod, Request, analyze, full_turn};
+use crate::diagnostic::escaped;
+use crate::linkage::motion::CrankMotion;
+use crate::linkage_file::{self, LinkageFile};
+use crate::report::analysis_csv::analysis_csv;
+use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
+use crate::report::analysis_text::{analysis_head, analysis_table};
+use ariadne::ReportKind;
+use std::path::Path;
+
+/// The crank angles when none are asked for: every 30 degrees.
+const DEFAULT_POSITIONS: usize = 12;
+/// A table of more rows is not printed when it was written to a file.
+const LONG_TABLE: usize = 72;
+
+fn load(path: &Path) -> Result<LinkageFile, Ended> {
+    linkage_file::load(path).map_err(|diagnostic| {
+        terminal::diagnose(ReportKind::Error, &diagnostic);
+        Ended::Refused
+    })
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Ended> {
+    std::fs::write(path, text).map_err(|e| {
+        terminal::complain(&format!("{}: {e}", path.display()));
+        Ended::Refused
+    })
+}
+
+/// Runs `analyze`.
+pub fn run(options: &Analyze) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner(options: &Analyze) -> Result<Ended, Ended> {
+    let file = load(&options.linkage)?;
+    let crank_deg = match (&options.angle, options.cycle) {
+        (Some(angles), _) => angles.clone(),
+        (None, Some(n)) => full_turn(n as usize),
+        (None, None) => full_turn(DEFAULT_POSITIONS),
+    };
+    let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
+    let request = Request {
+        name: file.name,
+        unit: file.unit,
+        linkage: file.linkage,
+        crank_deg,
+        input: CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha },
+        methods: options.method.clone(),
+        all_configurations: options.all_configurations,
+    };
+    let analysis = analyze(&request);
+    if let Some(path) = &options.csv {
+        write(path, &analysis_csv(&analysis))?;
+    }
+    if let Some(path) = &options.svg {
+        write(path, &analysis_svg(&analysis))?;
+    }
+    if options.json {
+        let text = serde_json::to_string_pretty(&analysis).map_err(|e| {
+            terminal::complain(&format!("the analysis cannot be written as JSON: {e}"));
+            Ended::Refused
+        })?;
+        terminal::answer(&(text + "\n"));
+        return Ok(Ended::Good);
+    }
+    // A long table that stands in a file already is not printed as well.
+    let rows: usize = analysis.configurations.iter().map(|c| c.rows.len()).sum();
+    let files: Vec<String> = [&options.csv, &options.svg]
+        .into_iter()
+        .flatten()
+        .map(|p| escaped(&p.display().to_string()))
+        .collect();
+    if files.is_empty() || rows <= LONG_TABLE {
+        terminal::answer(&analysis_table(&analysis, terminal::colour()));
+    } else {
+        terminal::answer(&analysis_head(&analysis, terminal::colour()));
+    }
+    if !files.is_empty() {
+        terminal::answer(&format!("\n  {rows} positions. Written to {}\n", files.join(" and ")));
+    }
+    Ok(Ended::Good)
+}
+
+/// Runs `cognates`.
+pub fn cognates(options: &Cognates) -> Ended {
+    inner_cognates(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
+    let file = load(&options.linkage)?;
+    let mut found = Vec::new();
+    let mut text = String::new();
+    for (place, cognate) in ["A", "B"].iter().zip(file.linkage.cognates()) {
+        match cognate {
+            Ok(cognate) => {
+                let n = found.len() + 1;
+                let kind = cognate.linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
+                text.push_str(&format!("  {n}. at {place}: {kind}\n     {}\n", cognate.linkage));
+                found.push(cognate.linkage);
+            }
+            Err(e) => text.push_str(&format!("  at {place}: none ({e})\n")),
+        }
+    }
+    let mut written = Vec::new();
+    for (i, linkage) in found.iter().enumerate() {
+        let name = format!("{}-cognate-{}", file.name, i + 1);
+        let path = options.out.join(format!("{name}.toml"));
+        if path.exists() {
+            terminal::complain(&format!("{} exists already; give another folder with --out", path.display()));
+            return Err(Ended::Refused);
+        }
+        written.push((path, linkage_file::to_toml(&name, file.unit, linkage)));
+    }
+    if !options.out.as_os_str().is_empty() {
+        std::fs::create_dir_all(&options.out).map_err(|e| {
+            terminal::complain(&format!("{}: {e}", options.out.display()));
+            Ended::Refused
+        })?;
+    }
+    for (path, toml) in &written {
+        write(path, toml)?;
+        text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
+    }
+    if let Some(path) = &options.svg {
+        write(path, &cognates_svg(&file.name, file.unit, &file.linkage, &found))?;
+        text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
+    }
+    terminal::answer(&format!(
+        "The Roberts-Chebyshev cognates of {}: other linkages of the same coupler curve\n{text}",
+        crate::report::text::clean(&file.name)
+    ));
+    Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
+}
+
+/// The methods of a comma-separated list.
+pub fn methods(text: &str) -> Result<PositionMethod, String> {
+    text.parse().map_err(|e: crate::analysis::UnknownMethod| e.to_string())
+}
