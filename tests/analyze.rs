@@ -1,0 +1,194 @@
+//! `analyze` and `cognates` as a person meets them.
+
+mod common;
+
+use assert_cmd::Command;
+use common::root;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+struct Answer {
+    code: i32,
+    stdout: String,
+    stderr: String,
+}
+
+fn linkwright(folder: &Path, arguments: &[&str]) -> Answer {
+    let output = Command::cargo_bin("linkwright")
+        .expect("it is built")
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .expect("it runs");
+    Answer {
+        code: output.status.code().expect("it ends by itself"),
+        stdout: String::from_utf8(output.stdout).expect("text"),
+        stderr: String::from_utf8(output.stderr).expect("text"),
+    }
+}
+
+fn shipped(name: &str) -> String {
+    root().join("problems").join(name).display().to_string()
+}
+
+const HEADER: &str = "crank_deg,t1,t2,Cx,Cy,Dx,Dy,Px,Py,coupler_deg,follower_deg,transmission_deg,omega3_rad_s,\
+omega4_rad_s,vCx,vCy,vDx,vDy,vPx,vPy,alpha3_rad_s2,alpha4_rad_s2,aCx,aCy,aDx,aDy,aPx,aPy,status";
+
+#[test]
+fn the_example_of_de_castro_stands_in_table_csv_and_json() {
+    let folder = TempDir::new().expect("a folder");
+    let example = shipped("seeds/de-castro-2-1.toml");
+    let arguments = ["analyze", &example, "--angle", "90,120,150,180", "--omega", "5", "--csv", "out.csv"];
+    let run = linkwright(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for figure in ["-150.6966", "589.5396", "10.09733", "30.45945", "Triple-rocker"] {
+        assert!(run.stdout.contains(figure), "{figure} in\n{}", run.stdout);
+    }
+    let csv = fs::read_to_string(folder.path().join("out.csv")).expect("it was written");
+    assert_eq!(csv.lines().next(), Some(HEADER));
+    assert_eq!(csv.lines().count(), 5);
+    let json = linkwright(folder.path(), &["analyze", &example, "--angle", "120", "--omega", "5", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&json.stdout).expect("JSON");
+    let row = &value["configurations"][0]["rows"][0];
+    assert_eq!(row["status"], "ok");
+    assert!((row["alpha4_rad_s2"].as_f64().expect("a number") - 30.45945).abs() < 5e-6);
+    assert!((row["P"][1].as_f64().expect("a number") - 589.540).abs() < 5e-4);
+}
+
+#[test]
+fn methods_stand_side_by_side_and_say_where_they_are_singular() {
+    let folder = TempDir::new().expect("a folder");
+    let example = shipped("seeds/de-castro-2-1.toml");
+    let arguments = ["analyze", &example, "--angle", "90,120", "--method", "algebraic,complex,fixed-point"];
+    let run = linkwright(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("singular: Ax = d"), "{}", run.stdout);
+    assert_eq!(run.stdout.matches("fixed-point").count(), 2, "{}", run.stdout);
+    let unknown = linkwright(folder.path(), &["analyze", &example, "--method", "magic"]);
+    assert_eq!(unknown.code, 2);
+    assert!(unknown.stderr.contains("natural, algebraic, complex, fixed-point"), "{}", unknown.stderr);
+}
+
+#[test]
+fn all_four_configurations_are_given() {
+    let folder = TempDir::new().expect("a folder");
+    let example = shipped("seeds/romero.toml");
+    let run = linkwright(folder.path(), &["analyze", &example, "--all-configurations", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&run.stdout).expect("JSON");
+    let signs: Vec<(i64, i64)> = value["configurations"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|c| (c["linkage"]["t1"].as_i64().expect("a sign"), c["linkage"]["t2"].as_i64().expect("a sign")))
+        .collect();
+    assert_eq!(signs, [(1, 1), (1, -1), (-1, 1), (-1, -1)]);
+}
+
+/// A linkage file of five lengths.
+fn write_linkage(folder: &Path, name: &str, b: &str, lengths: [f64; 5]) -> String {
+    let [a, bb, c, d, e] = lengths;
+    let text = format!(
+        "format = 1\n[linkage]\nA = [0, 0]\nB = {b}\na = {a}\nb = {bb}\nc = {c}\nd = {d}\ne = {e}\nt1 = 1\nt2 = 1\n"
+    );
+    fs::write(folder.join(name), text).expect("written");
+    name.to_owned()
+}
+
+#[test]
+fn degenerate_linkages_have_a_status_and_no_nan_anywhere() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path();
+    let cases = [
+        // (linkage, the statuses that must occur over a turn)
+        (
+            write_linkage(path, "parallelogram.toml", "[5, 0]", [2.0, 5.0, 2.0, 1.0, 4.5]),
+            vec!["ok", "singular"],
+        ),
+        (write_linkage(path, "triple.toml", "[3.5, 0]", [7.0, 3.0, 5.0, 2.0, 2.0]), vec!["ok", "open"]),
+        (write_linkage(path, "coincident.toml", "[0, 0]", [2.0, 5.0, 4.0, 3.0, 3.0]), vec!["ok"]),
+        (write_linkage(path, "on-b.toml", "[2, 0]", [2.0, 3.0, 3.0, 3.0, 3.0]), vec!["undetermined", "ok"]),
+        (write_linkage(path, "apart.toml", "[50, 0]", [2.0, 3.0, 3.0, 3.0, 3.0]), vec!["open"]),
+    ];
+    for (file, statuses) in cases {
+        let arguments = [
+            "analyze", &file, "--cycle", "360", "--omega", "3", "--alpha", "1", "--csv", "out.csv", "--svg",
+            "out.svg",
+        ];
+        let run = linkwright(path, &arguments);
+        assert_eq!(run.code, 0, "{file}: {}", run.stderr);
+        let json = linkwright(path, &["analyze", &file, "--cycle", "360", "--omega", "3", "--json"]);
+        serde_json::from_str::<serde_json::Value>(&json.stdout).expect("JSON");
+        let csv = fs::read_to_string(path.join("out.csv")).expect("written");
+        let svg = fs::read_to_string(path.join("out.svg")).expect("written");
+        for text in [&run.stdout, &json.stdout, &csv, &svg] {
+            assert!(
+                !text.contains("NaN") && !text.contains("inf,") && !text.contains(",inf"),
+                "{file}: {text}"
+            );
+        }
+        for status in statuses {
+            assert!(csv.lines().any(|line| line.ends_with(&format!(",{status}"))), "{file}: {status}");
+        }
+    }
+    let zero = write_linkage(path, "zero.toml", "[5, 0]", [2.0, 0.0, 5.0, 1.0, 1.0]);
+    let run = linkwright(path, &["analyze", &zero]);
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("zero.toml:6"), "{}", run.stderr);
+}
+
+#[test]
+fn the_assembly_condition_is_printed_beside_the_sufficient_one() {
+    let folder = TempDir::new().expect("a folder");
+    let example = shipped("seeds/romero-condition-20.toml");
+    let run = linkwright(folder.path(), &["analyze", &example, "--angle", "180"]);
+    assert_eq!(run.code, 0);
+    let words: String = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("= 2.9000 >= 1, holds; b^2 >= l1^2 and d^2 >= l2^2: fails"), "{}", run.stdout);
+}
+
+#[test]
+fn cognates_are_written_as_linkage_files_that_trace_the_same_curve() {
+    let folder = TempDir::new().expect("a folder");
+    let hoeken = shipped("linkages/hoeken.toml");
+    let run = linkwright(folder.path(), &["cognates", &hoeken, "--out", "two", "--svg", "all.svg"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let original = linkwright::linkage_file::load(Path::new(&hoeken)).expect("it is one").linkage;
+    for n in [1, 2] {
+        let path = folder.path().join(format!("two/hoeken-cognate-{n}.toml"));
+        let cognate = linkwright::linkage_file::load(&path).expect("it is one").linkage;
+        let start = cognate.mobility().toggles().first().map_or(0.5, |t| t.crank_angle + 1e-3);
+        let curves: Vec<_> = [start, -start]
+            .iter()
+            .map(|at| linkwright::linkage::CouplerCurve::through(&cognate, *at, cognate.assembly(), 2000))
+            .collect();
+        for i in 0..36 {
+            let point =
+                original.position(f64::from(10 * i).to_radians()).joints().expect("a crank").coupler_point;
+            let nearest =
+                curves.iter().filter_map(|c| c.nearest(point)).map(|n| n.distance).fold(9.0, f64::min);
+            assert!(nearest < 1e-6, "cognate {n} at {point}: {nearest}");
+        }
+    }
+    assert!(fs::read_to_string(folder.path().join("all.svg")).expect("drawn").starts_with("<"));
+    let again = linkwright(folder.path(), &["cognates", &hoeken, "--out", "two"]);
+    assert_eq!(again.code, 2, "existing files are not overwritten");
+}
+
+#[test]
+fn usage_errors_name_the_option() {
+    let folder = TempDir::new().expect("a folder");
+    let romero = shipped("seeds/romero.toml");
+    for (arguments, word) in [
+        (vec!["analyze", &romero, "--angle", "a"], "--angle"),
+        (vec!["analyze", &romero, "--angle", "nan"], "finite"),
+        (vec!["analyze", &romero, "--cycle", "0"], "--cycle"),
+        (vec!["analyze", &romero, "--omega", "1e400"], "finite"),
+        (vec!["analyze", "nowhere.toml"], "no such file"),
+        (vec!["analyze", &romero, "--csv", "no/such/folder.csv"], "folder.csv"),
+    ] {
+        let run = linkwright(folder.path(), &arguments);
+        assert_eq!(run.code, 2, "{arguments:?}: {}", run.stderr);
+        assert!(run.stderr.contains(word), "{arguments:?}: {}", run.stderr);
+    }
+}
