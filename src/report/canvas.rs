@@ -15,6 +15,8 @@ pub(super) mod palette {
     pub(in crate::report) const TARGET: &str = "#d55e00";
     pub(in crate::report) const TARGET_TEXT: &str = "#a34700";
     pub(in crate::report) const COUPLER: &str = "#e69f00";
+    pub(in crate::report) const FOLLOWER: &str = "#009e73";
+    pub(in crate::report) const SECOND: &str = "#cc79a7";
     pub(in crate::report) const BAR: &str = "#d6dde4";
     pub(in crate::report) const BAR_EDGE: &str = "#45525f";
 }

@@ -2,6 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Spot, View, palette, px};
 use super::labels::Labels;
+use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
 use super::scene::{Bounds, Pose, Scene};
 use crate::linkage::{Complex, Joints};
 use std::collections::BTreeSet;
@@ -30,29 +31,39 @@ const MARKED: usize = 150;
 
 /// Draws the scene.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    let mut labels = Labels::default();
+    draw_among(canvas, &mut Labels::default(), scene, view, detail);
+}
+
+/// As [`draw`]; labels keep off what is marked already, and what is drawn is marked for later ones.
+pub(super) fn draw_among(
+    canvas: &mut Canvas,
+    labels: &mut Labels,
+    scene: &Scene,
+    view: &View,
+    detail: Detail,
+) {
     let pose = scene.pose.filter(|_| detail.linkage);
     if let Some(pose) = &pose {
         ground(canvas, scene, view, detail);
         pin_paths(canvas, scene, view, detail);
-        mark_linkage(&mut labels, scene, view, pose);
+        mark_linkage(labels, scene, view, pose);
         coupler_triangle(canvas, scene, view, pose, detail);
     }
-    curves(canvas, &mut labels, scene, view, detail);
+    curves(canvas, labels, scene, view, detail);
     let marks = Marks::new(scene, view, detail);
-    whiskers(canvas, &mut labels, &marks, detail);
+    whiskers(canvas, labels, &marks, detail);
     if let Some(pose) = &pose {
         linkage(canvas, scene, view, pose, detail);
     }
-    targets(canvas, &mut labels, &marks, detail);
+    targets(canvas, labels, &marks, detail);
     if let Some(pose) = &pose {
         coupler_point(canvas, view, pose, detail);
         if detail.letters {
-            letters(canvas, &mut labels, scene, view, pose);
+            letters(canvas, labels, scene, view, pose);
         }
     }
     if detail.numbers {
-        numbers(canvas, &mut labels, scene, view, marks.radius);
+        numbers(canvas, labels, scene, view, marks.radius);
     }
 }
 
@@ -106,16 +117,6 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
     (strands, false)
 }
 
-fn mark_path(labels: &mut Labels, spots: &[Spot]) {
-    let mut last: Option<Spot> = None;
-    for &spot in spots {
-        if last.is_none_or(|last| last.distance(spot) >= 4.0) {
-            labels.mark(spot);
-            last = Some(spot);
-        }
-    }
-}
-
 /// The line A-B, and under each fixed pivot a hatched stand.
 fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     let Some(linkage) = &scene.linkage else { return };
@@ -123,26 +124,7 @@ fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     let faint =
         format!(r#"stroke="{}" stroke-width="{:.2}" stroke-dasharray="2 5""#, palette::MUTED, detail.weight);
     canvas.line(pivots[0], pivots[1], &faint);
-    let w = detail.weight;
-    for pivot in pivots {
-        let (half, top, base) = (11.0 * w, pivot.y, pivot.y + 16.0 * w);
-        let stand =
-            [Spot::new(pivot.x, top), Spot::new(pivot.x + half, base), Spot::new(pivot.x - half, base)];
-        let edge = format!(
-            r#"fill="{}" stroke="{}" stroke-width="{:.2}" stroke-linejoin="round""#,
-            palette::PAPER,
-            palette::BAR_EDGE,
-            1.4 * w
-        );
-        canvas.path(&stand, true, &edge);
-        let stroke =
-            format!(r#"stroke="{}" stroke-width="{:.2}" stroke-linecap="round""#, palette::BAR_EDGE, 1.4 * w);
-        canvas.line(Spot::new(pivot.x - 1.5 * half, base), Spot::new(pivot.x + 1.5 * half, base), &stroke);
-        for i in 0..6 {
-            let x = pivot.x + half * (-1.3 + 0.56 * f64::from(i));
-            canvas.line(Spot::new(x, base), Spot::new(x - 4.5 * w, base + 5.5 * w), &stroke);
-        }
-    }
+    pivots.into_iter().for_each(|pivot| stand(canvas, pivot, detail.weight));
 }
 
 /// The paths of C and D.
@@ -175,51 +157,17 @@ fn joint_spots(scene: &Scene, view: &View, pose: &Pose) -> Option<[Spot; 5]> {
 /// The coupler's triangle, shaded.
 fn coupler_triangle(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
     let Some([_, _, c, d, p]) = joint_spots(scene, view, pose) else { return };
-    let triangle = format!(
-        concat!(
-            r#"fill="{}" fill-opacity="0.22" stroke="{}" "#,
-            r#"stroke-width="{:.2}" stroke-linejoin="round""#
-        ),
-        palette::COUPLER,
-        palette::BAR_EDGE,
-        1.8 * detail.weight
-    );
-    canvas.path(&[c, d, p], true, &triangle);
+    triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
 }
 
 /// Crank, coupler side C-D and follower as bars, pins on top.
 fn linkage(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
     let Some([a, b, c, d, _]) = joint_spots(scene, view, pose) else { return };
-    let w = detail.weight;
-    for (from, to) in [(a, c), (c, d), (b, d)] {
-        for (colour, width) in [(palette::BAR_EDGE, 9.5 * w), (palette::BAR, 6.5 * w)] {
-            canvas.line(
-                from,
-                to,
-                &format!(r#"stroke="{colour}" stroke-width="{width:.2}" stroke-linecap="round""#),
-            );
-        }
-    }
-    for (joint, radius) in [(a, 5.2), (b, 5.2), (c, 4.2), (d, 4.2)] {
-        let pin = format!(
-            r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
-            palette::PAPER,
-            palette::BAR_EDGE,
-            1.8 * w
-        );
-        canvas.circle(joint, radius * w, &pin);
-    }
+    bars(canvas, [a, b, c, d], palette::BAR, palette::BAR_EDGE, detail.weight);
 }
 
 fn coupler_point(canvas: &mut Canvas, view: &View, pose: &Pose, detail: Detail) {
-    let at = view.spot(pose.joints.coupler_point);
-    let attributes = format!(
-        r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
-        palette::CURVE,
-        palette::PAPER,
-        1.2 * detail.weight
-    );
-    canvas.circle(at, 4.4 * detail.weight, &attributes);
+    point_mark(canvas, view.spot(pose.joints.coupler_point), detail.weight);
 }
 
 /// A target point's place, and the place of the coupler point instead.
@@ -317,16 +265,7 @@ fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Deta
 
 /// What labels keep off, apart from the curve and the points.
 fn mark_linkage(labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
-    let Some([a, b, c, d, p]) = joint_spots(scene, view, pose) else { return };
-    for (from, to) in [(a, c), (c, d), (b, d), (c, p), (d, p)] {
-        labels.mark_line(from, to);
-        labels.mark_line(from, to);
-    }
-    for pivot in [a, b] {
-        for y in [8.0, 16.0, 20.0] {
-            labels.mark_line(Spot::new(pivot.x - y, pivot.y + y), Spot::new(pivot.x + y, pivot.y + y));
-        }
-    }
+    joint_spots(scene, view, pose).into_iter().for_each(|joints| mark_joints(labels, joints));
 }
 
 /// A B C D P.
@@ -340,36 +279,9 @@ fn letters(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View,
         ("A", a, plus(away(a, &[c]), above)),
         ("B", b, plus(away(b, &[d]), above)),
     ];
-    for (letter, joint, towards) in joints {
-        if let Some(at) = labels.place(letter, 15.0, joint, 9.0, towards, true) {
-            let attributes = format!(
-                concat!(
-                    r#"font-size="15" font-weight="600" fill="{}" "#,
-                    r#"stroke="{}" stroke-width="3" stroke-linejoin="round" paint-order="stroke""#
-                ),
-                palette::INK,
-                palette::PAPER
-            );
-            canvas.text(at, Anchor::Middle, &attributes, letter);
-        }
+    for (name, joint, towards) in joints {
+        letter(canvas, labels, name, joint, towards);
     }
-}
-
-/// The direction away from the neighbours, straight up where they cancel.
-fn away(joint: Spot, neighbours: &[Spot]) -> Spot {
-    let mut sum = Spot::new(0.0, 0.0);
-    for neighbour in neighbours {
-        let distance = joint.distance(*neighbour);
-        if distance > 0.0 {
-            sum =
-                plus(sum, Spot::new((joint.x - neighbour.x) / distance, (joint.y - neighbour.y) / distance));
-        }
-    }
-    if sum.x.hypot(sum.y) < 0.2 { Spot::new(0.0, -1.0) } else { sum }
-}
-
-fn plus(a: Spot, b: Spot) -> Spot {
-    Spot::new(a.x + b.x, a.y + b.y)
 }
 
 /// Numbers at the target points: all where they are few, else 0 and round steps.

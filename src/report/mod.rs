@@ -11,20 +11,24 @@
 //! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`plot::terminal_plot`] |
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
+//! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`analysis_sheets::cognates_svg`] |
 //! | several results | [`compare::compare`] |
 
 pub mod analysis_csv;
 pub mod analysis_sheets;
 pub mod analysis_text;
 mod canvas;
+mod cognates_sheet;
 pub mod compare;
 pub mod contact_sheet;
 pub mod csv;
 mod figure;
 mod grid;
 mod labels;
+mod parts;
 pub mod plot;
 mod scene;
+mod sheet;
 pub mod svg;
 pub mod table;
 pub mod text;

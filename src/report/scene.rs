@@ -93,22 +93,32 @@ fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
 
 /// The circuit of the first point: crank angle (radians) and assembly at any position of it.
 pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
-    let linkage = &candidate.linkage;
-    positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite()).unwrap_or_else(|| {
-        let mobility = linkage.mobility();
-        let arc = mobility.arc(crate::linkage::Circuit { index: 0 });
-        (arc.map_or(0.0, |arc| arc.middle), linkage.assembly())
-    })
+    let first = positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite());
+    first.unwrap_or_else(|| middle_position(&candidate.linkage))
+}
+
+/// A position in the middle of what the input of a linkage can reach.
+pub(super) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
+    let arc = linkage.mobility().arc(crate::linkage::Circuit { index: 0 });
+    (arc.map_or(0.0, |arc| arc.middle), linkage.assembly())
 }
 
 /// The joints along every circuit on which a point is reached, `samples` positions each.
 pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>> {
-    let linkage = &candidate.linkage;
+    let all = std::iter::once(first_position(candidate)).chain(positions(candidate));
+    circuits_through(&candidate.linkage, all, samples)
+}
+
+/// The joints along every circuit that holds one of the positions (crank angle in radians, assembly).
+pub(super) fn circuits_through(
+    linkage: &FourBar,
+    positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
+    samples: usize,
+) -> Vec<Vec<Joints>> {
     let mobility = linkage.mobility();
     let mut seen = Vec::new();
     let mut circuits = Vec::new();
-    let first = first_position(candidate);
-    for (angle, assembly) in std::iter::once(first).chain(positions(candidate)) {
+    for (angle, assembly) in positions {
         let circuit = mobility.branch(angle, assembly).circuit;
         let rocks = mobility.arc(circuit).is_some();
         // Where the input turns fully the assemblies are apart, where it rocks they are one circuit.
@@ -137,15 +147,8 @@ fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<
     /// The first point is kept while its closest joints are at least this part of the best spacing.
     const GOOD_ENOUGH: f64 = 0.6;
     let spacing = |joints: &Joints| {
-        let all = [
-            linkage.crank_pivot(),
-            linkage.follower_pivot(),
-            joints.crank_pin,
-            joints.follower_pin,
-            joints.coupler_point,
-        ];
-        let pairs = (0..5).flat_map(|i| (0..i).map(move |j| (i, j)));
-        pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
+        let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+        closest(&[a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
     };
     let poses: Vec<(Pose, f64)> = positions
         .iter()
@@ -159,6 +162,12 @@ fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<
     let best = poses.iter().rev().max_by(|x, y| x.1.total_cmp(&y.1))?;
     let first = poses.first()?;
     Some(if first.0.target == Some(0) && first.1 >= GOOD_ENOUGH * best.1 { first.0 } else { best.0 })
+}
+
+/// The distance of the closest two points.
+pub(super) fn closest(all: &[Complex]) -> f64 {
+    let pairs = (0..all.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
 }
 
 /// A box that grows.
@@ -182,6 +191,11 @@ impl Bounds {
                 self.high[axis] = self.high[axis].max(x);
             }
         }
+    }
+
+    pub(super) fn hold_all(&mut self, other: &Bounds) {
+        self.hold(Complex::new(other.low[0], other.low[1]));
+        self.hold(Complex::new(other.high[0], other.high[1]));
     }
 
     /// 0 for an empty box.

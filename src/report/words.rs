@@ -2,7 +2,7 @@
 
 use super::text::{brief, clean, exact};
 use crate::problem::spec::{OnePolicy, OrderPolicy, TransmissionOver};
-use crate::record::{Candidate, Figure, Reason, Record, Requirement};
+use crate::record::{Candidate, Figure, Reason, Record, Requirement, Unit};
 use crate::task::{AngleOffset, Defect};
 
 /// One reason why a candidate isn't accepted.
@@ -216,7 +216,12 @@ pub(super) fn problem_name(record: &Record) -> String {
 
 /// ` mm`, or nothing where lengths have no unit.
 pub(super) fn unit_suffix(record: &Record) -> String {
-    record.problem.unit.map_or(String::new(), |unit| format!(" {}", unit.label()))
+    length_suffix(record.problem.unit)
+}
+
+/// ` mm`, or nothing without a unit.
+pub(super) fn length_suffix(unit: Option<Unit>) -> String {
+    unit.map_or(String::new(), |unit| format!(" {}", unit.label()))
 }
 
 /// The names of what stands in the way of acceptance, for files: the problem file's keys where they exist.

@@ -37,8 +37,13 @@ pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Orderin
         .then_with(|| size(one).total_cmp(&size(other)))
 }
 
+/// Linkages whose numbers agree within this part of the target's size are the same; their curves need not be
+/// compared.
+const SAME_NUMBERS: f64 = 1e-6;
+
 /// A candidate's curve for comparisons.
 struct Trace {
+    numbers: [f64; 9],
     at_points: Vec<Complex>,
     curve: CouplerCurve,
     probes: Vec<Complex>,
@@ -56,17 +61,24 @@ impl Trace {
         let through = |samples| {
             CouplerCurve::through(&candidate.linkage, angles[0].to_radians(), assemblies[0], samples)
         };
-        Trace { at_points, curve: through(240), probes: through(48).points().collect() }
+        let n = candidate.linkage.natural_coordinates();
+        let offset = candidate.linkage.coupler_offset();
+        let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
+        let numbers = [ax, ay, bx, by, n.crank, n.coupler, n.follower, offset.re, offset.im];
+        Trace { numbers, at_points, curve: through(240), probes: through(48).points().collect() }
     }
 
     fn is_same(&self, other: &Trace, reach: f64) -> bool {
         let near = |p: &Complex, q: &Complex| (p - q).norm() <= reach;
-        self.at_points.len() == other.at_points.len()
-            && self.at_points.iter().zip(&other.at_points).all(|(p, q)| near(p, q))
-            && self.probes.iter().all(|p| other.curve.nearest(*p).is_some_and(|n| n.distance <= reach))
+        let drawn_alike = self.at_points.len() == other.at_points.len()
+            && self.at_points.iter().zip(&other.at_points).all(|(p, q)| near(p, q));
+        let close = SAME_NUMBERS / SAME_CURVE * reach;
+        let same_numbers = self.numbers.iter().zip(&other.numbers).all(|(x, y)| (x - y).abs() <= close);
+        drawn_alike
+            && (same_numbers
+                || self.probes.iter().all(|p| other.curve.nearest(*p).is_some_and(|n| n.distance <= reach)))
     }
 }
-
 /// The best distinct candidates, at most `wanted`, ranked from 1.
 ///
 /// Where at least one is accepted only accepted ones are given.

@@ -1,0 +1,247 @@
+//! A chart of a few series against the crank angle.
+
+use super::super::canvas::{Anchor, Area, Canvas, Spot, palette, px, text_width};
+use super::super::scene::round_length;
+use super::super::text::{brief, xml};
+
+/// Values at crank angles, in their order.
+pub(super) struct Series {
+    pub(super) name: &'static str,
+    pub(super) colour: &'static str,
+    /// Stretches without a gap, (crank angle in degrees, value).
+    pub(super) strands: Vec<Vec<(f64, f64)>>,
+}
+
+impl Series {
+    fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        self.strands.iter().flatten().map(|(_, y)| *y).filter(|y| y.is_finite())
+    }
+}
+
+/// What the vertical axis shows.
+#[derive(Clone, Copy)]
+pub(super) enum Range {
+    /// These bounds, ticks this far apart.
+    Fixed { low: f64, high: f64, tick: f64 },
+    /// What the values need, at least around `natural` wide where they are constant; angles get ticks at parts
+    /// of a turn. Where values may grow without bound, the few that do are cut off.
+    Fitted { natural: f64, angle: bool, unbounded: bool },
+}
+
+/// What all charts of a sheet share.
+pub(super) struct Abscissa {
+    pub(super) low: f64,
+    pub(super) high: f64,
+    /// Crank angles out of reach, within [low, high].
+    pub(super) unreachable: Vec<(f64, f64)>,
+    /// Within [low, high].
+    pub(super) toggles: Vec<f64>,
+}
+
+pub(super) struct Chart {
+    pub(super) title: &'static str,
+    pub(super) unit: String,
+    pub(super) series: Vec<Series>,
+    pub(super) range: Range,
+    /// Shaded as a warning.
+    pub(super) warning: Vec<(f64, f64)>,
+}
+
+/// Room for the numbers left of and below the plot, and for the title above.
+const LEFT: f64 = 58.0;
+const BELOW: f64 = 22.0;
+const ABOVE: f64 = 26.0;
+
+/// Peaks are cut off where the rest would be flattened by more than this.
+const WORTH_CUTTING: f64 = 3.0;
+
+/// The steps of an axis of degrees.
+const DEGREE_STEPS: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0];
+
+impl Chart {
+    pub(super) fn draw(&self, canvas: &mut Canvas, abscissa: &Abscissa, area: Area) {
+        let plot = Area {
+            x: area.x + LEFT,
+            y: area.y + ABOVE,
+            width: area.width - LEFT - 8.0,
+            height: area.height - ABOVE - BELOW,
+        };
+        let (low, high, tick, cut) = self.vertical();
+        let x_of = |x: f64| plot.width * (x - abscissa.low) / (abscissa.high - abscissa.low);
+        let y_of = |y: f64| plot.height * (1.0 - (y - low) / (high - low));
+        self.heading(canvas, &area, &plot, cut);
+
+        // What could run out of the plot is drawn inside of it.
+        canvas.raw(&format!(
+            r#"<svg x="{}" y="{}" width="{}" height="{}" overflow="hidden">"#,
+            px(plot.x),
+            px(plot.y),
+            px(plot.width),
+            px(plot.height)
+        ));
+        for (from, to) in &self.warning {
+            let band =
+                Area { x: 0.0, y: y_of(*to), width: plot.width, height: (y_of(*from) - y_of(*to)).max(0.0) };
+            canvas.area(band, &format!(r#"fill="{}" fill-opacity="0.12""#, palette::TARGET));
+        }
+        for (from, to) in &abscissa.unreachable {
+            let (left, right) = (x_of(*from), x_of(*to));
+            let shade = Area { x: left, y: 0.0, width: (right - left).max(0.0), height: plot.height };
+            canvas.area(shade, &format!(r#"fill="{}" fill-opacity="0.35""#, palette::FAINT));
+            if right - left > 34.0 {
+                let at = Spot::new(0.5 * (left + right), 15.0);
+                canvas.text(at, Anchor::Middle, &muted(11), "open");
+            }
+        }
+        for (value, is_zero) in ticks(low, high, tick) {
+            let (colour, width) = if is_zero { (palette::MUTED, 1.0) } else { (palette::FAINT, 0.6) };
+            let y = y_of(value);
+            let line = format!(r#"stroke="{colour}" stroke-width="{width}""#);
+            canvas.line(Spot::new(0.0, y), Spot::new(plot.width, y), &line);
+        }
+        for toggle in &abscissa.toggles {
+            let x = x_of(*toggle);
+            let line =
+                format!(r#"stroke="{}" stroke-width="1" stroke-dasharray="4 3""#, palette::TARGET_TEXT);
+            canvas.line(Spot::new(x, 0.0), Spot::new(x, plot.height), &line);
+        }
+        for (i, series) in self.series.iter().enumerate() {
+            let attributes = format!(
+                concat!(r#"fill="none" stroke="{}" stroke-width="1.8" "#, r#"stroke-linejoin="round"{}"#),
+                series.colour,
+                dashes(i)
+            );
+            for strand in &series.strands {
+                // Far outside is as good as a little outside, and viewers can read it.
+                let far = 4.0 * plot.height;
+                let spots: Vec<Spot> =
+                    strand.iter().map(|(x, y)| Spot::new(x_of(*x), y_of(*y).clamp(-far, far))).collect();
+                match spots.as_slice() {
+                    [only] => canvas.dots(&[*only], 3.0, series.colour),
+                    _ => canvas.path(&spots, false, &attributes),
+                }
+            }
+        }
+        canvas.raw("</svg>");
+        canvas.area(plot, &format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED));
+        numbers(canvas, &plot, (low, high, tick), y_of);
+        crank_angles(canvas, &plot, abscissa, x_of);
+    }
+
+    /// Title and unit at the left, the names of the series at the right.
+    fn heading(&self, canvas: &mut Canvas, area: &Area, plot: &Area, cut: bool) {
+        let y = area.y + 17.0;
+        let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
+        let note = if cut { format!("{}, peaks at toggles cut off", self.unit) } else { self.unit.clone() };
+        canvas.raw(&format!(
+            r#"<text x="{}" y="{}" {bold}>{}<tspan dx="7" {}>{}</tspan></text>"#,
+            px(area.x),
+            px(y),
+            xml(self.title),
+            r#"font-weight="400""#,
+            xml(&note)
+        ));
+        if self.series.len() < 2 {
+            return;
+        }
+        let mut x = plot.x + plot.width;
+        for (i, series) in self.series.iter().enumerate().rev() {
+            let text = format!(r#"font-size="12" fill="{}""#, palette::INK);
+            canvas.text(Spot::new(x, y), Anchor::End, &text, series.name);
+            x -= text_width(series.name, 12.0) + 9.0;
+            let line = format!(r#"stroke="{}" stroke-width="2.2"{}"#, series.colour, dashes(i));
+            canvas.line(Spot::new(x - 17.0, y - 4.0), Spot::new(x, y - 4.0), &line);
+            x -= 30.0;
+        }
+    }
+
+    /// Lower and upper bound, distance of ticks, and whether values lie outside.
+    fn vertical(&self) -> (f64, f64, f64, bool) {
+        let (natural, angle, unbounded) = match self.range {
+            Range::Fixed { low, high, tick } => return (low, high, tick, false),
+            Range::Fitted { natural, angle, unbounded } => (natural, angle, unbounded),
+        };
+        let mut values: Vec<f64> = self.series.iter().flat_map(Series::values).collect();
+        values.sort_by(f64::total_cmp);
+        let (Some(&least), Some(&greatest)) = (values.first(), values.last()) else {
+            return (0.0, 1.0, 0.5, false);
+        };
+        let natural = if natural > 0.0 && natural.is_finite() { natural } else { 1.0 };
+        let (mut low, mut high) = (least, greatest);
+        if unbounded {
+            // Nine values in ten, and as much again on both sides.
+            let part = |t: f64| values[(t * (values.len() - 1) as f64).round() as usize];
+            let (from, to) = (part(0.05), part(0.95));
+            let spread = (to - from).max(1e-3 * natural);
+            let kept = (low.max(from - spread), high.min(to + spread));
+            if high - low > WORTH_CUTTING * (kept.1 - kept.0) {
+                (low, high) = kept;
+            }
+        }
+        let cut = least < low || greatest > high;
+        if high - low < 1e-6 * natural.max(low.abs()).max(high.abs()) {
+            let middle = 0.5 * (low + high);
+            // Rounding noise about zero is zero.
+            let middle = if middle.abs() < 1e-6 * natural { 0.0 } else { middle };
+            let half = 0.5 * natural.max(middle.abs());
+            (low, high) = (middle - half, middle + half);
+        }
+        if low > 0.0 && low < 0.35 * high {
+            low = 0.0;
+        }
+        let tick = if angle { degree_step((high - low) / 4.5) } else { round_length((high - low) / 3.0) };
+        ((low / tick).floor() * tick, (high / tick).ceil() * tick, tick, cut)
+    }
+}
+
+/// The second series is dashed: two that coincide are both seen.
+fn dashes(index: usize) -> &'static str {
+    if index == 0 { "" } else { r#" stroke-dasharray="7 3""# }
+}
+
+fn muted(size: u8) -> String {
+    format!(r#"font-size="{size}" fill="{}""#, palette::MUTED)
+}
+
+/// The smallest step of degrees that is at least `least`.
+fn degree_step(least: f64) -> f64 {
+    let found = DEGREE_STEPS.into_iter().find(|step| *step >= least);
+    found.unwrap_or_else(|| 360.0 * round_length(2.0 * least / 360.0).max(1.0))
+}
+
+/// The multiples of the step in [low, high], and whether each is zero. At most 60 of them.
+fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64, bool)> {
+    let slack = 1e-6;
+    let first = (low / step - slack).ceil();
+    (0..60).map(move |i| first + f64::from(i)).take_while(move |k| *k <= high / step + slack).map(move |k| {
+        let value = k * step;
+        (value, value == 0.0)
+    })
+}
+
+/// A tick's number with as many digits as its neighbours need to differ.
+fn label(value: f64, step: f64) -> String {
+    let digits = ((value.abs() / step).max(1.0).log10().floor() + 2.0).clamp(2.0, 15.0) as usize;
+    brief(value, digits).replace('-', "−")
+}
+
+fn numbers(canvas: &mut Canvas, plot: &Area, (low, high, tick): (f64, f64, f64), y_of: impl Fn(f64) -> f64) {
+    for (value, _) in ticks(low, high, tick) {
+        let at = Spot::new(plot.x - 6.0, plot.y + y_of(value) + 4.0);
+        canvas.text(at, Anchor::End, &muted(11), &label(value, tick));
+    }
+}
+
+fn crank_angles(canvas: &mut Canvas, plot: &Area, abscissa: &Abscissa, x_of: impl Fn(f64) -> f64) {
+    let step = degree_step((abscissa.high - abscissa.low) / 7.0);
+    let y = plot.y + plot.height;
+    for (value, _) in ticks(abscissa.low, abscissa.high, step) {
+        let x = plot.x + x_of(value);
+        canvas.line(
+            Spot::new(x, y),
+            Spot::new(x, y + 4.0),
+            &format!(r#"stroke="{}" stroke-width="1""#, palette::MUTED),
+        );
+        canvas.text(Spot::new(x, y + 16.0), Anchor::Middle, &muted(11), &format!("{}°", label(value, step)));
+    }
+}

@@ -1,0 +1,218 @@
+//! The position found with ruler and compasses: C from the crank angle, D where the circle of radius b about C
+//! meets the circle of radius c about B, in two points.
+
+use super::super::canvas::{Anchor, Canvas, Spot, palette};
+use super::super::labels::Labels;
+use super::super::parts::{away, bars, letter, mark_path, plus, stand};
+use super::super::scene::Bounds;
+use super::super::sheet::{Sheet, arc, fitted, scale_bar};
+use super::super::text::brief;
+use super::super::words;
+use super::{between, closed, degrees, sign};
+use crate::analysis::{Analysis, Configuration};
+use crate::linkage::{Complex, cross};
+
+/// The part of the crank's circle that is drawn on both sides of C, radians.
+const CRANK_ARC: f64 = 0.35;
+/// How far an arc runs beyond an intersection, radians.
+const BEYOND: f64 = 0.2;
+/// Intersections farther than this from the line C-B, radians, get an arc each instead of one for both.
+const APART: f64 = 1.2;
+
+pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64) -> Option<Sheet> {
+    let linkage = &configuration.linkage;
+    let (row, joints) = closed(configuration).into_iter().next()?;
+    let [a, b, c, d, _] = joints;
+    let phi = row.crank_deg.to_radians();
+    let other_assembly = linkage.assembly().opposite();
+    let other = linkage.position_with(phi, other_assembly).joints().map(|j| j.follower_pin);
+    let coincide = other.is_none_or(|other| (other - d).norm() <= 1e-6 * linkage.longest_link());
+    let other = other.filter(|_| !coincide);
+
+    let crank = [arc(a, linkage.crank(), phi - CRANK_ARC, phi + CRANK_ARC).collect()];
+    let about_c = arcs(c, linkage.coupler(), b, d, other);
+    let about_b = arcs(b, linkage.follower(), c, d, other);
+    let mut bounds = Bounds::default();
+    [a, b, c, d].into_iter().chain(other).for_each(|p| bounds.hold(p));
+    crank.iter().chain(&about_c).chain(&about_b).flatten().for_each(|p| bounds.hold(*p));
+
+    let (view, bottom) = fitted(&bounds, width);
+    let mut body = Canvas::default();
+    let mut labels = Labels::default();
+    for (strokes, colour) in
+        [(&crank[..], palette::MUTED), (&about_c[..], palette::TARGET), (&about_b[..], palette::FOLLOWER)]
+    {
+        for stroke in strokes {
+            let spots: Vec<Spot> = stroke.iter().map(|p| view.spot(*p)).collect();
+            body.path(
+                &spots,
+                false,
+                &format!(r#"fill="none" stroke="{colour}" stroke-width="1.6" stroke-linecap="round""#),
+            );
+            mark_path(&mut labels, &spots);
+        }
+    }
+    let [sa, sb, sc, sd] = [a, b, c, d].map(|p| view.spot(p));
+    if let Some(other) = other {
+        let at = view.spot(other);
+        let dashed = format!(r#"stroke="{}" stroke-width="1.6" stroke-dasharray="6 5""#, palette::MUTED);
+        for from in [sc, sb] {
+            body.line(from, at, &dashed);
+            labels.mark_line(from, at);
+        }
+        let ring = format!(r#"fill="{}" stroke="{}" stroke-width="1.6""#, palette::PAPER, palette::MUTED);
+        body.circle(at, 4.2, &ring);
+    }
+    for (from, to) in [(sa, sc), (sc, sd), (sb, sd)] {
+        labels.mark_line(from, to);
+        labels.mark_line(from, to);
+    }
+    for pivot in [sa, sb] {
+        stand(&mut body, pivot, 0.9);
+        labels.mark_line(plus(pivot, Spot::new(-14.0, 15.0)), plus(pivot, Spot::new(14.0, 15.0)));
+    }
+    bars(&mut body, [sa, sb, sc, sd], palette::BAR, palette::BAR_EDGE, 0.75);
+    letter(&mut body, &mut labels, "A", sa, away(sa, &[sc]));
+    letter(&mut body, &mut labels, "B", sb, away(sb, &[sd]));
+    letter(&mut body, &mut labels, "C", sc, away(sc, &[sa, sd]));
+    letter(&mut body, &mut labels, "D", sd, away(sd, &[sb, sc]));
+    if let Some(other) = other.map(|p| view.spot(p)) {
+        letter(&mut body, &mut labels, "D′", other, away(other, &[sb, sc]));
+    }
+    for (name, from, to, colour) in
+        [("a", sa, sc, palette::INK), ("b", sc, sd, palette::TARGET_TEXT), ("c", sb, sd, palette::FOLLOWER)]
+    {
+        link_name(&mut body, &mut labels, name, from, to, colour);
+    }
+    crank_angle(&mut body, &mut labels, [sa, sc], phi, &format!("φ = {}", degrees(row.crank_deg)));
+    scale_bar(&mut body, &view, analysis.unit, width, bottom);
+
+    let unit = words::length_suffix(analysis.unit);
+    let length = |x: f64| format!("{}{unit}", brief(x, 6));
+    let shape = |pin: Complex| if crosses_itself([a, b, c, pin]) { "crossed" } else { "open" };
+    let own = sign(linkage.assembly().sign());
+    let found = match other {
+        Some(other) => format!(
+            "D (t1 = {own}, {}) and D′ (t1 = {}, {})",
+            shape(d),
+            sign(other_assembly.sign()),
+            shape(other)
+        ),
+        None => "D alone: C, D and B are in line, a toggle".to_owned(),
+    };
+    Some(Sheet {
+        title: "Construction by arcs".to_owned(),
+        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
+        body,
+        foot: vec![
+            format!(
+                "1. crank a = {} gives C; 2. arc b = {} about C;",
+                length(linkage.crank()),
+                length(linkage.coupler())
+            ),
+            format!("3. arc c = {} about B; they meet in", length(linkage.follower())),
+            found,
+        ],
+        width,
+        bottom,
+    })
+}
+
+/// The arcs about `centre` through the two intersections, which lie on both sides of the line to `towards`.
+fn arcs(
+    centre: Complex,
+    radius: f64,
+    towards: Complex,
+    pin: Complex,
+    other: Option<Complex>,
+) -> Vec<Vec<Complex>> {
+    let line = towards - centre;
+    let from_line = |p: Complex| {
+        let to = p - centre;
+        if line.norm() > 0.0 { (to * line.conj()).arg() } else { to.arg() }
+    };
+    let middle = if line.norm() > 0.0 { line.arg() } else { 0.0 };
+    let stroke = |from: f64, to: f64| arc(centre, radius, middle + from, middle + to).collect();
+    let at = from_line(pin);
+    match other {
+        Some(_) if at.abs() <= APART => vec![stroke(-at.abs() - BEYOND, at.abs() + BEYOND)],
+        Some(other) => [at, from_line(other)].map(|angle| stroke(angle - BEYOND, angle + BEYOND)).to_vec(),
+        None => vec![stroke(at - 2.0 * BEYOND, at + 2.0 * BEYOND)],
+    }
+}
+
+/// Whether crank and follower, or coupler and ground, cross.
+fn crosses_itself([a, b, c, d]: [Complex; 4]) -> bool {
+    let apart = |p: Complex, q: Complex, x: Complex, y: Complex| {
+        let (dx, dy) = (cross(q - p, x - p), cross(q - p, y - p));
+        (dx < 0.0 && dy > 0.0) || (dx > 0.0 && dy < 0.0)
+    };
+    let meet = |p: Complex, q: Complex, x: Complex, y: Complex| apart(p, q, x, y) && apart(x, y, p, q);
+    meet(a, c, b, d) || meet(c, d, a, b)
+}
+
+/// The crank angle between the x axis and the crank.
+fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2], phi: f64, text: &str) {
+    let radius = (0.4 * pivot.distance(pin)).clamp(8.0, 40.0);
+    let thin = format!(r#"stroke="{}" stroke-width="1""#, palette::MUTED);
+    let end = Spot::new(pivot.x + radius + 14.0, pivot.y);
+    canvas.line(pivot, end, &format!(r#"{thin} stroke-dasharray="2 3""#));
+    labels.mark_line(pivot, end);
+    let turn = phi.rem_euclid(std::f64::consts::TAU);
+    // Counter-clockwise on paper is clockwise with y down.
+    let spots: Vec<Spot> = arc(Complex::new(0.0, 0.0), radius, 0.0, turn)
+        .map(|p| Spot::new(pivot.x + p.re, pivot.y - p.im))
+        .collect();
+    canvas.path(&spots, false, &format!(r#"fill="none" {thin}"#));
+    mark_path(labels, &spots);
+    let towards = Spot::new((0.5 * turn).cos(), -(0.5 * turn).sin());
+    let near = Spot::new(pivot.x + radius * towards.x, pivot.y + radius * towards.y);
+    if let Some(at) = labels.place(text, 12.0, near, 8.0, towards, true) {
+        let attributes = format!(
+            r#"font-size="12" fill="{}" stroke="{}" stroke-width="2.5" paint-order="stroke""#,
+            palette::INK,
+            palette::PAPER
+        );
+        canvas.text(at, Anchor::Middle, &attributes, text);
+    }
+}
+
+/// The letter of a link beside its middle.
+fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, to: Spot, colour: &str) {
+    let length = from.distance(to).max(f64::MIN_POSITIVE);
+    let normal = Spot::new((to.y - from.y) / length, (from.x - to.x) / length);
+    if let Some(at) = labels.place(name, 14.0, between(from, to), 7.0, normal, false) {
+        let attributes = format!(
+            concat!(
+                r#"font-size="14" font-style="italic" fill="{}" "#,
+                r#"stroke="{}" stroke-width="2.5" paint-order="stroke""#
+            ),
+            colour,
+            palette::PAPER
+        );
+        canvas.text(at, Anchor::Middle, &attributes, name);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linkage::{AssemblyMode, FourBar};
+
+    fn romero() -> FourBar {
+        let pivots = [Complex::new(0.0, 0.0), Complex::new(4.0, 1.0)];
+        let offset = Complex::new(2.5, 4.330_127_018_922_193);
+        FourBar::with_coupler_offset(pivots, [2.0, 5.0, 5.0], offset, AssemblyMode::Plus).expect("a linkage")
+    }
+
+    #[test]
+    fn the_example_of_romero_is_open_on_one_side_and_crossed_on_the_other() {
+        let linkage = romero();
+        let shapes = [AssemblyMode::Plus, AssemblyMode::Minus].map(|t1| {
+            let joints = linkage.position_with(1.0, t1).joints().expect("a crank-rocker closes");
+            let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+            crosses_itself([a, b, joints.crank_pin, joints.follower_pin])
+        });
+        assert_eq!(shapes, [false, true]);
+    }
+}

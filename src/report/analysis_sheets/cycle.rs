@@ -1,0 +1,229 @@
+//! Transmission angle, angles, velocities and accelerations against the crank angle.
+
+use super::super::canvas::{Area, Canvas, palette};
+use super::super::sheet::{FULL, HEAD, INSET, Sheet};
+use super::chart::{Abscissa, Chart, Range, Series};
+use super::vectors::per_time;
+use super::{CYCLE_ROWS, degrees};
+use crate::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
+
+const HEIGHT: f64 = 196.0;
+const GAP: f64 = 22.0;
+/// Transmission angles nearer than this to 0 or 180 degrees are hard to drive.
+const POOR_TRANSMISSION_DEG: f64 = 30.0;
+/// More turns than this have no toggles and open stretches marked: there would be nothing else to see.
+const MOST_TURNS: f64 = 10.0;
+
+pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Option<Sheet> {
+    let rows = sorted(configuration);
+    if rows.len() < CYCLE_ROWS || !rows.iter().any(|row| row.pose.is_some()) {
+        return None;
+    }
+    let span = Span::of(&rows)?;
+    let abscissa = abscissa(&analysis.mobility, &span);
+    let charts = charts(analysis, configuration, &rows, &span);
+    let width = 0.5 * (FULL - 2.0 * INSET - GAP);
+    let mut body = Canvas::default();
+    for (i, chart) in charts.iter().enumerate() {
+        let (column, row) = ((i % 2) as f64, (i / 2) as f64);
+        let area =
+            Area { x: INSET + column * (width + GAP), y: HEAD + row * (HEIGHT + 8.0), width, height: HEIGHT };
+        chart.draw(&mut body, &abscissa, area);
+    }
+    let mut note = format!(
+        "against the crank angle from {} to {}; shaded red: within {POOR_TRANSMISSION_DEG}° of a toggle",
+        degrees(abscissa.low),
+        degrees(abscissa.high)
+    );
+    if !abscissa.unreachable.is_empty() {
+        note.push_str("; grey: the loop is open");
+    }
+    if !abscissa.toggles.is_empty() {
+        note.push_str("; dashed: toggles");
+    }
+    Some(Sheet {
+        title: "Over the cycle".to_owned(),
+        note,
+        body,
+        foot: Vec::new(),
+        width: FULL,
+        bottom: HEAD + charts.len().div_ceil(2) as f64 * (HEIGHT + 8.0),
+    })
+}
+
+/// The rows by crank angle.
+fn sorted(configuration: &Configuration) -> Vec<&Row> {
+    let mut rows: Vec<&Row> = configuration.rows.iter().filter(|row| row.crank_deg.is_finite()).collect();
+    rows.sort_by(|x, y| x.crank_deg.total_cmp(&y.crank_deg));
+    rows
+}
+
+/// The crank angles of the rows, degrees.
+struct Span {
+    low: f64,
+    high: f64,
+    /// Rows farther apart than this have a gap between them.
+    gap: f64,
+    /// The rows make a full turn but for their last step, which leads back to the first.
+    closes: bool,
+}
+
+impl Span {
+    /// `None` where the angles don't differ.
+    fn of(rows: &[&Row]) -> Option<Span> {
+        let (low, high) = (rows.first()?.crank_deg, rows.last()?.crank_deg);
+        let mut steps: Vec<f64> = rows
+            .windows(2)
+            .map(|pair| pair[1].crank_deg - pair[0].crank_deg)
+            .filter(|step| *step > 0.0)
+            .collect();
+        steps.sort_by(f64::total_cmp);
+        let middle = *steps.get(steps.len() / 2)?;
+        let missing = 360.0 - (high - low);
+        let closes = missing > 0.0 && missing <= 1.001 * middle;
+        Some(Span { low, high: if closes { low + 360.0 } else { high }, gap: 2.5 * middle, closes })
+    }
+}
+
+/// What can be reached and where the toggles are, turned into the span.
+fn abscissa(mobility: &MobilityRecord, span: &Span) -> Abscissa {
+    let (low, high) = (span.low, span.high);
+    let mut abscissa = Abscissa { low, high, unreachable: Vec::new(), toggles: Vec::new() };
+    if high - low > 360.0 * MOST_TURNS {
+        return abscissa;
+    }
+    let images = |angle: f64| {
+        let first = ((low - angle) / 360.0).floor() - 1.0;
+        (0..=MOST_TURNS as usize + 3).map(move |k| angle + 360.0 * (first + k as f64))
+    };
+    let within = |angle: &f64| (low..=high).contains(angle);
+    abscissa.toggles = mobility.toggles_deg.iter().flat_map(|t| images(*t)).filter(within).collect();
+    abscissa.toggles.sort_by(f64::total_cmp);
+    let mut arcs: Vec<(f64, f64)> = mobility
+        .input_arcs_deg
+        .iter()
+        .flat_map(|[from, to]| {
+            let width = to - from;
+            images(*from).map(move |start| (start, start + width))
+        })
+        .collect();
+    arcs.sort_by(|x, y| x.0.total_cmp(&y.0));
+    if !arcs.is_empty() {
+        let mut reached = low;
+        for (from, to) in arcs.into_iter().chain([(high, high)]) {
+            if from > reached && reached < high {
+                abscissa.unreachable.push((reached, from.min(high)));
+            }
+            reached = reached.max(to);
+        }
+    }
+    abscissa
+}
+
+/// A series of what rows have, with gaps where they have it not.
+fn series(
+    name: &'static str,
+    colour: &'static str,
+    rows: &[&Row],
+    span: &Span,
+    turns: bool,
+    value: impl Fn(&Row) -> Option<f64>,
+) -> Series {
+    let again = rows.first().filter(|_| span.closes).map(|first| (first.crank_deg + 360.0, *first));
+    let all = rows.iter().map(|row| (row.crank_deg, *row)).chain(again);
+    let mut strands: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut last: Option<(f64, f64)> = None;
+    for (x, row) in all {
+        let Some(mut y) = value(row).filter(|y| y.is_finite()) else {
+            last = None;
+            continue;
+        };
+        match last {
+            Some((x_before, y_before)) if x - x_before <= span.gap => {
+                if turns {
+                    y += 360.0 * ((y_before - y) / 360.0).round();
+                }
+                if let Some(strand) = strands.last_mut() {
+                    strand.push((x, y));
+                }
+            }
+            _ => strands.push(vec![(x, y)]),
+        }
+        last = Some((x, y));
+    }
+    Series { name, colour, strands }
+}
+
+fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], span: &Span) -> Vec<Chart> {
+    let pose = |name, colour, turns, value: fn(&Pose) -> f64| {
+        series(name, colour, rows, span, turns, |row| row.pose.as_ref().map(value))
+    };
+    let rate = |name, colour, value: fn(&Rates) -> f64| {
+        series(name, colour, rows, span, false, |row| row.rates.as_ref().map(value))
+    };
+    let poor = POOR_TRANSMISSION_DEG;
+    let mut charts = vec![
+        Chart {
+            title: "Transmission angle",
+            unit: "μ, °".to_owned(),
+            series: vec![pose("μ", palette::CURVE, false, |p| p.transmission_deg)],
+            range: Range::Fixed { low: 0.0, high: 180.0, tick: 30.0 },
+            warning: vec![(0.0, poor), (180.0 - poor, 180.0)],
+        },
+        Chart {
+            title: "Angles",
+            unit: "°".to_owned(),
+            series: vec![
+                pose("coupler θ3", palette::TARGET, true, |p| p.coupler_deg),
+                pose("follower θ4", palette::FOLLOWER, true, |p| p.follower_deg),
+            ],
+            range: Range::Fitted { natural: 10.0, angle: true, unbounded: false },
+            warning: Vec::new(),
+        },
+    ];
+    let (omega, alpha) = (analysis.omega2_rad_s.abs(), analysis.alpha2_rad_s2.abs());
+    if !rows.iter().any(|row| row.rates.is_some()) || (omega == 0.0 && alpha == 0.0) {
+        return charts;
+    }
+    let singular = rows.iter().any(|row| row.status == Status::Singular);
+    let unbounded = singular || !analysis.mobility.toggles_deg.is_empty();
+    let fitted = |natural: f64| Range::Fitted { natural, angle: false, unbounded };
+    let chart = |title, unit: String, series, natural| Chart {
+        title,
+        unit,
+        series,
+        range: fitted(natural),
+        warning: Vec::new(),
+    };
+    let length = configuration.linkage.longest_link();
+    let per_s = per_time(analysis.unit, "s").trim_start().to_owned();
+    let per_s2 = per_time(analysis.unit, "s²").trim_start().to_owned();
+    let second = omega * omega + alpha;
+    if omega > 0.0 {
+        charts.push(chart(
+            "Angular velocities",
+            "rad/s".to_owned(),
+            vec![
+                rate("ω3", palette::TARGET, |r| r.omega3_rad_s),
+                rate("ω4", palette::FOLLOWER, |r| r.omega4_rad_s),
+            ],
+            omega,
+        ));
+    }
+    charts.push(chart(
+        "Angular accelerations",
+        "rad/s²".to_owned(),
+        vec![
+            rate("α3", palette::TARGET, |r| r.alpha3_rad_s2),
+            rate("α4", palette::FOLLOWER, |r| r.alpha4_rad_s2),
+        ],
+        second,
+    ));
+    if omega > 0.0 {
+        let speed = vec![rate("|vP|", palette::CURVE, |r| r.vP[0].hypot(r.vP[1]))];
+        charts.push(chart("Speed of P", per_s, speed, omega * length));
+    }
+    let acceleration = vec![rate("|aP|", palette::CURVE, |r| r.aP[0].hypot(r.aP[1]))];
+    charts.push(chart("Acceleration of P", per_s2, acceleration, second * length));
+    charts
+}

@@ -1,0 +1,248 @@
+//! Roberts' figure: a linkage and its cognates in one position, with the curve that they share.
+
+use super::analysis_sheets::dimensions;
+use super::canvas::{Anchor, Canvas, Spot, View, palette, text_width};
+use super::labels::Labels;
+use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
+use super::scene::{Bounds, SAMPLES, circuits_through, closest, middle_position};
+use super::sheet::{FULL, Heading, INSET, Sheet, fitted, page, scale_bar};
+use super::text::{brief, clean};
+use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar};
+use crate::record::Unit;
+use std::f64::consts::TAU;
+
+/// Positions along the circuit of which the most legible is drawn.
+const TRIED: usize = 180;
+/// A cognate whose loop misses closure at the common coupler point by more than this part of its size isn't
+/// drawn: it traces another curve. Rounding leaves the root of the machine's precision at a flat crank dyad.
+const CLOSURE: f64 = 1e-6;
+const COLOURS: [(&str, &str); 3] = [
+    (palette::BAR_EDGE, palette::COUPLER),
+    (palette::FOLLOWER, palette::FOLLOWER),
+    (palette::SECOND, palette::SECOND),
+];
+const LEGEND_LINE: f64 = 20.0;
+
+/// The original and its cognates together in one position, with the coupler curve that they share.
+///
+/// The position is the one at which joints are farthest apart; each cognate is brought there by its own
+/// lengths, from the coupler point. What doesn't reach it is named in the legend and not drawn.
+///
+/// ```
+/// # use linkwright::linkage::*;
+/// let original = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
+///     point([2.5, 4.3]), AssemblyMode::Plus)?;
+/// let cognates: Vec<FourBar> = original.cognates().into_iter().flatten().map(|c| c.linkage).collect();
+/// let svg = linkwright::report::analysis_sheets::cognates_svg("mine", None, &original, &cognates);
+/// assert!(svg.contains(">G</text>") && !svg.contains("not drawn"));
+/// # Ok::<(), LinkageError>(())
+/// ```
+pub fn cognates_svg(name: &str, unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> String {
+    let name = clean(name);
+    let counted = match cognates.len() {
+        0 => "no cognate".to_owned(),
+        1 => "1 cognate".to_owned(),
+        n => format!("{n} cognates"),
+    };
+    let heading = Heading {
+        title: if name.is_empty() { "unnamed linkage".to_owned() } else { name },
+        standing: counted,
+        lines: vec!["four-bar linkages with one coupler curve (Roberts 1875, Chebyshev 1878)".to_owned()],
+    };
+    page(&heading, vec![sheet(unit, original, cognates)])
+}
+
+/// A, B, C, D, P of a linkage.
+type Joints5 = [Complex; 5];
+
+fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet {
+    let drawn = position(original, cognates);
+    let circuits = circuits_through(original, [middle_position(original)], SAMPLES);
+    let curve: Vec<Complex> = circuits.iter().flatten().map(|joints| joints.coupler_point).collect();
+    let mut bounds = Bounds::default();
+    curve.iter().chain(drawn.iter().flatten().flatten()).for_each(|p| bounds.hold(*p));
+    bounds.hold(original.crank_pivot());
+    bounds.hold(original.follower_pivot());
+
+    let (view, bottom) = fitted(&bounds, FULL);
+    let mut body = Canvas::default();
+    let mut labels = Labels::default();
+    let spots: Vec<Spot> = curve.iter().map(|p| view.spot(*p)).collect();
+    draw(&mut body, &mut labels, &view, &spots, &drawn);
+    scale_bar(&mut body, &view, unit, 0.6 * FULL, bottom);
+
+    let mut y = bottom + 18.0;
+    legend(&mut body, y, palette::CURVE, "the common coupler curve, traced by P", None);
+    for (i, linkage) in std::iter::once(original).chain(cognates).enumerate() {
+        y += LEGEND_LINE;
+        let is_drawn = drawn.get(i).is_some_and(Option::is_some);
+        legend(&mut body, y, COLOURS[i % 3].0, &standing(i), Some(&described(linkage, is_drawn)));
+    }
+    let note = if drawn.first().is_none_or(Option::is_none) {
+        "the links of the original cannot be joined".to_owned()
+    } else {
+        let pivots = fixed_pivots(&drawn);
+        let third = pivots.get(2).map_or(String::new(), |g| {
+            format!("; the third fixed pivot G is at ({}, {})", brief(g.re, 6), brief(g.im, 6))
+        });
+        format!("all in the position that belongs to one point P of the curve{third}")
+    };
+    let title = "The linkage and its cognates".to_owned();
+    Sheet { title, note, body, foot: Vec::new(), width: FULL, bottom: y + 6.0 }
+}
+
+/// `original`, `first cognate` ..
+fn standing(index: usize) -> String {
+    match index {
+        0 => "original".to_owned(),
+        1 => "first cognate".to_owned(),
+        2 => "second cognate".to_owned(),
+        n => format!("cognate {n}"),
+    }
+}
+
+fn described(linkage: &FourBar, is_drawn: bool) -> String {
+    let kind = linkage.linkage_type().map_or("cannot be joined", |t| t.name());
+    let without = if is_drawn { "" } else { ", not drawn: it does not reach P" };
+    format!("{kind}{without}; {}", dimensions(linkage))
+}
+
+/// The joints of the original and of each cognate at the most legible position; `None` for what isn't there.
+fn position(original: &FourBar, cognates: &[FourBar]) -> Vec<Option<Joints5>> {
+    let (angle, assembly) = middle_position(original);
+    let curve = CouplerCurve::through(original, angle, assembly, 8);
+    let mut best: Option<(usize, f64, Vec<Option<Joints5>>)> = None;
+    for i in 0..TRIED {
+        let (angle, assembly) = curve.position_at(TAU * i as f64 / TRIED as f64);
+        let Some(own) = joints_at(original, angle, assembly) else { continue };
+        let mut all = vec![Some(own)];
+        all.extend(cognates.iter().map(|cognate| reaching(cognate, own[4])));
+        let count = all.iter().flatten().count();
+        let spacing = spacing(&all);
+        if best.as_ref().is_none_or(|(n, s, _)| count > *n || (count == *n && spacing > *s)) {
+            best = Some((count, spacing, all));
+        }
+    }
+    best.map_or(vec![None; 1 + cognates.len()], |(_, _, all)| all)
+}
+
+/// The distance of the closest two of all pins, pivots and P.
+fn spacing(all: &[Option<Joints5>]) -> f64 {
+    let mut points = fixed_pivots(all);
+    points.extend(all.iter().flatten().flat_map(|[_, _, c, d, _]| [*c, *d]));
+    points.extend(all.iter().flatten().map(|joints| joints[4]).next());
+    closest(&points)
+}
+
+fn joints_at(linkage: &FourBar, angle: f64, assembly: AssemblyMode) -> Option<Joints5> {
+    let joints = linkage.position_with(angle, assembly).joints()?;
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    Some([a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
+}
+
+/// The joints of a linkage whose coupler point is at `p`: C is where the circles of radius a about A and d
+/// about P meet, D follows from the coupler's triangle, and of the two answers the one whose follower has its
+/// length is right.
+fn reaching(linkage: &FourBar, p: Complex) -> Option<Joints5> {
+    let (a, b, z) = (linkage.crank_pivot(), linkage.follower_pivot(), linkage.coupler_ratio());
+    let (crank, side) = (linkage.crank(), linkage.crank_side());
+    let line = p - a;
+    let s = line.norm();
+    let size = linkage.longest_link() + crank + side;
+    if s <= CLOSURE * size {
+        return None;
+    }
+    if side <= CLOSURE * size {
+        // P on C: D is either intersection.
+        return joints_at(linkage, line.arg(), linkage.assembly())
+            .filter(|_| (s - crank).abs() <= CLOSURE * size);
+    }
+    let along = 0.5 * (s + (crank - side) * (crank + side) / s);
+    let across_sq = (crank - along) * (crank + along);
+    if across_sq < -CLOSURE * size * size {
+        return None;
+    }
+    let across = across_sq.max(0.0).sqrt();
+    let answers = [across, -across].map(|across| {
+        let c = a + line / s * Complex::new(along, across);
+        let d = c + (p - c) / z; // P = C + z (D - C)
+        (((d - b).norm() - linkage.follower()).abs(), [a, b, c, d, p])
+    });
+    let [left, right] = answers;
+    let (miss, joints) = if right.0 < left.0 { right } else { left };
+    (miss <= CLOSURE * size).then_some(joints)
+}
+
+/// A, B and then the pivots of the cognates that are at neither.
+fn fixed_pivots(all: &[Option<Joints5>]) -> Vec<Complex> {
+    let mut pivots: Vec<Complex> = Vec::new();
+    for (i, joints) in all.iter().enumerate() {
+        for pivot in joints.iter().flat_map(|joints| [joints[0], joints[1]]) {
+            let size = joints.map_or(0.0, |j| (j[2] - j[0]).norm() + (j[3] - j[1]).norm());
+            if i == 0 || pivots.iter().all(|other| (other - pivot).norm() > CLOSURE * size) {
+                pivots.push(pivot);
+            }
+        }
+    }
+    pivots
+}
+
+fn draw(canvas: &mut Canvas, labels: &mut Labels, view: &View, curve: &[Spot], drawn: &[Option<Joints5>]) {
+    const WEIGHT: f64 = 0.8;
+    let pivots: Vec<Spot> = fixed_pivots(drawn).iter().map(|p| view.spot(*p)).collect();
+    let dotted =
+        format!(r#"fill="none" stroke="{}" stroke-width="1.2" stroke-dasharray="2 5""#, palette::MUTED);
+    canvas.path(&pivots, true, &dotted);
+    let linkages: Vec<(usize, [Spot; 5])> = drawn
+        .iter()
+        .enumerate()
+        .filter_map(|(i, joints)| Some((i, joints.as_ref()?.map(|p| view.spot(p)))))
+        .collect();
+    for (i, joints) in &linkages {
+        let [.., c, d, p] = *joints;
+        let (edge, fill) = COLOURS[i % 3];
+        triangle(canvas, [c, d, p], fill, edge, WEIGHT);
+        mark_joints(labels, *joints);
+    }
+    let stroke =
+        format!(r#"fill="none" stroke="{}" stroke-width="2.6" stroke-linejoin="round""#, palette::CURVE);
+    canvas.path(curve, true, &stroke);
+    mark_path(labels, curve);
+    pivots.iter().for_each(|pivot| stand(canvas, *pivot, WEIGHT));
+    for (i, joints) in linkages.iter().rev() {
+        let [a, b, c, d, _] = *joints;
+        let (edge, _) = COLOURS[i % 3];
+        bars(canvas, [a, b, c, d], palette::BAR, edge, WEIGHT);
+    }
+    let Some((_, [.., p])) = linkages.first() else { return };
+    point_mark(canvas, *p, 1.1);
+    let neighbours: Vec<Spot> = linkages.iter().flat_map(|(_, j)| [j[2], j[3]]).collect();
+    letter(canvas, labels, "P", *p, away(*p, &neighbours));
+    for (name, pivot) in ["A", "B", "G"].into_iter().zip(&pivots) {
+        let arms: Vec<Spot> = linkages
+            .iter()
+            .flat_map(|(_, j)| [(j[0], j[2]), (j[1], j[3])])
+            .filter(|(at, _)| at.distance(*pivot) < 0.5)
+            .map(|(_, pin)| pin)
+            .collect();
+        letter(canvas, labels, name, *pivot, plus(away(*pivot, &arms), Spot::new(0.0, -0.4)));
+    }
+    for (i, [a, b, c, d, p]) in &linkages {
+        let number = if *i == 0 { String::new() } else { i.to_string() };
+        letter(canvas, labels, &format!("C{number}"), *c, away(*c, &[*a, *d, *p]));
+        letter(canvas, labels, &format!("D{number}"), *d, away(*d, &[*b, *c, *p]));
+    }
+}
+
+fn legend(canvas: &mut Canvas, y: f64, colour: &str, name: &str, rest: Option<&str>) {
+    let swatch = format!(r#"stroke="{colour}" stroke-width="5" stroke-linecap="round""#);
+    canvas.line(Spot::new(INSET + 4.0, y - 4.0), Spot::new(INSET + 26.0, y - 4.0), &swatch);
+    let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
+    canvas.text(Spot::new(INSET + 38.0, y), Anchor::Start, &bold, name);
+    if let Some(rest) = rest {
+        let x = INSET + 38.0 + 1.15 * text_width("second cognate", 12.5) + 14.0;
+        let ink = format!(r#"font-size="12.5" fill="{}""#, palette::INK);
+        let rest = super::sheet::fitting(rest, 12.5, FULL - x - INSET);
+        canvas.text(Spot::new(x, y), Anchor::Start, &ink, &rest);
+    }
+}

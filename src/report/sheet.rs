@@ -1,0 +1,173 @@
+//! Framed drawings with a title each, laid out on one page.
+
+use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
+use super::scene::{Bounds, round_length};
+use super::text::{brief, shortened};
+use super::words;
+use crate::linkage::Complex;
+use crate::record::Unit;
+
+/// The width of a page and of the sheets on it.
+const WIDTH: f64 = 1080.0;
+const MARGIN: f64 = 28.0;
+const GAP: f64 = 18.0;
+pub(super) const FULL: f64 = WIDTH - 2.0 * MARGIN;
+pub(super) const HALF: f64 = 0.5 * (FULL - GAP);
+
+/// Where the drawing of a sheet begins, below its title and note.
+pub(super) const HEAD: f64 = 54.0;
+/// The height of a line below the drawing.
+const LINE: f64 = 17.0;
+/// The sheets' own inner margin.
+pub(super) const INSET: f64 = 16.0;
+
+/// Room for letters, stands and labels around the geometry.
+const PADDING: f64 = 40.0;
+/// Room for scale bars below the geometry.
+pub(super) const FOOTER: f64 = 40.0;
+/// A drawing's height follows its shape between these.
+const HEIGHTS: std::ops::RangeInclusive<f64> = 230.0..=440.0;
+
+/// One framed drawing.
+pub(super) struct Sheet {
+    pub(super) title: String,
+    /// A line below the title.
+    pub(super) note: String,
+    /// The drawing; its origin is the sheet's corner.
+    pub(super) body: Canvas,
+    /// Lines below the drawing.
+    pub(super) foot: Vec<String>,
+    pub(super) width: f64,
+    /// Where the drawing ends.
+    pub(super) bottom: f64,
+}
+
+impl Sheet {
+    fn height(&self) -> f64 {
+        self.bottom + LINE * self.foot.len() as f64 + 10.0
+    }
+
+    /// The sheet with its corner at `at`, in a frame of the height of its row.
+    fn put(self, canvas: &mut Canvas, at: Spot, row_height: f64) {
+        canvas.raw(&format!(r#"<g transform="translate({} {})">"#, px(at.x), px(at.y)));
+        let frame = Area { x: 0.0, y: 0.0, width: self.width, height: row_height };
+        canvas.area(frame, &format!(r#"fill="none" stroke="{}" stroke-width="1" rx="4""#, palette::FAINT));
+        let left = |y: f64| Spot::new(INSET, y);
+        let bold = format!(r#"font-size="15" font-weight="600" fill="{}""#, palette::INK);
+        canvas.text(left(26.0), Anchor::Start, &bold, &fitting(&self.title, 15.0, self.width - 2.0 * INSET));
+        let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+        canvas.text(left(44.0), Anchor::Start, &muted, &fitting(&self.note, 12.0, self.width - 2.0 * INSET));
+        canvas.body.push_str(&self.body.body);
+        let ink = format!(r#"font-size="12" fill="{}""#, palette::INK);
+        let first = row_height - 10.0 - LINE * self.foot.len() as f64 + 12.0;
+        for (i, line) in self.foot.iter().enumerate() {
+            let line = fitting(line, 12.0, self.width - 2.0 * INSET);
+            canvas.text(left(first + LINE * i as f64), Anchor::Start, &ink, &line);
+        }
+        canvas.raw("</g>");
+    }
+}
+
+/// The text, cut to what fits.
+pub(super) fn fitting(text: &str, font_size: f64, width: f64) -> String {
+    // Running text is narrower than its widest letters.
+    shortened(text, (1.04 * width / text_width("x", font_size)) as usize)
+}
+
+/// What stands above the sheets.
+pub(super) struct Heading {
+    pub(super) title: String,
+    /// To the right of the title.
+    pub(super) standing: String,
+    pub(super) lines: Vec<String>,
+}
+
+/// The sheets from left to right and from top to bottom on one page.
+pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
+    let mut canvas = Canvas::default();
+    let taken = text_width(&heading.standing, 14.0) + 20.0;
+    let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+    let title = shortened(&heading.title, ((FULL - taken) / text_width("x", 21.0)) as usize);
+    canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &title);
+    let muted = |size: f64| format!(r#"font-size="{size}" fill="{}""#, palette::MUTED);
+    canvas.text(Spot::new(MARGIN + FULL, 42.0), Anchor::End, &muted(14.0), &heading.standing);
+    let mut y = 64.0;
+    for line in &heading.lines {
+        canvas.text(Spot::new(MARGIN, y), Anchor::Start, &muted(13.0), &fitting(line, 13.0, FULL));
+        y += 18.0;
+    }
+    let mut row: Vec<Sheet> = Vec::new();
+    let mut taken = 0.0;
+    for sheet in sheets {
+        // Half a pixel: two halves and their gap make a full width up to rounding.
+        if !row.is_empty() && taken + sheet.width > FULL + 0.5 {
+            y = put_row(&mut canvas, std::mem::take(&mut row), y);
+            taken = 0.0;
+        }
+        taken += sheet.width + GAP;
+        row.push(sheet);
+    }
+    y = put_row(&mut canvas, row, y);
+    canvas.document(WIDTH, y - GAP + MARGIN, &heading.title, &heading.lines.join("; "))
+}
+
+/// A row of sheets, all in frames of the same height; returns where the next one starts.
+fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
+    if row.is_empty() {
+        return y;
+    }
+    let height = row.iter().map(Sheet::height).fold(0.0, f64::max);
+    let mut x = MARGIN;
+    for sheet in row {
+        let width = sheet.width;
+        sheet.put(canvas, Spot::new(x, y), height);
+        x += width + GAP;
+    }
+    y + height + GAP
+}
+
+/// A view of the box in a sheet of this width, and where the drawing ends (scale bars included).
+pub(super) fn fitted(bounds: &Bounds, width: f64) -> (View, f64) {
+    let room = width - 2.0 * PADDING;
+    let wanted = room * bounds.height() / bounds.width().max(f64::MIN_POSITIVE) + 2.0 * PADDING;
+    let height = wanted.clamp(*HEIGHTS.start(), *HEIGHTS.end());
+    let area = Area { x: 0.0, y: HEAD, width, height };
+    (View::fit(bounds, area.shrunk(PADDING)), HEAD + height + FOOTER)
+}
+
+/// The scale bar at the lower left of a drawing that ends at `bottom`.
+pub(super) fn scale_bar(canvas: &mut Canvas, view: &View, unit: Option<Unit>, width: f64, bottom: f64) {
+    let length = round_length(0.22 * width / view.scale);
+    let label = format!("{}{}", brief(length, 3), words::length_suffix(unit));
+    canvas.scale_bar(Spot::new(INSET + 2.0, bottom - 12.0), length * view.scale, &label);
+}
+
+/// An arrow whose head ends at `to`; nothing where it has no length to be seen.
+pub(super) fn arrow(canvas: &mut Canvas, from: Spot, to: Spot, colour: &str) {
+    let length = from.distance(to);
+    // NaN as well.
+    if length.is_nan() || length < 1.0 {
+        return;
+    }
+    let (x, y) = ((to.x - from.x) / length, (to.y - from.y) / length);
+    let head = (0.45 * length).min(11.0);
+    let neck = Spot::new(to.x - head * x, to.y - head * y);
+    let line = format!(r#"stroke="{colour}" stroke-width="2.4" stroke-linecap="round""#);
+    canvas.line(from, neck, &line);
+    let half = 0.36 * head;
+    let barbs = [
+        to,
+        Spot::new(neck.x - half * y, neck.y + half * x),
+        Spot::new(neck.x + half * y, neck.y - half * x),
+    ];
+    canvas.path(&barbs, true, &format!(r#"fill="{colour}""#));
+}
+
+/// Points of an arc about a centre, radians from `from` to `to`.
+pub(super) fn arc(centre: Complex, radius: f64, from: f64, to: f64) -> impl Iterator<Item = Complex> {
+    const STEPS: usize = 64;
+    (0..=STEPS).map(move |i| {
+        let angle = from + (to - from) * i as f64 / STEPS as f64;
+        centre + Complex::from_polar(radius, angle)
+    })
+}
