@@ -24,7 +24,7 @@ fn at_most(value: f64, limit: f64) -> bool {
 
 /// Judges a linkage at crank angles given in degrees, one a target point (that is how the record has them).
 ///
-/// `None` where the loop is open at a point: then there is no error to speak of. The rank is left at 0.
+/// `None` where the loop is open at a point or the pivots coincide: then there is no error to speak of. The rank is left at 0.
 ///
 /// # Panics
 /// When there are fewer angles or assemblies than points.
@@ -37,6 +37,10 @@ pub fn assess(
     let task = problem.task();
     let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
     let linkage_type = linkage.linkage_type()?;
+    // Coincident pivots are no linkage to build: there is no ratio and no ground line to speak of.
+    if !linkage.link_ratio().is_finite() {
+        return None;
+    }
     let error = task.errors(linkage, &crank_angles, assemblies)?;
     let to_curve = task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?;
     let verdict = judge(task, linkage, &crank_angles, assemblies);

@@ -31,7 +31,7 @@
 //! | [`problem_file`], [`points_file`], [`linkage_file`] | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
-//! | [`report`] | what a person sees: pure functions of the record | linkage, task, problem, record |
+//! | [`report`] | what a person sees: pure functions of the record or of an analysis | linkage, task, problem, record, analysis |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 

@@ -1,8 +1,12 @@
-//! Linkage files: a four-bar in natural coordinates or as a vector loop.
+//! Linkage files: a four-bar in natural coordinates or as a vector loop, or a chain of stages.
+
+mod chain;
 
 use crate::diagnostic::Diagnostic;
 use crate::input_text;
-use crate::linkage::{AssemblyMode, CouplerSide, FourBar, LinkageError, NaturalCoordinates, VectorLoop};
+use crate::linkage::{
+    AssemblyMode, Chain, CouplerSide, FourBar, LinkageError, NaturalCoordinates, VectorLoop,
+};
 use crate::name;
 use crate::record::Unit;
 use crate::toml_text::TomlText;
@@ -25,6 +29,26 @@ pub struct LinkageFile {
     pub linkage: FourBar,
 }
 
+/// What a linkage file can hold.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Linkage {
+    /// `[linkage]` or `[vector_loop]`.
+    FourBar(FourBar),
+    /// `[chain]`.
+    Chain(Box<Chain>),
+}
+
+/// A linkage of any kind with its name and the unit of its lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnyLinkageFile {
+    /// Its name; the file stem where the file has none.
+    pub name: String,
+    /// The unit that labels lengths.
+    pub unit: Option<Unit>,
+    /// The linkage.
+    pub linkage: Linkage,
+}
+
 /// A linkwright linkage file.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -37,10 +61,12 @@ pub(crate) struct RawLinkageFile {
     name: Option<String>,
     /// The unit of lengths.
     unit: Option<Unit>,
-    /// Natural coordinates; this or vector_loop.
+    /// Natural coordinates; this or vector_loop or chain.
     linkage: Option<OnlyTable<RawLinkage>>,
-    /// A vector loop; this or linkage.
+    /// A vector loop; this or linkage or chain.
     vector_loop: Option<OnlyTable<RawVectorLoop>>,
+    /// A compound mechanism, stage by stage; this or linkage or vector_loop.
+    chain: Option<OnlyTable<chain::RawChain>>,
 }
 
 /// Pivots A and B, lengths and two signs.
@@ -102,47 +128,81 @@ struct RawVectorLoop {
     t1: AssemblyMode,
 }
 
-/// The linkage of a file.
+/// What to write where there is no linkage.
+const KINDS: &str =
+    "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop], or [chain]";
+
+/// The four-bar of a file.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong.
+/// A [`Diagnostic`] that points at what is wrong; a chain is no four-bar, see [`load_any`].
 pub fn load(path: &Path) -> Result<LinkageFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text)
 }
 
-/// The linkage of a text; `file_name` is shown in diagnostics and gives the default name.
+/// The linkage of a file: a four-bar or a chain.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at what is wrong.
+pub fn load_any(path: &Path) -> Result<AnyLinkageFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_any(&path.display().to_string(), &text)
+}
+
+/// The four-bar of a text; `file_name` is shown in diagnostics and gives the default name.
+///
+/// # Errors
+/// As [`load`].
 pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>> {
+    let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
+    match linkage {
+        Linkage::FourBar(linkage) => Ok(LinkageFile { name, unit, linkage }),
+        Linkage::Chain(_) => {
+            let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
+            let message = "a chain is not a four-bar, and a four-bar is needed here";
+            let help = "give a linkage file with [linkage] or [vector_loop]";
+            Err(Box::new(toml.at_key("chain", message).with_help(help)))
+        }
+    }
+}
+
+/// The linkage of a text, a four-bar or a chain.
+///
+/// # Errors
+/// As [`load_any`].
+pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diagnostic>> {
     let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
     if toml.text.trim().is_empty() {
-        let help = "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop]";
-        return Err(Box::new(toml.about_file("the file is empty").with_help(help)));
+        return Err(Box::new(toml.about_file("the file is empty").with_help(KINDS)));
     }
     let raw: RawLinkageFile = toml.read()?;
     check_format(&toml, raw.format, FORMAT)?;
     let name = checked_name(&toml, raw.name, "linkage")?;
-    let linkage = match (raw.linkage, raw.vector_loop) {
-        (Some(OnlyTable(natural)), None) => {
-            natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?
+    let linkage = match (raw.linkage, raw.vector_loop, raw.chain) {
+        (Some(OnlyTable(natural)), None, None) => {
+            Linkage::FourBar(natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?)
         }
-        (None, Some(OnlyTable(vector_loop))) => {
-            from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?
+        (None, Some(OnlyTable(vector_loop)), None) => {
+            Linkage::FourBar(from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?)
         }
-        (Some(_), Some(_)) => {
-            let both = toml.at_key("vector_loop", "two linkages: [linkage] and [vector_loop]");
+        (None, None, Some(OnlyTable(chain))) => Linkage::Chain(Box::new(chain::chain(&toml, chain)?)),
+        (None, None, None) => {
+            return Err(Box::new(toml.about_file("there is no linkage in this file").with_help(KINDS)));
+        }
+        (natural, vector_loop, chain) => {
+            let kinds = [
+                ("linkage", natural.is_some()),
+                ("vector_loop", vector_loop.is_some()),
+                ("chain", chain.is_some()),
+            ];
+            let there: Vec<&str> = kinds.iter().filter(|(_, there)| *there).map(|(kind, _)| *kind).collect();
+            let (first, last) = (there[0], there[there.len() - 1]);
+            let both = toml.at_key(last, format!("two linkages: [{first}] and [{last}]"));
             return Err(Box::new(both.with_help("keep one of the two tables")));
         }
-        (None, None) => {
-            let none = toml.about_file("there is no linkage in this file");
-            return Err(Box::new(
-                none.with_help("add a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop]"),
-            ));
-        }
     };
-    Ok(LinkageFile { name, unit: raw.unit, linkage })
+    Ok(AnyLinkageFile { name, unit: raw.unit, linkage })
 }
 
 fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {

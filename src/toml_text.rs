@@ -30,18 +30,12 @@ const ONLY_PATH: &str = "a problem has one task, and [task.path] is the only kin
 const SVG: &str = "a target from an SVG drawing";
 const NO_SVG: &str = "write the points as points = [[x, y], ...] or give file = \"points.csv\"";
 
-const KEYS_TO_COME: [KeyToCome; 6] = [
+const KEYS_TO_COME: [KeyToCome; 5] = [
     KeyToCome { key: "motion", beside: "path", what: "[task.motion]", instead: ONLY_PATH },
     KeyToCome { key: "function", beside: "path", what: "[task.function]", instead: ONLY_PATH },
     KeyToCome { key: "svg", beside: "points", what: SVG, instead: NO_SVG },
     KeyToCome { key: "svg_id", beside: "points", what: SVG, instead: NO_SVG },
     KeyToCome { key: "samples", beside: "points", what: SVG, instead: NO_SVG },
-    KeyToCome {
-        key: "chain",
-        beside: "vector_loop",
-        what: "[chain]",
-        instead: "give a four-bar as [linkage] or [vector_loop]",
-    },
 ];
 
 /// A value that is known and not read yet, and a value that stands beside it.
@@ -170,11 +164,14 @@ impl<'a> TomlText<'a> {
             return self.about_file(message).with_help(*instead);
         }
         if key == "task" && allowed.contains(&"vector_loop") {
-            return self
-                .about_file("this is a problem file, not a linkage file")
-                .with_help("`linkwright synth` runs it; a linkage file has [linkage] or [vector_loop]");
+            return self.about_file("this is a problem file, not a linkage file").with_help(
+                "`linkwright synth` runs it; a linkage file has [linkage], [vector_loop] or [chain]",
+            );
         }
-        if matches!(key, "linkage" | "vector_loop") && allowed.contains(&"task") {
+        if matches!(key, "linkage" | "vector_loop" | "chain")
+            && allowed.contains(&"task")
+            && self.place("task").is_none()
+        {
             return self
                 .about_file("this is a linkage file, not a problem file")
                 .with_help("`linkwright analyze` reads it; a problem file has [task.path]");

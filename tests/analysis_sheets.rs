@@ -18,8 +18,9 @@ const CONFIGURATIONS: &str = "The four configurations";
 const CYCLE: &str = "Over the cycle";
 
 fn shipped(name: &str) -> FourBar {
-    let path = root().join(format!("problems/linkages/{name}.toml"));
-    linkage_file::load(&path).unwrap_or_else(|e| panic!("{e}")).linkage
+    let folders = ["linkages", "seeds"].map(|folder| root().join(format!("problems/{folder}/{name}.toml")));
+    let path = folders.iter().find(|path| path.is_file()).unwrap_or_else(|| panic!("no linkage file {name}"));
+    linkage_file::load(path).unwrap_or_else(|e| panic!("{e}")).linkage
 }
 
 fn linkage(ground: f64, links: [f64; 3], offset: [f64; 2]) -> FourBar {

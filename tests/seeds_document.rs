@@ -3,7 +3,6 @@
 //! compares. To write it after a change of wording: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test seeds_document`.
 
 mod common;
-#[allow(dead_code, reason = "shared with the tests of kinematics")]
 mod reference;
 
 use linkwright::linkage::loop_closure::{

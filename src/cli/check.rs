@@ -3,7 +3,8 @@
 use super::arguments::Check;
 use super::{Ended, terminal};
 use crate::diagnostic::{Diagnostic, escaped};
-use crate::{linkage_file, points_file, problem_file};
+use crate::linkage_file::{self, Linkage};
+use crate::{points_file, problem_file};
 use ariadne::ReportKind;
 use std::path::Path;
 
@@ -33,9 +34,17 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         return Ok((format!("{} points", points.points.len()), points.warnings));
     }
     if is_linkage_file(path) {
-        let file = linkage_file::load(path)?;
-        let of = file.linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
-        return Ok((format!("linkage {}: {of}, {}", file.name, file.linkage), Vec::new()));
+        let file = linkage_file::load_any(path)?;
+        let what = match &file.linkage {
+            Linkage::FourBar(linkage) => {
+                let of = linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
+                format!("linkage {}: {of}, {linkage}", file.name)
+            }
+            Linkage::Chain(chain) => {
+                format!("chain {}: {} stages, points {}", file.name, chain.stages(), chain.names().join(", "))
+            }
+        };
+        return Ok((what, Vec::new()));
     }
     let file = problem_file::load(path, &[])?;
     let path_spec = &file.spec.task.path;

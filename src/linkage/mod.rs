@@ -16,6 +16,7 @@
 //! This room imports nothing else of the crate.
 
 pub mod assembly_condition;
+pub mod chain;
 pub mod cognate;
 pub mod coupler_curve;
 pub mod dispatch;
@@ -27,6 +28,7 @@ pub mod motion;
 pub mod position;
 pub mod transmission;
 
+pub use chain::{Chain, ChainBuilder};
 pub use coupler_curve::CouplerCurve;
 pub use mobility::{Branch, Circuit, InputArc, InputRange, LinkageType, Mobility, Toggle};
 pub use position::{Joints, Position};

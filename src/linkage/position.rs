@@ -83,6 +83,27 @@ pub struct LanePosition<L> {
     pub gap: L,
 }
 
+/// Where the circle of radius b about C meets the circle of radius c about B, in the frame of V = B - C.
+#[derive(Clone, Copy)]
+pub(super) struct Meeting<L> {
+    /// u = l1/s: along V.
+    pub u: L,
+    /// sqrt k = |h1|/s: across V; 0 where the circles miss each other.
+    pub root: L,
+    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly where the circles meet.
+    pub gap: L,
+}
+
+/// u and sqrt k (equations 12 and 13) from V, b^2 and (b^2 - c^2)/2: D = C + V (u +- i sqrt k).
+#[inline(always)]
+pub(super) fn meeting<L: Lane>(v: [L; 2], radius_sq: L, half_difference: L) -> Meeting<L> {
+    let inv = (v[0] * v[0] + v[1] * v[1]).recip();
+    let u = L::splat(0.5) + half_difference * inv;
+    let reach = radius_sq * inv;
+    let k = reach - u * u;
+    Meeting { u, root: k.positive_part().sqrt(), gap: k + L::splat(FLAT_TOLERANCE) * reach }
+}
+
 impl Kernel {
     /// The numbers of a linkage.
     #[inline]
@@ -127,11 +148,8 @@ impl Kernel {
         let s = L::splat;
         let crank_pin = [s(self.a_x) + s(self.crank) * cos, s(self.a_y) + s(self.crank) * sin];
         let v = [s(self.b_x) - crank_pin[0], s(self.b_y) - crank_pin[1]];
-        let inv = (v[0] * v[0] + v[1] * v[1]).recip();
-        let u = s(0.5) + s(self.half_difference) * inv;
-        let reach = s(self.coupler_sq) * inv;
-        let k = reach - u * u;
-        Reach { crank_pin, v, u, root: k.positive_part().sqrt(), gap: k + s(FLAT_TOLERANCE) * reach }
+        let Meeting { u, root, gap } = meeting(v, s(self.coupler_sq), s(self.half_difference));
+        Reach { crank_pin, v, u, root, gap }
     }
 
     #[inline(always)]

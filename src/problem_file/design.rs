@@ -124,6 +124,12 @@ fn ground(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic
     let (Some(a), Some(b)) = (design.crank_pivot, design.follower_pivot) else { return Ok(()) };
     let apart = [0, 1].map(|axis| Limits(b[axis].0 - a[axis].1, b[axis].1 - a[axis].0));
     let reach = norm_range(apart);
+    if reach.1 == 0.0 {
+        return Err(Box::new(
+            toml.at("design.B", "A and B are the same point".to_owned())
+                .with_help("put the pivots apart: a four-bar has a ground link of some length"),
+        ));
+    }
     if let Some(ground) = design.ground
         && are_apart(ground, reach)
     {

@@ -39,6 +39,8 @@ const LONG_STEPS: usize = 300;
 pub struct RoundOutcome {
     /// Judged candidates, in the order of their starts' promise.
     pub found: Vec<Candidate>,
+    /// Starts drawn, also those that could not be assembled.
+    pub draws: u64,
     /// How often the objective was computed.
     pub evaluations: u64,
     /// How many positions that took.
@@ -66,6 +68,7 @@ pub fn round(problem: &Problem, starts: &Starts<'_>, index: u64, budget: &Budget
     let n = problem.task().len() as u64;
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     for _ in 0..SCREEN {
+        outcome.draws += 1;
         let Some(mut start) = starts.draw(&mut draws) else { continue };
         outcome.evaluations += 1;
         outcome.positions += n;

@@ -106,7 +106,7 @@ fn local_search(
     };
     let mut best: Option<Candidate> = None;
     let (mut hits, mut known, mut quiet) = (0, 0, 0);
-    let mut batch = 0;
+    let (mut batch, mut draws) = (0, 0);
     loop {
         if let Some(reason) = budget.stop_reason() {
             local.reason = reason;
@@ -118,6 +118,7 @@ fn local_search(
             .collect();
         batch += 1;
         for outcome in rounds {
+            draws += outcome.draws;
             local.evaluations.objective += outcome.evaluations;
             local.evaluations.positions += outcome.positions;
             let mut hit = false;
@@ -159,9 +160,11 @@ fn local_search(
                 return local;
             }
         }
+        // Draws that cannot be assembled cost no evaluation, and must not go on for ever.
         let used = local.evaluations.objective;
-        if used >= limit || (used >= patience && best.is_none()) {
-            local.reason = Reason::EvaluationLimit;
+        let spent = used.max(draws);
+        if spent >= limit || (spent >= patience && best.is_none()) {
+            local.reason = if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
             return local;
         }
     }
@@ -175,8 +178,9 @@ fn auto(
     let limit = problem.spec().solve.evaluations;
     let patience = (limit as f64 * LOCAL_SHARE) as u64;
     let mut local = local_search(problem, limit, patience, budget, observer);
-    let finished = local.reason != Reason::EvaluationLimit || local.evaluations.objective >= limit;
-    if finished || local.found.iter().any(|c| c.accepted) {
+    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled);
+    let spent = local.evaluations.objective >= limit;
+    if !gave_up || spent || local.found.iter().any(|c| c.accepted) {
         return Ok(local.outcome(problem));
     }
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
@@ -201,7 +205,7 @@ fn auto(
     }
     if let Some(reason) = budget.stop_reason() {
         local.reason = reason;
-    } else if end.reason != Reason::EvaluationLimit {
+    } else {
         local.reason = end.reason;
     }
     Ok(local.outcome(problem))

@@ -1,0 +1,144 @@
+//! What a chain is made of, by name.
+
+use super::assembly::Assembly;
+use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, SliderLine, Stage};
+use crate::linkage::{AssemblyMode, CouplerSide};
+
+/// The most stages of a chain.
+pub const MAX_STAGES: usize = 1000;
+
+/// The most characters of a point's name.
+pub const MAX_POINT_NAME: usize = 16;
+
+/// The parts of a chain in the order in which they are assembled; nothing is judged before
+/// [`ChainBuilder::build`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ChainBuilder {
+    /// Fixed points with their names.
+    pub pivots: Vec<(String, [f64; 2])>,
+    /// The crank's pivot.
+    pub crank_pivot: String,
+    /// The crank's joint.
+    pub crank_joint: String,
+    /// |AC|.
+    pub crank: f64,
+    /// What is hung on it.
+    pub stages: Vec<Stage>,
+    /// The point whose path is wanted; none: the last that is made.
+    pub trace: Option<String>,
+}
+
+impl ChainBuilder {
+    /// No part yet.
+    pub fn new() -> Self {
+        ChainBuilder::default()
+    }
+
+    /// A fixed pivot.
+    #[must_use]
+    pub fn pivot(mut self, name: &str, at: [f64; 2]) -> Self {
+        self.pivots.push((name.into(), at));
+        self
+    }
+
+    /// The driven crank: it turns about a fixed pivot and carries `joint` at the distance `length`.
+    #[must_use]
+    pub fn crank(mut self, pivot: &str, joint: &str, length: f64) -> Self {
+        (self.crank_pivot, self.crank_joint, self.crank) = (pivot.into(), joint.into(), length);
+        self
+    }
+
+    /// Any stage.
+    #[must_use]
+    pub fn stage(mut self, stage: Stage) -> Self {
+        self.stages.push(stage);
+        self
+    }
+
+    /// Two links of the given lengths from two points to a new joint: [`Stage::Dyad`].
+    #[must_use]
+    pub fn dyad(self, joint: &str, from: [&str; 2], lengths: [f64; 2], side: AssemblyMode) -> Self {
+        self.stage(Stage::Dyad { joint: joint.into(), from: from.map(Into::into), lengths, side })
+    }
+
+    /// A point on a link, along and across the line between two of its points: [`Stage::Point`].
+    #[must_use]
+    pub fn point(self, name: &str, on: [&str; 2], offset: [f64; 2]) -> Self {
+        let at = Attachment::Offset(offset);
+        self.stage(Stage::Point { name: name.into(), on: on.map(Into::into), at })
+    }
+
+    /// A point on a link by its distances from two of its points: [`Stage::Point`].
+    #[must_use]
+    pub fn point_at_distances(
+        self,
+        name: &str,
+        on: [&str; 2],
+        distances: [f64; 2],
+        side: CouplerSide,
+    ) -> Self {
+        let at = Attachment::Distances(distances, side);
+        self.stage(Stage::Point { name: name.into(), on: on.map(Into::into), at })
+    }
+
+    /// A link whose end slides along the fixed line through `through` at `angle` (radians from the x axis):
+    /// [`Stage::Slider`].
+    #[must_use]
+    pub fn slider(
+        self,
+        joint: &str,
+        from: &str,
+        length: f64,
+        through: [f64; 2],
+        angle: f64,
+        side: AssemblyMode,
+    ) -> Self {
+        let line = SliderLine::Fixed { through, angle };
+        self.stage(Stage::Slider { joint: joint.into(), from: from.into(), length, line, side })
+    }
+
+    /// A link that turns about `pivot` while the block `block` slides along it, carrying a joint at `at`
+    /// along and across it: [`Stage::Guide`], the block ahead of the pivot and on the line through it.
+    #[must_use]
+    pub fn guide(self, joint: &str, pivot: &str, block: &str, at: [f64; 2]) -> Self {
+        self.stage(Stage::Guide {
+            joint: joint.into(),
+            pivot: pivot.into(),
+            block: block.into(),
+            at,
+            offset: 0.0,
+            side: AssemblyMode::Plus,
+        })
+    }
+
+    /// The point whose path is wanted.
+    #[must_use]
+    pub fn trace(mut self, name: &str) -> Self {
+        self.trace = Some(name.into());
+        self
+    }
+
+    /// The chain, every name resolved.
+    ///
+    /// # Errors
+    /// [`ChainError`], the first in the order of assembly, with the part, the key and the fault.
+    pub fn build(self) -> Result<Chain, Box<ChainError>> {
+        if self.stages.len() > MAX_STAGES {
+            return Err(Box::new(ChainError {
+                place: ChainPlace::Chain,
+                joint: String::new(),
+                key: "dyad",
+                index: None,
+                fault: ChainFault::TooManyStages(self.stages.len()),
+            }));
+        }
+        Assembly::new(&self).finish().map(|parts| Chain { source: self, ..parts })
+    }
+
+    /// The name of every point in the order of assembly.
+    pub(super) fn all_names(&self) -> Vec<String> {
+        let pivots = self.pivots.iter().map(|(name, _)| name.as_str());
+        let crank = std::iter::once(self.crank_joint.as_str());
+        pivots.chain(crank).chain(self.stages.iter().map(Stage::joint)).map(Into::into).collect()
+    }
+}
