@@ -4,6 +4,8 @@
 //! Everything here is data: reports are made from it elsewhere. What has no value has none (`None`, and a
 //! status that says why), never a NaN.
 
+pub mod chain;
+
 use crate::linkage::assembly_condition::AssemblyCondition;
 use crate::linkage::loop_closure::{Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity};
 use crate::linkage::motion::{CrankMotion, Motion};

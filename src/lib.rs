@@ -25,7 +25,7 @@
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
-//! | [`analysis`] | what a given linkage does: positions, velocities, accelerations, mobility | linkage |
+//! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
 //! | [`problem_file`], [`points_file`], [`linkage_file`] | text in, with errors that point at their place | linkage, task, problem |

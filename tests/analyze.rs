@@ -192,3 +192,47 @@ fn usage_errors_name_the_option() {
         assert!(run.stderr.contains(word), "{arguments:?}: {}", run.stderr);
     }
 }
+
+#[test]
+fn a_jansen_leg_is_analysed_with_every_joint() {
+    let folder = TempDir::new().expect("a folder");
+    let leg = shipped("linkages/jansen-leg.toml");
+    let arguments =
+        ["analyze", &leg, "--cycle", "360", "--rpm", "30", "--csv", "leg.csv", "--svg", "leg.svg"];
+    let run = linkwright(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let words: String = run.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("F moves 67.908") && words.contains("22.457"), "{words}");
+    let csv = fs::read_to_string(folder.path().join("leg.csv")).expect("written");
+    let head = csv.lines().next().expect("a head");
+    assert!(
+        head.starts_with("crank_deg,Bx,By,vBx,vBy,aBx,aBy,") && head.ends_with(",aFx,aFy,status"),
+        "{head}"
+    );
+    assert_eq!(csv.lines().count(), 361);
+    assert!(csv.lines().skip(1).all(|line| line.ends_with(",ok") && !line.contains("NaN")));
+    let svg = fs::read_to_string(folder.path().join("leg.svg")).expect("written");
+    roxmltree::Document::parse(&svg).expect("it is XML");
+    assert!(!svg.contains("NaN"));
+    let json = linkwright(folder.path(), &["analyze", &leg, "--angle", "0", "--json"]);
+    let value: serde_json::Value = serde_json::from_str(&json.stdout).expect("JSON");
+    assert_eq!(value["trace"], "F");
+    let refused = linkwright(folder.path(), &["analyze", &leg, "--all-configurations"]);
+    assert_eq!(refused.code, 2);
+    assert_eq!(linkwright(folder.path(), &["cognates", &leg]).code, 2);
+}
+
+#[test]
+fn a_chain_that_cannot_turn_says_where_it_opens() {
+    let folder = TempDir::new().expect("a folder");
+    let text = "format = 1\n[chain.pivots]\nA = [0, 0]\nD = [10, 0]\n[chain.crank]\npivot = \"A\"\njoint = \"B\"\n\
+                length = 8\n[[chain.dyad]]\njoint = \"C\"\nfrom = [\"B\", \"D\"]\nlengths = [3, 4]\nside = 1\n";
+    fs::write(folder.path().join("short.toml"), text).expect("written");
+    let arguments =
+        ["analyze", "short.toml", "--angle", "0,180", "--omega", "1", "--csv", "out.csv", "--svg", "out.svg"];
+    let run = linkwright(folder.path(), &arguments);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("open at C") && run.stdout.contains("The crank reaches"), "{}", run.stdout);
+    let csv = fs::read_to_string(folder.path().join("out.csv")).expect("written");
+    assert!(csv.lines().nth(2).expect("a row").contains(",,") && !csv.contains("NaN"), "{csv}");
+}

@@ -2,13 +2,16 @@
 
 use super::arguments::{Analyze, Cognates};
 use super::{Ended, terminal};
+use crate::analysis::chain::{ChainRequest, analyze_chain};
 use crate::analysis::{PositionMethod, Request, analyze, full_turn};
 use crate::diagnostic::escaped;
 use crate::linkage::motion::CrankMotion;
-use crate::linkage_file::{self, LinkageFile};
+use crate::linkage_file::{self, Linkage};
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
 use crate::report::analysis_text::{analysis_head, analysis_table};
+use crate::report::chain_sheet::chain_svg;
+use crate::report::chain_text::{chain_csv, chain_head, chain_table};
 use ariadne::ReportKind;
 use std::path::Path;
 
@@ -17,11 +20,9 @@ const DEFAULT_POSITIONS: usize = 12;
 /// A table of more rows is not printed when it was written to a file.
 const LONG_TABLE: usize = 72;
 
-fn load(path: &Path) -> Result<LinkageFile, Ended> {
-    linkage_file::load(path).map_err(|diagnostic| {
-        terminal::diagnose(ReportKind::Error, &diagnostic);
-        Ended::Refused
-    })
+fn refused(diagnostic: &crate::diagnostic::Diagnostic) -> Ended {
+    terminal::diagnose(ReportKind::Error, diagnostic);
+    Ended::Refused
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Ended> {
@@ -37,51 +38,105 @@ pub fn run(options: &Analyze) -> Ended {
 }
 
 fn inner(options: &Analyze) -> Result<Ended, Ended> {
-    let file = load(&options.linkage)?;
+    let file = linkage_file::load_any(&options.linkage).map_err(|d| refused(&d))?;
     let crank_deg = match (&options.angle, options.cycle) {
         (Some(angles), _) => angles.clone(),
         (None, Some(n)) => full_turn(n as usize),
         (None, None) => full_turn(DEFAULT_POSITIONS),
     };
     let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
+    let input = CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha };
+    let linkage = match file.linkage {
+        Linkage::FourBar(linkage) => linkage,
+        Linkage::Chain(chain) => {
+            if options.all_configurations || !options.method.is_empty() {
+                terminal::complain(
+                    "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
+                );
+                return Err(Ended::Refused);
+            }
+            let request = ChainRequest { name: file.name, unit: file.unit, chain: *chain, crank_deg, input };
+            return of_chain(options, &request);
+        }
+    };
     let request = Request {
         name: file.name,
         unit: file.unit,
-        linkage: file.linkage,
+        linkage,
         crank_deg,
-        input: CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha },
+        input,
         methods: options.method.clone(),
         all_configurations: options.all_configurations,
     };
     let analysis = analyze(&request);
+    let positions: usize = analysis.configurations.iter().map(|c| c.rows.len()).sum();
+    deliver(
+        options,
+        positions,
+        &analysis,
+        &Forms {
+            csv: &|| analysis_csv(&analysis),
+            svg: &|| analysis_svg(&analysis),
+            table: &|| analysis_table(&analysis, terminal::colour()),
+            head: &|| analysis_head(&analysis, terminal::colour()),
+        },
+    )
+}
+
+fn of_chain(options: &Analyze, request: &ChainRequest) -> Result<Ended, Ended> {
+    let analysis = analyze_chain(request);
+    deliver(
+        options,
+        analysis.rows.len(),
+        &analysis,
+        &Forms {
+            csv: &|| chain_csv(&analysis),
+            svg: &|| chain_svg(&analysis, &request.chain),
+            table: &|| chain_table(&analysis, terminal::colour()),
+            head: &|| chain_head(&analysis, terminal::colour()),
+        },
+    )
+}
+
+/// The forms in which an analysis can be given; each is made only when it is wanted.
+struct Forms<'a> {
+    csv: &'a dyn Fn() -> String,
+    svg: &'a dyn Fn() -> String,
+    table: &'a dyn Fn() -> String,
+    head: &'a dyn Fn() -> String,
+}
+
+/// Writes the files that were asked for and prints JSON, the tables, or (long tables that stand in a file) the
+/// head alone.
+fn deliver(
+    options: &Analyze,
+    positions: usize,
+    analysis: &impl serde::Serialize,
+    forms: &Forms<'_>,
+) -> Result<Ended, Ended> {
     if let Some(path) = &options.csv {
-        write(path, &analysis_csv(&analysis))?;
+        write(path, &(forms.csv)())?;
     }
     if let Some(path) = &options.svg {
-        write(path, &analysis_svg(&analysis))?;
+        write(path, &(forms.svg)())?;
     }
     if options.json {
-        let text = serde_json::to_string_pretty(&analysis).map_err(|e| {
+        let text = serde_json::to_string_pretty(analysis).map_err(|e| {
             terminal::complain(&format!("the analysis cannot be written as JSON: {e}"));
             Ended::Refused
         })?;
         terminal::answer(&(text + "\n"));
         return Ok(Ended::Good);
     }
-    // A long table that stands in a file already is not printed as well.
-    let rows: usize = analysis.configurations.iter().map(|c| c.rows.len()).sum();
     let files: Vec<String> = [&options.csv, &options.svg]
         .into_iter()
         .flatten()
         .map(|p| escaped(&p.display().to_string()))
         .collect();
-    if files.is_empty() || rows <= LONG_TABLE {
-        terminal::answer(&analysis_table(&analysis, terminal::colour()));
-    } else {
-        terminal::answer(&analysis_head(&analysis, terminal::colour()));
-    }
+    let shown = if files.is_empty() || positions <= LONG_TABLE { (forms.table)() } else { (forms.head)() };
+    terminal::answer(&shown);
     if !files.is_empty() {
-        terminal::answer(&format!("\n  {rows} positions. Written to {}\n", files.join(" and ")));
+        terminal::answer(&format!("\n  {positions} positions. Written to {}\n", files.join(" and ")));
     }
     Ok(Ended::Good)
 }
@@ -92,7 +147,7 @@ pub fn cognates(options: &Cognates) -> Ended {
 }
 
 fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
-    let file = load(&options.linkage)?;
+    let file = linkage_file::load(&options.linkage).map_err(|d| refused(&d))?;
     let mut found = Vec::new();
     let mut text = String::new();
     for (place, cognate) in ["A", "B"].iter().zip(file.linkage.cognates()) {

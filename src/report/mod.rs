@@ -18,6 +18,8 @@ pub mod analysis_csv;
 pub mod analysis_sheets;
 pub mod analysis_text;
 mod canvas;
+pub mod chain_sheet;
+pub mod chain_text;
 mod cognates_sheet;
 pub mod compare;
 pub mod contact_sheet;

@@ -1,0 +1,105 @@
+//! A compound mechanism drawn at one position, with ghosts of others and the path of its traced point.
+
+use super::canvas::{Canvas, Spot, palette};
+use super::labels::Labels;
+use super::parts::{away, letter, point_mark, stand};
+use super::scene::Bounds;
+use super::sheet::{FULL, Heading, Sheet, fitted, page, scale_bar};
+use super::text::significant;
+use crate::analysis::Status;
+use crate::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
+use crate::linkage::{Chain, Complex};
+
+/// The most positions that are drawn faintly besides the first.
+const GHOSTS: usize = 5;
+
+/// The page of a chain's analysis: one self-contained SVG.
+pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
+    let path: Vec<Option<Complex>> = chain.path(chain.trace(), CYCLE_SAMPLES);
+    let closed: Vec<f64> =
+        analysis.rows.iter().filter(|r| r.status != Status::Open).map(|r| r.crank_deg).collect();
+    let poses: Vec<Vec<Complex>> = closed.iter().filter_map(|deg| pose(chain, *deg)).collect();
+    let mut bounds = Bounds::default();
+    path.iter().flatten().chain(poses.iter().flatten()).for_each(|p| bounds.hold(*p));
+    chain.pose().known().iter().for_each(|p| bounds.hold(*p));
+    let (view, bottom) = fitted(&bounds, FULL);
+    let mut body = Canvas::default();
+    let mut labels = Labels::default();
+    let step = poses.len().div_ceil(GHOSTS + 1).max(1);
+    for ghost in poses.iter().step_by(step).skip(1) {
+        body.raw(r#"<g opacity="0.28">"#);
+        links(&mut body, chain, &ghost.iter().map(|p| view.spot(*p)).collect::<Vec<_>>());
+        body.raw("</g>");
+    }
+    let curve = format!(r#"fill="none" stroke="{}" stroke-width="2.2""#, palette::CURVE);
+    let mut run: Vec<Spot> = Vec::new();
+    for at in path.iter().chain([&None]) {
+        match at {
+            Some(p) => run.push(view.spot(*p)),
+            None if run.is_empty() => {}
+            None => {
+                let whole = run.len() == path.len();
+                body.path(&run, whole, &curve);
+                run.clear();
+            }
+        }
+    }
+    if let Some(first) = poses.first() {
+        let spots: Vec<Spot> = first.iter().map(|p| view.spot(*p)).collect();
+        let pivots = chain.names().len() - chain.stages() - 1;
+        spots[..pivots].iter().for_each(|spot| stand(&mut body, *spot, 0.9));
+        links(&mut body, chain, &spots);
+        let pin = format!(r#"fill="{}" stroke="{}" stroke-width="1.4""#, palette::PAPER, palette::INK);
+        spots.iter().for_each(|spot| body.circle(*spot, 3.4, &pin));
+        point_mark(&mut body, spots[chain.trace().index()], 1.0);
+        for (name, spot) in chain.names().iter().zip(&spots) {
+            let others: Vec<Spot> = spots.iter().filter(|s| s.distance(*spot) > 1.0).copied().collect();
+            letter(&mut body, &mut labels, name, *spot, away(*spot, &others));
+        }
+    }
+    scale_bar(&mut body, &view, analysis.unit, FULL, bottom);
+    let note = match closed.first() {
+        Some(deg) => format!("crank at {}°, and the path of {}", significant(*deg, 5), analysis.trace),
+        None => "it closes at none of the crank angles asked".to_owned(),
+    };
+    let sheet = Sheet { title: "Positions".into(), note, body, foot: Vec::new(), width: FULL, bottom };
+    let standing = if analysis.input_turns_fully { "the crank turns fully" } else { "the crank rocks" };
+    let mut lines = vec![format!("{} stages after the crank", analysis.stages)];
+    if let Some(stroke) = analysis.stroke {
+        let [w, h] = [0, 1].map(|axis| significant(stroke.high[axis] - stroke.low[axis], 5));
+        lines.push(format!("{} moves {w} in x and {h} in y over a turn", analysis.trace));
+    }
+    page(&Heading { title: analysis.name.clone(), standing: standing.into(), lines }, vec![sheet])
+}
+
+/// Every point at a crank angle; `None` where a stage does not close.
+fn pose(chain: &Chain, crank_deg: f64) -> Option<Vec<Complex>> {
+    let mut pose = chain.pose();
+    chain.position(crank_deg.to_radians(), &mut pose);
+    (pose.known().len() == chain.names().len()).then(|| pose.known().to_vec())
+}
+
+/// The moving links: a bar for two points, a shaded plate for more.
+fn links(canvas: &mut Canvas, chain: &Chain, spots: &[Spot]) {
+    for link in chain.links().iter().skip(1) {
+        let corners: Vec<Spot> = link.iter().filter_map(|id| spots.get(id.index())).copied().collect();
+        match corners.as_slice() {
+            [] | [_] => {}
+            [from, to] => {
+                for (colour, width) in [(palette::BAR_EDGE, 7.0), (palette::BAR, 4.6)] {
+                    let attributes =
+                        format!(r#"stroke="{colour}" stroke-width="{width}" stroke-linecap="round""#);
+                    canvas.line(*from, *to, &attributes);
+                }
+            }
+            plate => {
+                let attributes = format!(
+                    r#"fill="{}" fill-opacity="0.22" stroke="{}" stroke-width="2" stroke-linejoin="round""#,
+                    palette::COUPLER,
+                    palette::BAR_EDGE
+                );
+                canvas.path(plate, true, &attributes);
+            }
+        }
+    }
+}
