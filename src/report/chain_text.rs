@@ -4,7 +4,7 @@ use super::csv::written;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{clean, exact, significant, wrapped};
 use crate::analysis::Status;
-use crate::analysis::chain::{ChainAnalysis, ChainRow, PointRow};
+use crate::analysis::chain::{ChainAnalysis, ChainRow};
 
 const COLUMNS: usize = 100;
 const DIGITS: usize = 7;
@@ -57,9 +57,8 @@ pub fn chain_table(analysis: &ChainAnalysis, colour: Colour) -> String {
     for row in &analysis.rows {
         let point = row.points.iter().find(|p| p.name == analysis.trace);
         let mut cells = vec![(significant(row.crank_deg, 6), Ink::Plain)];
-        let parts: [fn(&PointRow) -> Option<[f64; 2]>; 3] = [|p| p.at, |p| p.velocity, |p| p.acceleration];
-        for part in parts {
-            let pair = point.and_then(part);
+        let pairs = point.map_or([None; 3], |p| [p.at, p.velocity, p.acceleration]);
+        for pair in pairs {
             for axis in 0..2 {
                 let text = pair.map_or_else(|| "-".to_owned(), |xy| significant(xy[axis], DIGITS));
                 cells.push((text, Ink::Plain));
