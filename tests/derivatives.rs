@@ -118,6 +118,7 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
         let options = LmOptions {
             max_steps: 60,
             max_rounds: 4,
+            max_evaluations: 1000,
             relative_reduction: 1e-10,
             exact_cost: 0.0,
             feasibility: 1e-9,

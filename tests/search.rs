@@ -121,6 +121,15 @@ fn a_budget_of_evaluations_is_kept() {
         assert_eq!(record.evaluations.objective, 12345, "{method}");
         assert_eq!(record.termination.reason, Reason::EvaluationLimit);
     }
+    for method in ["auto", "least-squares"] {
+        for budget in [1u64, 7, 100, 2345] {
+            let budget_text = budget.to_string();
+            let tight = [("task.path.tolerance", "0.0001"), ("solve.evaluations", budget_text.as_str())];
+            let set = [tight[0], tight[1], ("solve.method", method)];
+            let record = run_on(2, literature("k18", &set));
+            assert!(record.evaluations.objective <= budget, "{method}, {budget}: {:?}", record.evaluations);
+        }
+    }
 }
 
 #[test]
@@ -195,5 +204,18 @@ fn population_searches_beat_uniform_sampling_tenfold_at_equal_evaluations() {
     for which in [Population::DifferentialEvolution, Population::Genetic] {
         let found = median_of(which);
         assert!(10.0 * found <= uniform, "{}: {found:e}, uniform sampling {uniform:e}", which.name());
+    }
+}
+
+#[test]
+fn a_problem_with_everything_fixed_has_the_one_answer_that_it_leaves() {
+    let fixed = "format = 1\n[task.path]\npoints = [[0, 4.9], [1, 4.8], [2, 4.6]]\n[task.path.timing]\n\
+                 crank_deg = [90, 60, 30]\noffset = \"fixed\"\n[design]\nA = [0, 0]\nB = [2, 0]\na = 1\nb = 2.5\nc = 2.5\n\
+                 coupler_x = 5\ncoupler_y = 0\n[solve]\nmethod = \"METHOD\"\n";
+    for method in ["auto", "genetic", "differential-evolution", "least-squares"] {
+        let record = run_on(1, parse(&fixed.replace("METHOD", method)));
+        let linkage = record.candidates[0].linkage;
+        assert_eq!((linkage.crank(), linkage.coupler(), linkage.follower()), (1.0, 2.5, 2.5), "{method}");
+        assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
     }
 }

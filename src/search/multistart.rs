@@ -30,9 +30,12 @@ pub const SCREEN: usize = 160;
 pub const SHORT: usize = 8;
 /// Starts fitted to the end.
 pub const LONG: usize = 3;
-/// Steps of a short and of a long fit.
+/// Steps of a short fit.
 const SHORT_STEPS: usize = 24;
-const LONG_STEPS: usize = 300;
+/// Steps of a long fit.
+pub const LONG_STEPS: usize = 300;
+/// Rounds of the multipliers in a long fit.
+pub const LONG_ROUNDS: usize = 14;
 
 /// What a round found and what it cost.
 #[derive(Clone, Debug, Default)]
@@ -48,11 +51,12 @@ pub struct RoundOutcome {
 }
 
 /// Options of a fit; `exact` is the cost below which nothing is left to gain.
-fn options(problem: &Problem, max_steps: usize, max_rounds: usize) -> LmOptions {
+fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluations: u64) -> LmOptions {
     let task = problem.task();
     LmOptions {
         max_steps,
         max_rounds,
+        max_evaluations,
         relative_reduction: 1e-12,
         exact_cost: 1e-6 * exact_sum_sq(problem),
         feasibility: 1e-9 * task.size(),
@@ -61,13 +65,22 @@ fn options(problem: &Problem, max_steps: usize, max_rounds: usize) -> LmOptions 
     }
 }
 
-/// Runs round `index` of the seed.
-pub fn round(problem: &Problem, starts: &Starts<'_>, index: u64, budget: &Budget<'_>) -> RoundOutcome {
+/// Runs round `index` of the seed with at most `allowance` evaluations.
+pub fn round(
+    problem: &Problem,
+    starts: &Starts<'_>,
+    index: u64,
+    allowance: u64,
+    budget: &Budget<'_>,
+) -> RoundOutcome {
     let mut outcome = RoundOutcome::default();
     let mut draws = stream(problem.spec().solve.seed, index);
     let n = problem.task().len() as u64;
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     for _ in 0..SCREEN {
+        if outcome.evaluations >= allowance {
+            break;
+        }
         outcome.draws += 1;
         let Some(mut start) = starts.draw(&mut draws) else { continue };
         outcome.evaluations += 1;
@@ -79,11 +92,17 @@ pub fn round(problem: &Problem, starts: &Starts<'_>, index: u64, budget: &Budget
     screened.sort_by(|one, other| one.0.total_cmp(&other.0));
     screened.truncate(SHORT);
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
-    for (_, start) in screened {
+    for (promised, start) in screened {
         if budget.stopped() {
             return outcome;
         }
-        let fit = polish(problem, start, SHORT_STEPS, 2, budget);
+        let left = allowance - outcome.evaluations;
+        if left == 0 {
+            // Nothing is left to fit with: the start as it is.
+            fitted.push((promised, start));
+            continue;
+        }
+        let fit = polish(problem, start, SHORT_STEPS, 2, left, budget);
         outcome.evaluations += fit.evaluations;
         outcome.positions += n * fit.evaluations;
         if let Some(start) = fit.end {
@@ -96,7 +115,12 @@ pub fn round(problem: &Problem, starts: &Starts<'_>, index: u64, budget: &Budget
         if budget.stopped() {
             return outcome;
         }
-        let fit = polish(problem, start, LONG_STEPS, 14, budget);
+        let left = allowance - outcome.evaluations;
+        if left == 0 {
+            outcome.found.extend(judged(problem, &start));
+            continue;
+        }
+        let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, left, budget);
         outcome.evaluations += fit.evaluations;
         outcome.positions += n * fit.evaluations;
         outcome.found.extend(fit.end.and_then(|end| judged(problem, &end)));
@@ -139,9 +163,16 @@ pub struct Fitted {
     pub evaluations: u64,
 }
 
-/// Fits from a start under all requirements.
-pub fn polish(problem: &Problem, start: Start, steps: usize, rounds: usize, budget: &Budget<'_>) -> Fitted {
-    let options = options(problem, steps, rounds);
+/// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
+pub fn polish(
+    problem: &Problem,
+    start: Start,
+    steps: usize,
+    rounds: usize,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    let options = options(problem, steps, rounds, evaluations);
     let stop = || budget.stopped();
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else {
@@ -170,6 +201,9 @@ fn ended<S>(
     }
 }
 
+/// Steps that bring positions to their nearest points at a fixed design.
+const SETTLING_STEPS: usize = 60;
+
 /// The positions of free timing at a fixed design, each brought to its nearest point.
 pub fn settle_positions(
     problem: &Problem,
@@ -179,7 +213,7 @@ pub fn settle_positions(
     budget: &Budget<'_>,
 ) -> Option<(Positions, u64)> {
     let fit = TorusFit::at(problem, setting, design);
-    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, 60, 1) };
+    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, SETTLING_STEPS, 1, u64::MAX) };
     let result = solve(&fit, *design, positions, &options, &|| budget.stopped());
     debug_assert!(violation(&fit, design, &result.state) >= 0.0);
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))

@@ -5,7 +5,7 @@
 //! acceptable came of it within its share of the budget, lets differential evolution look for a feasible
 //! design and polishes what that finds. The population searches alone run without a polish.
 
-use super::multistart::{judged, polish, round};
+use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::population::{self, Population};
 use super::rank::{compare, distinct, exact_sum_sq};
 use super::starts::Starts;
@@ -28,6 +28,8 @@ const LEAST_BATCHES: u64 = 3;
 const QUIET_BATCHES: u64 = 6;
 /// The part of the budget that `auto` gives to local searches when nothing acceptable turns up.
 const LOCAL_SHARE: f64 = 0.6;
+/// One part in this many of what differential evolution is given goes to the polish of its best.
+const POLISH_SHARE: u64 = 5;
 /// Candidates that are kept while searching; the worst are dropped beyond it.
 const KEPT: usize = 400;
 
@@ -112,9 +114,12 @@ fn local_search(
             local.reason = reason;
             return local;
         }
+        // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
+        let left = limit.saturating_sub(local.evaluations.objective);
+        let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
         let rounds: Vec<_> = (batch * BATCH..(batch + 1) * BATCH)
             .into_par_iter()
-            .map(|index| round(problem, &starts, index, budget))
+            .map(|index| round(problem, &starts, index, allowance(index), budget))
             .collect();
         batch += 1;
         for outcome in rounds {
@@ -184,17 +189,20 @@ fn auto(
         return Ok(local.outcome(problem));
     }
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
-    let end = population::search(problem, Population::DifferentialEvolution, left, budget, observer)?;
-    local.used.push(Population::DifferentialEvolution.name().into());
+    let for_polish = left / POLISH_SHARE;
+    let which = Population::DifferentialEvolution;
+    let end = population::search(problem, which, left - for_polish, budget, observer)?;
+    local.used.push(which.name().into());
     local.evaluations.objective += end.evaluations;
     local.evaluations.positions += end.positions;
     local.found.extend(end.found);
     let n = problem.task().len() as u64;
-    let polished: Vec<_> = end
-        .starts
+    let each = for_polish / end.starts.len().max(1) as u64;
+    let worth_it = if each == 0 { Vec::new() } else { end.starts };
+    let polished: Vec<_> = worth_it
         .into_par_iter()
         .map(|start| {
-            let fit = polish(problem, start, 300, 14, budget);
+            let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, each, budget);
             (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
         })
         .collect();

@@ -55,8 +55,10 @@ pub struct PopulationEnd {
 /// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
 /// are used.
 ///
+/// Where everything is fixed there is one design, and it is read once.
+///
 /// # Errors
-/// [`PopulationError`] when the parameters are out of range or everything is fixed.
+/// [`PopulationError`] when the parameters are out of range.
 pub fn search(
     problem: &Problem,
     which: Population,
@@ -73,6 +75,17 @@ pub fn search(
         }
         Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
     };
+    if fitness.bounds().is_empty() {
+        let only = Individual { x: Vec::new(), fitness: fitness.evaluate(&[]) };
+        let starts: Vec<Start> = start_of(problem, &fitness, &only, budget).into_iter().collect();
+        return Ok(PopulationEnd {
+            found: starts.iter().filter_map(|start| judged(problem, start)).collect(),
+            starts,
+            evaluations: 1,
+            positions: fitness.positions_per_evaluation(),
+            reason: Reason::Converged,
+        });
+    }
     let limits = Limits { evaluations, target: Some(super::rank::exact_sum_sq(problem)) };
     let stop = AtomicBool::new(budget.stopped());
     let outcome = run_restarts(&fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {

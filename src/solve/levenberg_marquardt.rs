@@ -78,6 +78,8 @@ pub struct LmOptions {
     pub max_steps: usize,
     /// Rounds of the multipliers.
     pub max_rounds: usize,
+    /// Computations of the cost in all rounds together; at least one.
+    pub max_evaluations: u64,
     /// Converged when a step promises less than this part of the cost.
     pub relative_reduction: f64,
     /// Converged when the cost is below this: an exact answer.
@@ -95,7 +97,7 @@ pub enum LmOutcome {
     Converged,
     /// The cost is below `exact_cost`.
     Exact,
-    /// Out of steps.
+    /// Out of steps or evaluations.
     StepLimit,
     /// The start could not be evaluated.
     NoStart,
@@ -320,6 +322,10 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
     for step in 0..options.max_steps {
         if result.cost <= options.exact_cost && penalty.shift.is_empty() {
             result.outcome = LmOutcome::Exact;
+            return;
+        }
+        if result.evaluations >= options.max_evaluations {
+            result.outcome = LmOutcome::StepLimit;
             return;
         }
         if stop() || (step == options.max_steps / 2 && result.cost > options.hopeless_cost) {
