@@ -65,6 +65,8 @@ fn methods_stand_side_by_side_and_say_where_they_are_singular() {
     assert_eq!(run.code, 0, "{}", run.stderr);
     assert!(run.stdout.contains("singular: Ax = d"), "{}", run.stdout);
     assert_eq!(run.stdout.matches("fixed-point").count(), 2, "{}", run.stdout);
+    let negative = linkwright(folder.path(), &["analyze", &example, "--angle", "-120,150"]);
+    assert_eq!(negative.code, 0, "{}", negative.stderr);
     let unknown = linkwright(folder.path(), &["analyze", &example, "--method", "magic"]);
     assert_eq!(unknown.code, 2);
     assert!(unknown.stderr.contains("natural, algebraic, complex, fixed-point"), "{}", unknown.stderr);

@@ -225,7 +225,7 @@ fn a_record_that_lies_is_found_out() {
     let path = folder.path().join("results/k18/record.json");
     let honest = fs::read_to_string(&path).expect("it is there");
     type Lie = fn(&mut serde_json::Value);
-    let lies: [(&str, Lie); 12] = [
+    let lies: [(&str, Lie); 16] = [
         ("error.sum_sq", |r| r["candidates"][0]["error"]["sum_sq"] = 0.009.into()),
         ("error.max_at", |r| r["candidates"][0]["error"]["max_at"] = 3.into()),
         ("error.rms", |r| r["candidates"][0]["linkage"]["a"] = 0.3128.into()),
@@ -241,6 +241,15 @@ fn a_record_that_lies_is_found_out() {
         ("link_ratio", |r| r["candidates"][0]["link_ratio"] = 2.0.into()),
         ("link_ratio_max", |r| r["candidates"][0]["requirements"][1]["met"] = false.into()),
         ("rank", |r| r["candidates"][1]["rank"] = 1.into()),
+        ("linkage.t1", |r| r["candidates"][0]["linkage"]["t1"] = 1.into()),
+        ("reproducible", |r| r["termination"]["reproducible"] = false.into()),
+        ("target-reached", |r| r["termination"]["reason"] = "target-reached".into()),
+        ("order of ranks", |r| {
+            let list = r["candidates"].as_array_mut().expect("a list");
+            list.swap(0, 1);
+            list[0]["rank"] = 1.into();
+            list[1]["rank"] = 2.into();
+        }),
     ];
     for (what, lie) in lies {
         let mut record: serde_json::Value = serde_json::from_str(&honest).expect("it is JSON");

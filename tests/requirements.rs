@@ -63,7 +63,9 @@ fn a_binding_transmission_angle_is_used_up_to_its_limit() {
 
 #[test]
 fn every_type_can_be_asked_for() {
-    for kind in ["crank-rocker", "double-crank", "rocker-crank", "double-rocker", "triple-rocker"] {
+    for kind in
+        ["crank-rocker", "double-crank", "rocker-crank", "double-rocker", "triple-rocker", "change-point"]
+    {
         let record = accepted_and_true(&format!(
             "format = 1\n[task.path]\npoints = [[0, 0], [10, 3], [20, 5], [30, 5], [40, 3], [50, 0]]\n\
              [require]\ntype = [\"{kind}\"]\n"
@@ -143,4 +145,43 @@ proptest! {
         let record = run_on(2, parse(&text));
         prop_assert_eq!(verify(&record).expect("the problem is one"), Vec::new(), "{}", text);
     }
+}
+
+#[test]
+fn a_footprint_counts_the_whole_turn_however_many_turns_the_timing_spans() {
+    let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 0.3], [0.5, 1]]\n[task.path.timing]\n\
+                crank_deg = [0, 86520, 172890]\n[require]\ntype = [\"crank-rocker\"]\nfootprint_in = [-1.2, -1.2, 2, 2]\n";
+    let record = run_on(2, parse(text));
+    for candidate in record.candidates.iter().filter(|c| c.accepted) {
+        for i in 0..3600 {
+            let joints =
+                candidate.linkage.position(f64::from(i) * 1e-1f64.to_radians()).joints().expect("a crank");
+            for p in [joints.crank_pin, joints.follower_pin, joints.coupler_point] {
+                assert!(
+                    p.re > -1.2 - 1e-6 && p.im > -1.2 - 1e-6 && p.re < 2.0 + 1e-6 && p.im < 2.0 + 1e-6,
+                    "{p}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_answer_moves_with_the_target() {
+    let shifted = |by: f64| {
+        let points: Vec<String> = (0..12)
+            .map(|i| {
+                let t = (30.0 * f64::from(i)).to_radians();
+                format!("[{}, {}]", 40.0 * t.cos() + 6.0 * (2.0 * t).cos() + by, 22.0 * t.sin() - by)
+            })
+            .collect();
+        let text = format!(
+            "format = 1\n[task.path]\npoints = [{}]\nclosed = true\n[require]\ntransmission_deg_min = 30\n",
+            points.join(", ")
+        );
+        run_on(2, parse(&text)).candidates[0].error.sum_sq
+    };
+    let at_home = shifted(0.0);
+    // Coordinates of 1e6 leave ten digits of the points themselves.
+    assert!((shifted(1e6) - at_home).abs() <= 1e-6 * at_home, "{} {at_home}", shifted(1e6));
 }

@@ -130,7 +130,7 @@ pub struct Analyze {
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
-    #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = finite)]
+    #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     pub angle: Option<Vec<f64>>,
     /// This many crank angles, evenly over a full turn
     #[arg(long, value_name = "N", conflicts_with = "angle", value_parser = clap::value_parser!(u32).range(1..=100_000))]

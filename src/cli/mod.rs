@@ -50,6 +50,7 @@ const BUG: u8 = 70;
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
+        Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),
         Ok(ended) => ended.into(),
         Err(_) => {
             terminal::complain("this is a bug of linkwright: please report it with the input that shows it");

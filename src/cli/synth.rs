@@ -66,8 +66,8 @@ pub fn run(options: &Synth) -> Ended {
             terminal::complain(&e);
             return Ended::Refused;
         }
-        if !options.json && !options.quiet {
-            terminal::answer(&page(&record, folder.path(), search_s, several));
+        if !options.json {
+            terminal::answer(&page(&record, folder.path(), search_s, several || options.quiet));
         }
         let interrupted = record.termination.reason == Reason::Cancelled;
         if !record.candidates.iter().any(|c| c.accepted) && ended == Ended::Good {
@@ -85,7 +85,7 @@ pub fn run(options: &Synth) -> Ended {
             records => serde_json::to_string_pretty(records),
         };
         terminal::answer(&format!("{}\n", text.unwrap_or_default()));
-    } else if several && !options.quiet {
+    } else if several {
         let rows: Vec<BatchRow<'_>> = finished
             .iter()
             .map(|record| BatchRow { name: &record.problem.name, outcome: BatchOutcome::Ran(record) })
@@ -166,7 +166,7 @@ fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, Str
     ];
     for (i, candidate) in record.candidates.iter().enumerate() {
         let n = i + 1;
-        let name = format!("{}-{n}", record.problem.name);
+        let name = numbered(&record.problem.name, n);
         let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
         files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
         files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
@@ -177,6 +177,13 @@ fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, Str
         files.push(("contact-sheet.svg".into(), sheet.into_bytes()));
     }
     Ok(files)
+}
+
+/// The problem's name with a candidate's rank, within the length of a name.
+fn numbered(name: &str, n: usize) -> String {
+    let suffix = format!("-{n}");
+    let stem: String = name.chars().take(crate::name::MAX_NAME - suffix.len()).collect();
+    format!("{}{suffix}", stem.trim_end())
 }
 
 /// What is printed for one problem.

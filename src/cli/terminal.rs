@@ -3,12 +3,28 @@
 use crate::diagnostic::Diagnostic;
 use crate::report::Colour;
 use ariadne::{Config, IndexType, Label, Report, ReportKind, Source};
-use std::io::{IsTerminal, Write, stderr, stdout};
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Writes the answer to stdout. A reader that went away (`| head`) is no failure of ours.
+/// Whether an answer could not be written.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Writes the answer to stdout. A reader that went away (`| head`) is no failure of ours; a full disk is
+/// complained of, and [`lost`] remembers it.
 pub fn answer(text: &str) {
     let mut out = stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    if let Err(e) = written
+        && e.kind() != ErrorKind::BrokenPipe
+        && !LOST.swap(true, Ordering::Relaxed)
+    {
+        complain(&format!("the answer cannot be written to standard output: {e}"));
+    }
+}
+
+/// Whether an answer was lost on its way to stdout.
+pub fn lost() -> bool {
+    LOST.load(Ordering::Relaxed)
 }
 
 /// Writes a line to stderr.

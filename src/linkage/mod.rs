@@ -435,6 +435,17 @@ impl FourBar {
         self
     }
 
+    /// The same linkage moved by `by`.
+    ///
+    /// # Errors
+    /// As [`FourBar::new`], where a coordinate leaves the allowed range.
+    pub fn shifted(&self, by: Complex) -> Result<Self, LinkageError> {
+        let mut parameters = self.parameters;
+        parameters.crank_pivot = xy(self.crank_pivot() + by);
+        parameters.follower_pivot = xy(self.follower_pivot() + by);
+        FourBar::new(parameters)
+    }
+
     /// z = (l2 + i h2)/b, so that P = C + z (D - C) (seed equations 16 to 18).
     pub fn coupler_ratio(&self) -> Complex {
         self.coupler_ratio

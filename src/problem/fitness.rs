@@ -14,7 +14,7 @@ use super::requirements::{Motion, Requirements, nearest_type};
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
 use crate::linkage::lane::{F64x8, LANES, Lane};
-use crate::linkage::mobility::linkage_type;
+use crate::linkage::mobility::{linkage_type, wrapped};
 use crate::linkage::position::Kernel;
 use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType, cross, xy};
 use crate::solve::population::{Fitness, PopulationProblem};
@@ -56,6 +56,8 @@ pub struct Reading {
     pub fitness: Fitness,
     /// The setting.
     pub setting: Setting,
+    /// Free timing: +1 or -1 where only the input arc on that side of the ground line is meant, else 0.
+    pub arc: f64,
 }
 
 impl<'a> PathFitness<'a> {
@@ -125,8 +127,11 @@ impl<'a> PathFitness<'a> {
     pub fn read(&self, genes: &[f64]) -> Reading {
         let nothing =
             Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
-        let mut best =
-            Reading { fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN }, setting: nothing };
+        let mut best = Reading {
+            fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN },
+            setting: nothing,
+            arc: 0.0,
+        };
         let mut offer = |reading: Reading| {
             if reading.fitness.compare(&best.fitness).is_lt() {
                 best = reading;
@@ -142,6 +147,12 @@ impl<'a> PathFitness<'a> {
             }
         }
         best
+    }
+
+    /// Whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
+    fn on_arc(&self, ground: Complex, arc: f64, sample: usize) -> bool {
+        let crank = Complex::new(self.wheel.0[sample], self.wheel.1[sample]);
+        arc == 0.0 || cross(ground, crank) * arc > 0.0
     }
 
     fn kernel(&self, shape: &Shape) -> Kernel {
@@ -196,6 +207,7 @@ impl<'a> PathFitness<'a> {
                 offer(Reading {
                     fitness: Fitness { violation: sums.open + lack, cost: sum },
                     setting: Setting { aim, assembly, direction: *direction, side },
+                    arc: 0.0,
                 });
             }
         }
@@ -214,10 +226,7 @@ impl<'a> PathFitness<'a> {
         let mut shared = None;
         for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
             for &arc in sides {
-                let reachable = |i: usize| {
-                    let crank = Complex::new(self.wheel.0[i], self.wheel.1[i]);
-                    arc == 0.0 || cross(ground, crank) * arc > 0.0
-                };
+                let reachable = |i: usize| self.on_arc(ground, arc, i);
                 let (mut cost, mut open) = (0.0, false);
                 let mut course = Course::default();
                 for (j, target) in self.problem.task().points().iter().enumerate() {
@@ -234,16 +243,15 @@ impl<'a> PathFitness<'a> {
                         }
                     }
                 }
-                let (direction, total) = course.direction(self.problem.directions());
-                let disorder = if self.problem.order_required() { (total / TAU - 1.0).max(0.0) } else { 0.0 };
-                let start = course.first.unwrap_or(0.0);
-                let end = start + direction * total.min(TAU);
-                let motion = Motion::Stretch(start.min(end), start.max(end), assembly);
+                let turns = own.is_some_and(LinkageType::input_turns_fully);
+                let (direction, disorder, motion) = course.judged(turns, self.problem.directions(), assembly);
+                let disorder = if self.problem.order_required() { disorder } else { 0.0 };
                 let lack = self.lack(aim, shape, &motion, &mut shared);
                 let violation = if open { f64::INFINITY } else { lack + disorder };
                 offer(Reading {
                     fitness: Fitness { violation, cost },
                     setting: Setting { aim, assembly, direction, side },
+                    arc,
                 });
             }
         }
@@ -251,7 +259,9 @@ impl<'a> PathFitness<'a> {
 
     /// The positions (e_j, u_j) of the points for free timing, as the reading has them; `None` where a point
     /// finds no position.
-    pub fn positions(&self, shape: &Shape, assembly: AssemblyMode) -> Option<Vec<[Complex; 2]>> {
+    pub fn positions(&self, shape: &Shape, reading: &Reading) -> Option<Vec<[Complex; 2]>> {
+        let assembly = reading.setting.assembly;
+        let ground = shape.follower_pivot - shape.crank_pivot;
         let linkage = shape.linkage(assembly).ok()?;
         let kernel = self.kernel(shape);
         let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
@@ -260,7 +270,8 @@ impl<'a> PathFitness<'a> {
             .points()
             .iter()
             .map(|target| {
-                let (angle, _) = curve.nearest(assembly, *target, &|_| true)?;
+                let (angle, _) =
+                    curve.nearest(assembly, *target, &|i| self.on_arc(ground, reading.arc, i))?;
                 let joints = linkage.position_with(angle, assembly).joints()?;
                 let coupler = (joints.follower_pin - joints.crank_pin) / shape.coupler;
                 Some([Complex::from_polar(1.0, angle), coupler])
@@ -400,13 +411,19 @@ impl Sampled {
     }
 }
 
-/// How far a crank turns through points, both ways round.
+/// How a crank turns through points.
 #[derive(Default)]
 struct Course {
     first: Option<f64>,
     last: Option<f64>,
+    /// The sum of the steps taken counter-clockwise all the way, and clockwise all the way.
     forward: f64,
     backward: f64,
+    /// Each step the short way: the sums of those counter-clockwise and clockwise, and how far it got from the
+    /// first point.
+    up: f64,
+    down: f64,
+    reach: (f64, f64),
 }
 
 impl Course {
@@ -415,18 +432,32 @@ impl Course {
             let step = (angle - last).rem_euclid(TAU);
             self.forward += step;
             self.backward += if step > 0.0 { TAU - step } else { 0.0 };
+            let short = wrapped(angle - last);
+            self.up += short.max(0.0);
+            self.down += (-short).max(0.0);
+            let at = self.up - self.down;
+            self.reach = (self.reach.0.min(at), self.reach.1.max(at));
         }
         self.first.get_or_insert(angle);
         self.last = Some(angle);
     }
 
-    /// The allowed direction with the shorter way and its length.
-    fn direction(&self, allowed: &[f64]) -> (f64, f64) {
-        let length = |d: f64| if d > 0.0 { self.forward } else { self.backward };
-        allowed
-            .iter()
-            .map(|&d| (d, length(d)))
-            .min_by(|s, t| s.1.total_cmp(&t.1))
-            .unwrap_or((1.0, self.forward))
+    /// The direction among those allowed, how far out of order the points are (in turns; 0: in order), and
+    /// the motion. A crank that turns goes round less than once; one that rocks does not turn back.
+    fn judged(&self, turns: bool, allowed: &[f64], assembly: AssemblyMode) -> (f64, f64, Motion<'static>) {
+        let start = self.first.unwrap_or(0.0);
+        let best = |length: &dyn Fn(f64) -> f64| {
+            let lengths = allowed.iter().map(|&d| (d, length(d)));
+            lengths.min_by(|s, t| s.1.total_cmp(&t.1)).unwrap_or((1.0, length(1.0)))
+        };
+        if turns {
+            let (direction, total) = best(&|d| if d > 0.0 { self.forward } else { self.backward });
+            let end = start + direction * total.min(TAU);
+            let motion = Motion::Stretch(start.min(end), start.max(end), assembly);
+            return (direction, (total / TAU - 1.0).max(0.0), motion);
+        }
+        let (direction, against) = best(&|d| if d > 0.0 { self.down } else { self.up });
+        let motion = Motion::Stretch(start + self.reach.0, start + self.reach.1, assembly);
+        (direction, against / TAU, motion)
     }
 }

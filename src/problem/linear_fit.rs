@@ -66,6 +66,14 @@ pub fn fit(
     targets: &[Complex],
     weights: &[f64],
 ) -> Option<Shape> {
+    // Everything is measured from the targets' mean: far from the origin the sums would lose their digits.
+    let total: f64 = weights.iter().sum();
+    let mean = targets.iter().zip(weights).map(|(t, w)| t * w).sum::<Complex>() / total;
+    let known = KnownPivots {
+        crank_pivot: known.crank_pivot.map(|p| p - mean),
+        follower_pivot: known.follower_pivot.map(|p| p - mean),
+        ..*known
+    };
     // Complex normal sums over the columns 1, e, u; everything real follows from them.
     let mut sums = [[Complex::new(0.0, 0.0); 3]; 3];
     let mut right = [Complex::new(0.0, 0.0); 3];
@@ -73,7 +81,7 @@ pub fn fit(
         let columns = [Complex::new(1.0, 0.0), *e, *u];
         for i in 0..3 {
             let conjugate = columns[i].conj() * weight;
-            right[i] += conjugate * target;
+            right[i] += conjugate * (target - mean);
             for k in 0..3 {
                 sums[i][k] += conjugate * columns[k];
             }
@@ -178,8 +186,8 @@ pub fn fit(
     // Z is the offset turned by the ground's direction.
     let offset = Complex::new(v[4], v[5]) * unit(ground).conj();
     Some(Shape {
-        crank_pivot,
-        follower_pivot: crank_pivot + ground,
+        crank_pivot: crank_pivot + mean,
+        follower_pivot: crank_pivot + mean + ground,
         crank: p * g,
         coupler: ratios.coupler * g,
         follower: ratios.follower * g,

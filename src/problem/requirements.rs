@@ -339,7 +339,19 @@ fn type_rows(
             each(&combine(closes, -margin));
             return;
         }
-        Some(LinkageType::ChangePoint) | None => return,
+        Some(LinkageType::ChangePoint) => {
+            // The margin is zero: both inequalities, with nothing to spare.
+            let mut order = [0, 1, 2, 3];
+            order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
+            let mut factors = [0.0; 4];
+            for (place, sign) in [(0, -1.0), (1, 1.0), (2, 1.0), (3, -1.0)] {
+                factors[order[place]] = sign;
+            }
+            each(&combine(factors, 0.0));
+            each(&combine(factors.map(|f| -f), 0.0));
+            return;
+        }
+        None => return,
     };
     for other in (0..4).filter(|&i| i != shortest) {
         let mut factors = [1.0; 4];

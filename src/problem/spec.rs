@@ -39,6 +39,26 @@ pub struct ProblemSpec {
     pub solve: SolveSpec,
 }
 
+impl ProblemSpec {
+    /// The same problem with everything moved by `by`: points, pivots' bounds, boxes.
+    #[must_use]
+    pub fn shifted(&self, by: [f64; 2]) -> Self {
+        let mut spec = self.clone();
+        for point in &mut spec.task.path.points {
+            *point = [point[0] + by[0], point[1] + by[1]];
+        }
+        for pivot in [&mut spec.design.crank_pivot, &mut spec.design.follower_pivot].into_iter().flatten() {
+            for (limits, by) in pivot.iter_mut().zip(by) {
+                *limits = Limits(limits.0 + by, limits.1 + by);
+            }
+        }
+        for b in [&mut spec.require.pivots_in, &mut spec.require.footprint_in].into_iter().flatten() {
+            *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
+        }
+        spec
+    }
+}
+
 /// The task; a path is the only kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TaskSpec {

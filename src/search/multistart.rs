@@ -5,20 +5,18 @@
 //! fixed size and are read in their order, so the number of threads changes nothing but the time.
 
 use super::Budget;
-use super::rank::exact_sum_sq;
+use super::rank::exact_objective;
 use super::starts::{Start, Starts};
 use crate::assess::assess;
-use crate::linkage::mobility::{linkage_type, wrapped};
-use crate::linkage::{AssemblyMode, Complex, LinkageType};
+use crate::linkage::mobility::wrapped;
+use crate::linkage::{AssemblyMode, Complex, FourBar};
 use crate::problem::design_space::{Design, Shape};
 use crate::problem::requirements::assembly_of;
 use crate::problem::timed::TimedFit;
 use crate::problem::torus::{Positions, TorusFit};
 use crate::problem::{Problem, Setting};
 use crate::record::Candidate;
-use crate::solve::levenberg_marquardt::{
-    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve, violation,
-};
+use crate::solve::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve};
 use crate::solve::streams::stream;
 use crate::task::referee::ORDER_TOLERANCE;
 use crate::task::{AngleOffset, Timing};
@@ -58,7 +56,7 @@ fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluatio
         max_rounds,
         max_evaluations,
         relative_reduction: 1e-12,
-        exact_cost: 1e-6 * exact_sum_sq(problem),
+        exact_cost: 1e-6 * exact_objective(problem),
         feasibility: 1e-9 * task.size(),
         // A mean error above a fifth of the size after half of the steps leads nowhere.
         hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
@@ -215,7 +213,6 @@ pub fn settle_positions(
     let fit = TorusFit::at(problem, setting, design);
     let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, SETTLING_STEPS, 1, u64::MAX) };
     let result = solve(&fit, *design, positions, &options, &|| budget.stopped());
-    debug_assert!(violation(&fit, design, &result.state) >= 0.0);
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
 }
 
@@ -239,45 +236,54 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
         return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
     }
-    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions);
+    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions)?;
     let linkage = space.project(&shape.linkage(assemblies[0]).ok()?).ok()?;
     assess(problem, &linkage, &crank_deg, &assemblies)
 }
 
 /// Crank angles (degrees, unwrapped along the motion) and assemblies of positions.
-fn reading(problem: &Problem, shape: &Shape, positions: &[[Complex; 2]]) -> (Vec<f64>, Vec<AssemblyMode>) {
-    let assemblies = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
+fn reading(
+    problem: &Problem,
+    shape: &Shape,
+    positions: &[[Complex; 2]],
+) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
     let angles = positions.iter().map(|[e, _]| e.arg()).collect();
-    unwrapped(problem, shape.links(), angles, assemblies)
+    let linkage = shape.linkage(assemblies[0]).ok()?;
+    Some(unwrapped(problem, &linkage, angles, assemblies))
 }
 
 /// Crank angles (radians) unwrapped along the motion, in degrees: along a full turn the way that is shorter in
-/// total, for a rocking crank the short way each time. A last point that repeats the first is where the first
-/// is, a turn later.
+/// total; a rocking crank stays on the arc that it can reach. A last point that repeats the first is where the
+/// first is, a turn later.
 pub fn unwrapped(
     problem: &Problem,
-    links: [f64; 4],
+    linkage: &FourBar,
     angles: Vec<f64>,
     mut assemblies: Vec<AssemblyMode>,
 ) -> (Vec<f64>, Vec<AssemblyMode>) {
-    let turns = linkage_type(links).is_some_and(|t| t.input_turns_fully() || t == LinkageType::ChangePoint);
+    let mobility = linkage.mobility();
+    let arc = mobility.arc(mobility.branch(angles[0], assemblies[0]).circuit);
     let total = |direction: f64| -> f64 {
         angles.windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
     };
     let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
-    let mut along = vec![angles[0]];
-    for w in angles.windows(2) {
-        let step = if turns {
-            let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
-            direction * if step > TAU - ORDER_TOLERANCE { step - TAU } else { step }
-        } else {
-            wrapped(w[1] - w[0])
-        };
-        along.push(along[along.len() - 1] + step);
-    }
+    let mut along: Vec<f64> = match arc {
+        // From the middle of the arc, brought to within half a turn of the x axis.
+        Some(arc) => angles.iter().map(|angle| wrapped(arc.middle) + arc.offset(*angle)).collect(),
+        None => {
+            let mut along = vec![angles[0]];
+            for w in angles.windows(2) {
+                let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
+                let step = if step > TAU - ORDER_TOLERANCE { step - TAU } else { step };
+                along.push(along[along.len() - 1] + direction * step);
+            }
+            along
+        }
+    };
     if problem.task().repeats_first() {
         let last = along.len() - 1;
-        along[last] = along[0] + if turns { direction * TAU } else { 0.0 };
+        along[last] = along[0] + if arc.is_none() { direction * TAU } else { 0.0 };
         assemblies[last] = assemblies[0];
     }
     (along.iter().map(|a| a.to_degrees()).collect(), assemblies)

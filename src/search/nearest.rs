@@ -5,7 +5,6 @@ use crate::linkage::coupler_curve::DEFAULT_SAMPLES;
 use crate::linkage::{AssemblyMode, CouplerCurve, FourBar, InputRange};
 use crate::problem::Problem;
 use crate::task::{AngleOffset, Timing};
-use std::f64::consts::TAU;
 
 /// The crank angles (degrees) and assemblies at the points; `None` where there is no position for one.
 ///
@@ -40,7 +39,7 @@ fn free(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyM
     };
     let best = starts.into_iter().filter_map(on_circuit).min_by(|one, other| one.0.total_cmp(&other.0))?;
     let (angles, assemblies): (Vec<f64>, Vec<AssemblyMode>) = best.1.into_iter().unzip();
-    Some(unwrapped(problem, linkage.links(), angles, assemblies))
+    Some(unwrapped(problem, linkage, angles, assemblies))
 }
 
 fn prescribed(
@@ -85,6 +84,5 @@ fn prescribed(
     }
     let refined = 0.5 * (low + high);
     let offset = if sum(best.1, refined) <= best.0 { refined } else { best.2 };
-    debug_assert!(offset.to_radians().abs() <= 2.0 * TAU);
     best.0.is_finite().then(|| (angles(best.1, offset), assemblies))
 }

@@ -7,9 +7,10 @@
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::population::{self, Population};
-use super::rank::{compare, distinct, exact_sum_sq};
+use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
 use super::starts::Starts;
 use super::{Budget, Observer, Progress, SearchOutcome};
+use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Candidate, Evaluations, Reason};
@@ -33,11 +34,43 @@ const POLISH_SHARE: u64 = 5;
 /// Candidates that are kept while searching; the worst are dropped beyond it.
 const KEPT: usize = 400;
 
+/// A target further than this many of its sizes from the origin is searched around its own centre: at 1e6 sizes
+/// differences of coordinates have lost six digits.
+const FAR: f64 = 100.0;
+
 /// Searches as the problem's `[solve]` table says.
 ///
 /// # Errors
 /// [`PopulationError`] when a population search cannot be set up.
 pub fn search(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<SearchOutcome, PopulationError> {
+    let centre = problem.task().centre();
+    if centre.norm() <= FAR * problem.task().size() {
+        return search_here(problem, budget, observer);
+    }
+    let Ok(near) = Problem::new(problem.spec().shifted([-centre.re, -centre.im])) else {
+        return search_here(problem, budget, observer);
+    };
+    let mut outcome = search_here(&near, budget, observer)?;
+    let back = |candidate: &Candidate| {
+        let linkage = candidate.linkage.shifted(centre).ok()?;
+        assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
+    };
+    let found = outcome.candidates.iter().filter_map(back).collect();
+    outcome.candidates = distinct(problem, found, problem.spec().solve.candidates);
+    let exact = exact_sum_sq(problem);
+    let is_exact = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+    if outcome.reason == Reason::TargetReached && !is_exact {
+        // Exact around its centre; out there rounding is larger than that.
+        outcome.reason = Reason::Converged;
+    }
+    Ok(outcome)
+}
+
+fn search_here(
     problem: &Problem,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
@@ -64,7 +97,7 @@ fn alone(
     Ok(SearchOutcome {
         candidates: distinct(problem, end.found, spec.candidates),
         used: vec![which.name().into()],
-        reason: end.reason,
+        reason: budget.stop_reason().unwrap_or(end.reason),
         evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
     })
 }
@@ -98,7 +131,7 @@ fn local_search(
     observer: &Observer<'_>,
 ) -> Local {
     let wanted = problem.spec().solve.candidates;
-    let exact = exact_sum_sq(problem);
+    let exact = exact_objective(problem);
     let starts = Starts::new(problem);
     let mut local = Local {
         found: Vec::new(),
@@ -147,6 +180,11 @@ fn local_search(
         }
         local.found.sort_by(|one, other| compare(problem, one, other));
         local.found.truncate(KEPT);
+        // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
+        if let Some(reason) = budget.stop_reason() {
+            local.reason = reason;
+            return local;
+        }
         let shown = best.as_ref().or(local.found.first());
         observer(&Progress {
             phase: "least-squares",
@@ -160,7 +198,7 @@ fn local_search(
             quiet = if distinct > known { 0 } else { quiet + 1 };
             known = distinct;
             if distinct >= wanted || quiet >= QUIET_BATCHES {
-                let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact);
+                let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact_sum_sq(problem));
                 local.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
                 return local;
             }

@@ -86,7 +86,7 @@ pub fn search(
             reason: Reason::Converged,
         });
     }
-    let limits = Limits { evaluations, target: Some(super::rank::exact_sum_sq(problem)) };
+    let limits = Limits { evaluations, target: Some(super::rank::exact_objective(problem)) };
     let stop = AtomicBool::new(budget.stopped());
     let outcome = run_restarts(&fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
         if budget.stopped() {
@@ -109,6 +109,8 @@ pub fn search(
         found.extend(judged(problem, &start));
         starts.push(start);
     }
+    let exact = super::rank::exact_sum_sq(problem);
+    let reached = found.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
     Ok(PopulationEnd {
         starts,
         found,
@@ -116,7 +118,9 @@ pub fn search(
         positions: outcome.evaluations * fitness.positions_per_evaluation(),
         reason: match outcome.reason {
             StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
-            StopReason::TargetReached => Reason::TargetReached,
+            // The fitness is no judge: an exact answer has to stand before the referee too.
+            StopReason::TargetReached if reached => Reason::TargetReached,
+            StopReason::TargetReached => Reason::Stalled,
             StopReason::EvaluationLimit => Reason::EvaluationLimit,
             StopReason::Converged => Reason::Stalled,
         },
@@ -140,7 +144,7 @@ fn start_of(
         Timing::Prescribed { .. } => Vec::new(),
         Timing::Free => {
             let shape = space.shape(&design)?;
-            let sampled = fitness.positions(&shape, reading.setting.assembly)?;
+            let sampled = fitness.positions(&shape, &reading)?;
             settle_positions(problem, &design, reading.setting, sampled, budget)?.0
         }
     };

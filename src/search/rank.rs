@@ -20,9 +20,14 @@ pub fn exact_sum_sq(problem: &Problem) -> f64 {
     EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
+/// The objective (weighted) below which a fit is exact.
+pub fn exact_objective(problem: &Problem) -> f64 {
+    EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+}
+
 /// Better first.
 pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Ordering {
-    let floor = exact_sum_sq(problem);
+    let floor = exact_objective(problem);
     let error = |c: &Candidate| c.error.objective.max(floor);
     let unmet = |c: &Candidate| {
         if c.accepted { 0 } else { 1 + c.requirements.iter().filter(|r| !r.met).count() }

@@ -85,7 +85,7 @@ impl<'a> Starts<'a> {
         let phase = uniform(stream, -PI, PI);
         let (side, space) = &self.spaces[which];
         let setting = Setting { aim, assembly, direction, side: *side };
-        let mut known = self.known(space);
+        let mut known = self.known();
         match self.problem.task().timing() {
             Timing::Prescribed { offset, .. } => {
                 let t = assembly.sign();
@@ -132,7 +132,7 @@ impl<'a> Starts<'a> {
     }
 
     /// What the design's bounds fix of the pivots.
-    fn known(&self, space: &DesignSpace) -> KnownPivots {
+    fn known(&self) -> KnownPivots {
         let fixed = |limits: Option<crate::problem::spec::Limits>| {
             limits.filter(crate::problem::spec::Limits::is_fixed).map(|l| l.0)
         };
@@ -141,7 +141,6 @@ impl<'a> Starts<'a> {
             let [x, y] = p?;
             Some(Complex::new(fixed(Some(x))?, fixed(Some(y))?))
         };
-        debug_assert_eq!(space.bounds().len(), crate::problem::design_space::DESIGN);
         KnownPivots {
             crank_pivot: pivot(design.crank_pivot),
             follower_pivot: pivot(design.follower_pivot),
@@ -165,7 +164,7 @@ impl<'a> Starts<'a> {
         let within = [uniform(stream, -FRAC_PI_2, FRAC_PI_2), uniform(stream, -FRAC_PI_2, FRAC_PI_2)];
         let arc_choice = below(stream, 2);
         let at = |e: Complex, t: f64| Some([e, coupler_direction(ratios, e, t)?]);
-        if drawn.input_turns_fully() {
+        if drawn.input_turns_fully() || drawn == LinkageType::ChangePoint {
             let span = if closed { TAU } else { partial };
             return self
                 .arc
@@ -226,7 +225,7 @@ fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
     let log_uniform =
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {
-        LinkageType::TripleRocker | LinkageType::ChangePoint => {
+        LinkageType::TripleRocker => {
             // Most draws are no triple-rocker: try a few.
             let mut found = None;
             for _ in 0..16 {
@@ -239,12 +238,18 @@ fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
             found?
         }
         _ => {
-            let s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
+            let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
+            let any = (below(stream, 3), below(stream, 4));
+            if drawn == LinkageType::ChangePoint {
+                // One slack is used up: the margin is zero.
+                s[any.0] = 0.0;
+            }
             let others = [1.0 + 0.5 * (s[1] + s[2]), 1.0 + 0.5 * (s[0] + s[2]), 1.0 + 0.5 * (s[0] + s[1])];
             let place = match drawn {
                 LinkageType::DoubleCrank => 0,
                 LinkageType::CrankRocker => 1,
                 LinkageType::DoubleRocker => 2,
+                LinkageType::ChangePoint => any.1,
                 _ => 3,
             };
             let mut links = [1.0; 4];

@@ -320,7 +320,10 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
     let (mut nu, mut tangent_sq) = (0.0, 0.0);
     let mut quiet = 0;
     for step in 0..options.max_steps {
-        if result.cost <= options.exact_cost && penalty.shift.is_empty() {
+        if result.cost <= options.exact_cost
+            && penalty.shift.iter().all(|m| *m == 0.0)
+            && violation(problem, &result.x, &result.state) <= options.feasibility
+        {
             result.outcome = LmOutcome::Exact;
             return;
         }

@@ -42,6 +42,9 @@ pub enum Timing {
     },
 }
 
+/// Targets of a smaller extent are refused: squares of their errors would be lost below the smallest number.
+pub const SMALLEST_SIZE: f64 = 1e-100;
+
 /// A path to trace.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathTask {
@@ -71,8 +74,8 @@ pub enum TaskError {
     /// Two equal neighbours that no different crank angle tells apart.
     #[error("points {0} and {next} are equal", next = .0 + 1)]
     AdjacentEqual(usize),
-    /// All points in one place.
-    #[error("all points are equal")]
+    /// All points in one place, within [`SMALLEST_SIZE`].
+    #[error("all points are equal, or lie within 1e-100 of each other")]
     NoExtent,
     /// A list beside the points has another length.
     #[error("{points} points but {values} values of {what}")]
@@ -159,7 +162,7 @@ impl PathTask {
             }
         }
         let size = f64::hypot(high[0] - low[0], high[1] - low[1]);
-        if size == 0.0 {
+        if size < SMALLEST_SIZE {
             return Err(TaskError::NoExtent);
         }
         for i in 0..n - 1 {

@@ -34,7 +34,7 @@ pub enum Defect {
     },
     /// The motion passes a toggle.
     Branch {
-        /// The points on another branch than point 0.
+        /// The points on another branch than point 0, or reached only by way of one.
         at: Vec<usize>,
     },
     /// The linkage would have to be taken apart, or turned where it does not close.
@@ -151,16 +151,30 @@ pub fn judge(
         let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
         Course { direction, range: [low, high], jumps: Vec::new() }
     } else {
-        // Back at the first point, the motion has gone the whole way round; within one branch it turns back.
-        let whole = (task.closed() || task.repeats_first()) && (!rocks || !off_branch.is_empty());
-        let mut course = Course::through(&parameter[..ordered], whole);
-        if rocks && off_branch.is_empty() {
-            // On the branch t1 = -1 psi falls where the crank angle rises.
-            course.direction *= first.assembly.sign();
+        let one_branch = rocks && off_branch.is_empty();
+        let within = one_branch.then(|| Course::within_a_branch(&parameter[..ordered]));
+        match within {
+            Some(mut course) if course.jumps.is_empty() => {
+                // On the branch t1 = -1 psi falls where the crank angle rises.
+                course.direction *= first.assembly.sign();
+                course
+            }
+            _ => {
+                // Back at the first point, the motion has gone the whole way round.
+                let whole = !one_branch && (task.closed() || task.repeats_first());
+                let around = Course::through(&parameter[..ordered], whole);
+                if let Some(within) = within.filter(|_| around.jumps.is_empty()) {
+                    // The order holds around the circuit alone: by way of the toggles and the other branch.
+                    off_branch.extend(within.jumps);
+                }
+                around
+            }
         }
-        course
     };
-    let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range: course.range };
+    // Whatever lies beyond a whole turn has been passed already.
+    let [low, high] = course.range;
+    let range = [low, high.min(low + TAU)];
+    let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range };
 
     if off_circuit.is_empty() && off_branch.is_empty() {
         let samples = CLOSURE_SAMPLES * n;
@@ -189,6 +203,17 @@ struct Course {
 }
 
 impl Course {
+    /// One way along a branch: the sense from the first to the last point, out of order where a step goes back.
+    fn within_a_branch(parameter: &[f64]) -> Course {
+        let last = parameter[parameter.len() - 1];
+        let direction = if last < parameter[0] { -1.0 } else { 1.0 };
+        let steps = parameter.windows(2).zip(1..);
+        let back = steps.filter(|(w, _)| direction * (w[1] - w[0]) < -ORDER_TOLERANCE);
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Course { direction, range: [low, high], jumps: back.map(|(_, j)| j).collect() }
+    }
+
     /// The direction in which the parameter goes less far in total; it is in order when that is less than once around.
     fn through(parameter: &[f64], whole: bool) -> Course {
         let along = |direction: f64| {
