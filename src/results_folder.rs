@@ -78,7 +78,8 @@ impl FolderError {
 pub struct ResultsFolder {
     path: PathBuf,
     lock: Option<File>,
-    created: bool,
+    /// The folders that were made for it, the innermost first; taken away again when nothing is written.
+    created: Vec<PathBuf>,
 }
 
 /// Whether a file of this name is one that a run writes.
@@ -104,11 +105,13 @@ impl ResultsFolder {
     pub fn take(path: &Path) -> Result<Self, FolderError> {
         let shown = || path.display().to_string();
         let created = match fs::metadata(path) {
-            Ok(found) if found.is_dir() => false,
+            Ok(found) if found.is_dir() => Vec::new(),
             Ok(_) => return Err(FolderError::NotAFolder { path: shown() }),
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
+                let missing = path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists());
+                let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
                 fs::create_dir_all(path).map_err(|e| FolderError::io(path, e))?;
-                true
+                missing
             }
             Err(e) => return Err(FolderError::io(path, e)),
         };
@@ -163,7 +166,7 @@ impl ResultsFolder {
         for (name, bytes) in record_first.chain(files.iter().filter(|(name, _)| name != RECORD)) {
             self.write(name, bytes)?;
         }
-        self.created = false;
+        self.created.clear();
         for entry in fs::read_dir(&self.path).map_err(|e| FolderError::io(&self.path, e))?.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             if is_ours(&name) && name != LOCK && files.iter().all(|(kept, _)| *kept != name) {
@@ -198,8 +201,8 @@ impl Drop for ResultsFolder {
         // The lock ends with the file; what cannot be removed here is harmless and is taken over by the next run.
         let _ = fs::remove_file(self.path.join(LOCK));
         drop(self.lock.take());
-        if self.created {
-            let _ = fs::remove_dir(&self.path);
+        for folder in &self.created {
+            let _ = fs::remove_dir(folder);
         }
     }
 }

@@ -97,6 +97,12 @@ fn distances_to_the_coupler_point_can_be_the_coordinates() {
 }
 
 #[test]
+fn a_coupler_point_on_the_crank_pin_goes_round_with_it() {
+    let record = accepted_and_true(&egg("[design]\nd = 0\n"));
+    assert_eq!(record.candidates[0].linkage.crank_side(), 0.0);
+}
+
+#[test]
 fn a_flat_ground_stays_flat() {
     let record = accepted_and_true(&egg("[design]\nground_angle_deg = 0\n"));
     let linkage = record.candidates[0].linkage;

@@ -170,7 +170,12 @@ impl DesignSpace {
                 (GroundChart::Polar, [length(spec.ground), angle])
             }
         };
-        let (coupler, [q_1, q_2]) = if spec.coupler_x.is_none() && spec.coupler_y.is_none() {
+        let on_crank_pin = spec.d.is_some_and(|d| d.is_fixed() && d.0 == 0.0);
+        let (coupler, [q_1, q_2]) = if on_crank_pin && spec.coupler_x.is_none() && spec.coupler_y.is_none() {
+            // P on C: its offset is zero, and e is b whatever b is.
+            derive(Derived::FollowerSide, spec.e);
+            (CouplerChart::Offset, [Limits(0.0, 0.0), Limits(0.0, 0.0)])
+        } else if spec.coupler_x.is_none() && spec.coupler_y.is_none() {
             let distance = |l: Option<Limits>| l.unwrap_or(Limits(0.0, far));
             (CouplerChart::Distances(side), [distance(spec.d), distance(spec.e)])
         } else {

@@ -3,7 +3,7 @@
 //! This is what stands as `problem.resolved` in a record and what a run starts from; a problem file, a
 //! library caller and `verify` all arrive here. Angles in degrees, lengths in the file's unit.
 
-use crate::linkage::LinkageType;
+use crate::linkage::{LinkageType, MAX_MAGNITUDE};
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
 use crate::solve::genetic::GeneticParameters;
 use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
@@ -169,8 +169,10 @@ impl DesignSpec {
     /// `e` is given.
     pub fn resolve(&mut self, task: &PathTask) {
         let (size, centre) = (task.size(), task.centre());
-        let around = |c: f64| Limits(c - DEFAULT_REACH * size, c + DEFAULT_REACH * size);
-        let length = Limits(DEFAULT_SHORTEST * size, DEFAULT_REACH * size);
+        // No default asks for coordinates that a linkage cannot have.
+        let within = |low: f64, high: f64| Limits(low.max(-MAX_MAGNITUDE), high.min(MAX_MAGNITUDE));
+        let around = |c: f64| within(c - DEFAULT_REACH * size, c + DEFAULT_REACH * size);
+        let length = within(DEFAULT_SHORTEST * size, DEFAULT_REACH * size);
         let pivot_box = [around(centre.re), around(centre.im)];
         let polar = self.ground.is_some() || self.ground_angle_deg.is_some();
         let both_pivots = self.crank_pivot.is_some() && self.follower_pivot.is_some();
@@ -185,7 +187,7 @@ impl DesignSpec {
             key.get_or_insert(length);
         }
         if self.d.is_none() && self.e.is_none() {
-            let offset = Limits(-DEFAULT_REACH * size, DEFAULT_REACH * size);
+            let offset = within(-DEFAULT_REACH * size, DEFAULT_REACH * size);
             self.coupler_x.get_or_insert(offset);
             self.coupler_y.get_or_insert(offset);
         }

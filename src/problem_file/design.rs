@@ -37,8 +37,8 @@ pub(super) fn check(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<
 }
 
 fn lengths(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
-    let links = [("a", design.a), ("b", design.b), ("c", design.c)];
-    let distances = [("d", design.d), ("e", design.e), ("ground", design.ground)];
+    let links = [("a", design.a), ("b", design.b), ("c", design.c), ("ground", design.ground)];
+    let distances = [("d", design.d), ("e", design.e)];
     for (key, limits) in links.into_iter().chain(distances) {
         let Some(limits) = limits else { continue };
         let path = format!("design.{key}");
