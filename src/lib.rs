@@ -28,7 +28,7 @@
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
-//! | [`problem_file`], [`points_file`], [`linkage_file`] | text in, with errors that point at their place | linkage, task, problem |
+//! | [`problem_file`], [`points_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record or of an analysis | linkage, task, problem, record, analysis |

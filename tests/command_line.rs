@@ -271,7 +271,7 @@ fn a_record_that_lies_is_found_out() {
 fn usage_errors_are_exit_code_two_and_name_the_remedy() {
     let folder = TempDir::new().expect("a folder");
     let k18 = shipped("literature/k18.toml");
-    let cases: [(&[&str], &str); 9] = [
+    let cases: [(&[&str], &str); 11] = [
         (&["synth"], "FILE"),
         (&["synth", "no-such-file.toml"], "no such file"),
         (&["synth", "."], "folder"),
@@ -279,6 +279,8 @@ fn usage_errors_are_exit_code_two_and_name_the_remedy() {
         (&["synth", &k18, "--set", "solve.seed"], "KEY=VALUE"),
         (&["synth", &k18, "--set", "solve.sead=3"], "seed"),
         (&["synth", &k18, "--method", "magic"], "differential-evolution"),
+        (&["synth", &k18, "--seed", "18446744073709551615"], "9223372036854775807"),
+        (&["synth", &k18, "--seed", "x"], "--seed"),
         (&["compare", "nowhere"], "nowhere"),
         (&["schema", "nothing"], "problem"),
     ];

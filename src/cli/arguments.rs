@@ -64,8 +64,8 @@ pub struct Synth {
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
     /// Where every draw comes from: as `--set solve.seed=..`
-    #[arg(long, value_name = "N")]
-    pub seed: Option<String>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    pub seed: Option<u64>,
     /// Set any key of the problem file, e.g. --set solve.candidates=9
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
     pub set: Vec<(String, String)>,

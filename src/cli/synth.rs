@@ -98,8 +98,8 @@ pub fn run(options: &Synth) -> Ended {
 /// Reads every file; `None` after the diagnostics of those that are no problems.
 fn load(options: &Synth) -> Option<Vec<ProblemFile>> {
     let mut overrides = options.set.clone();
-    let given = [("solve.method", &options.method), ("solve.seed", &options.seed)];
-    overrides.extend(given.iter().filter_map(|(key, value)| Some(((*key).into(), value.as_ref()?.clone()))));
+    overrides.extend(options.method.iter().map(|method| ("solve.method".into(), method.clone())));
+    overrides.extend(options.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
     let mut problems = Vec::new();
     let mut refused = false;
     for path in &options.files {
