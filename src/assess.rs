@@ -7,8 +7,8 @@ use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Limits, OnePolicy, OrderPolicy, TransmissionOver};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
+use crate::task::error::rms;
 use crate::task::referee::{Verdict, judge};
-use crate::task::{Defect, error::rms};
 
 /// A requirement is met within this part of max(1, |limit|).
 pub const MET_TOLERANCE: f64 = 1e-7;
@@ -90,18 +90,8 @@ pub fn assess(
         candidate.requirements.push(tolerance_row(tolerances, &error.structural));
     }
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
-        && candidate.defects.iter().all(|d| !forbidden(problem, d));
+        && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     Some(candidate)
-}
-
-/// Whether a problem disallows a defect.
-pub fn forbidden(problem: &Problem, defect: &Defect) -> bool {
-    let require = &problem.spec().require;
-    match defect {
-        Defect::Order { .. } => require.order == OrderPolicy::Required,
-        Defect::Branch { .. } => require.branch == OnePolicy::One,
-        Defect::Circuit { .. } => require.circuit == OnePolicy::One,
-    }
 }
 
 fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {

@@ -49,6 +49,8 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("problem", &["problem", "task", "linkage", "solve"]),
         ("search", &["search", "problem", "task", "linkage", "solve", "assess", "record"]),
         ("report", &["report", "linkage", "task", "problem", "record", "analysis"]),
+        ("analysis.rs", &["linkage", "record"]),
+        ("analysis", &["linkage", "record"]),
         ("record.rs", &["linkage", "task", "problem"]),
         ("assess.rs", &["linkage", "task", "problem", "record"]),
         ("run.rs", &["problem", "record", "search", "solve", "task"]),

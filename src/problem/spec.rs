@@ -6,7 +6,7 @@
 use crate::linkage::{LinkageType, MAX_MAGNITUDE};
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
 use crate::solve::genetic::GeneticParameters;
-use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
+use crate::task::{AngleOffset, Defect, PathOptions, PathTask, TaskError, Timing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -267,6 +267,17 @@ pub struct RequireSpec {
     pub circuit: OnePolicy,
     /// Whether the motion must stay on one branch.
     pub branch: OnePolicy,
+}
+
+impl RequireSpec {
+    /// Whether a defect is disallowed.
+    pub fn forbids(&self, defect: &Defect) -> bool {
+        match defect {
+            Defect::Order { .. } => self.order == OrderPolicy::Required,
+            Defect::Branch { .. } => self.branch == OnePolicy::One,
+            Defect::Circuit { .. } => self.circuit == OnePolicy::One,
+        }
+    }
 }
 
 impl Default for RequireSpec {

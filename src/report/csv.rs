@@ -105,8 +105,7 @@ pub(super) fn parameters(linkage: &FourBar) -> [String; 11] {
 }
 
 fn defect(defect: &Defect) -> String {
-    let (Defect::Order { at } | Defect::Branch { at } | Defect::Circuit { at }) = defect;
-    let at: Vec<String> = at.iter().map(usize::to_string).collect();
+    let at: Vec<String> = defect.at().iter().map(usize::to_string).collect();
     format!("{}:{}", defect.name(), at.join(" "))
 }
 

@@ -1,7 +1,7 @@
 //! Verdicts, requirements and endings in plain words.
 
 use super::text::{brief, clean, exact};
-use crate::problem::spec::{OnePolicy, OrderPolicy, TransmissionOver};
+use crate::problem::spec::TransmissionOver;
 use crate::record::{Candidate, Figure, Reason, Record, Requirement, Unit};
 use crate::task::{AngleOffset, Defect};
 
@@ -19,7 +19,7 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
         return Vec::new();
     }
     let forbidden: Vec<&Defect> =
-        candidate.defects.iter().filter(|defect| is_forbidden(record, defect)).collect();
+        candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect)).collect();
     let mut list: Vec<Objection> = candidate
         .requirements
         .iter()
@@ -34,15 +34,6 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
         list.push(Objection { key: "reason not recorded".into(), sentence: "reason not recorded".into() });
     }
     list
-}
-
-fn is_forbidden(record: &Record, defect: &Defect) -> bool {
-    let require = &record.problem.resolved.require;
-    match defect {
-        Defect::Order { .. } => require.order == OrderPolicy::Required,
-        Defect::Branch { .. } => require.branch == OnePolicy::One,
-        Defect::Circuit { .. } => require.circuit == OnePolicy::One,
-    }
 }
 
 /// A defect as a sentence part.
@@ -226,7 +217,7 @@ pub(super) fn length_suffix(unit: Option<Unit>) -> String {
 
 /// The names of what stands in the way of acceptance, for files: the problem file's keys where they exist.
 pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
-    let forbidden = candidate.defects.iter().filter(|defect| is_forbidden(record, defect));
+    let forbidden = candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect));
     let mut names: Vec<String> = forbidden.map(|defect| defect.name().to_owned()).collect();
     for requirement in candidate.requirements.iter().filter(|r| !r.met) {
         let name = clean(&requirement.name).replace(';', ",");
