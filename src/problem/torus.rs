@@ -37,14 +37,31 @@ pub struct TorusFit<'a> {
     setting: Setting,
     space: DesignSpace,
     requirements: Requirements,
+    /// Which way along the curves the points follow each other; 0: they need keep no order.
+    sense: f64,
 }
 
 impl<'a> TorusFit<'a> {
-    /// The fit of a problem in a setting.
+    /// The fit of a problem in a setting. The points need keep no order, see [`TorusFit::in_order`].
     pub fn new(problem: &'a Problem, setting: Setting) -> Self {
         let space = problem.space(setting.side);
         let requirements = problem.requirements(&space);
-        TorusFit { problem, setting, space, requirements }
+        TorusFit { problem, setting, space, requirements, sense: 0.0 }
+    }
+
+    /// The same fit with the points held in the order in which they stand around their curve, where the
+    /// problem requires an order.
+    ///
+    /// Along the curve of positions the tangent (c_w, -c_phi) never turns back; the points follow it or run
+    /// against it, whichever is the shorter way in total.
+    #[must_use]
+    pub fn in_order(mut self, x: &Design, positions: &Positions) -> Self {
+        if !self.problem.order_required() {
+            return self;
+        }
+        let Some(shape) = self.space.shape(x) else { return self };
+        self.sense = orientation(&shape, positions);
+        self
     }
 
     /// The fit of the positions alone: the design stays at `x`.
@@ -52,6 +69,11 @@ impl<'a> TorusFit<'a> {
         let mut fit = TorusFit::new(problem, setting);
         fit.space.fix(x);
         fit
+    }
+
+    /// The sense in which the points' own unknowns grow.
+    fn forward(&self) -> f64 {
+        if self.sense < 0.0 { -1.0 } else { 1.0 }
     }
 
     /// The design space.
@@ -99,6 +121,60 @@ impl<'a> TorusFit<'a> {
 fn frame(shape: &Shape, [e, u]: [Complex; 2]) -> (Complex, f64, f64) {
     let y = shape.crank_pivot + e * shape.crank + u * shape.coupler - shape.follower_pivot;
     (y, dot(y, turned(e)) * shape.crank, dot(y, turned(u)) * shape.coupler)
+}
+
+/// The unit tangent (dphi, domega) of the curve at a position.
+fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
+    let (_, by_e, by_u) = frame(shape, position);
+    let length = (by_e * by_e + by_u * by_u).sqrt();
+    (length > 0.0).then(|| [by_u / length, -by_e / length])
+}
+
+/// The way along the curve from one position to a near one, positive along the tangent: the turns of crank
+/// and coupler along the mean of both tangents.
+///
+/// Positions that are far apart (a radian, or tangents that differ by more than about 70 degrees) cannot pass
+/// each other in one step: their way counts as [`FAR_APART`] in the `sense`.
+fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
+    let turn = |i: usize| {
+        let z = to[i] * from[i].conj();
+        // The sine will do for small turns: nothing is asked of it but order and a rough length.
+        (z.re > 0.5).then_some(z.im)
+    };
+    let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
+    let mean = [0.5 * (from_tangent[0] + to_tangent[0]), 0.5 * (from_tangent[1] + to_tangent[1])];
+    let (by_e, by_u) = (turn(0)?, turn(1)?);
+    (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
+}
+
+/// A gap that no step can close.
+const FAR_APART: f64 = 3.0;
+
+/// +1 where the points run along the tangents of their curve, -1 against; 0 where that cannot be said.
+///
+/// The circuit is parametrised by the crank angle where the crank turns fully (the assembly is the same at
+/// all points) and else by psi with phi = middle + half width sin psi; of both ways around the shorter is the
+/// one that is meant. The tangent's crank part has one sign on each assembly, so that a single point tells
+/// how the parameter runs along it.
+fn orientation(shape: &Shape, positions: &Positions) -> f64 {
+    let Some(first) = positions.first() else { return 0.0 };
+    let assembly = assembly_of(shape, first[0], first[1]);
+    let Ok(linkage) = shape.linkage(assembly) else { return 0.0 };
+    let mobility = linkage.mobility();
+    let arc = mobility.arc(mobility.branch(first[0].arg(), assembly).circuit);
+    let parameter = |[e, u]: &[Complex; 2]| match arc {
+        None => e.arg(),
+        Some(arc) => arc.parameter(e.arg(), assembly_of(shape, *e, *u)),
+    };
+    let total = |direction: f64| -> f64 {
+        positions.windows(2).map(|w| (direction * (parameter(&w[1]) - parameter(&w[0]))).rem_euclid(TAU)).sum()
+    };
+    let (forward, backward) = (total(1.0), total(-1.0));
+    let runs = if backward < forward { -1.0 } else { 1.0 };
+    // dphi/dparameter has the sign of t1 where the crank rocks; the tangent's crank part is c_w.
+    let (_, _, by_u) = frame(shape, *first);
+    let crank_rises = if arc.is_some() { assembly.sign() } else { 1.0 };
+    if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
 }
 
 /// A unit vector turned by a small angle, kept at unit length.
@@ -181,7 +257,8 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
                 *out = self.space.pull_back(x, &shape, &row, 0.0);
             }
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
-            each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(-tangent), weight: *weight });
+            let tangent = tangent * -self.forward();
+            each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(tangent), weight: *weight });
         }
         true
     }
@@ -201,12 +278,44 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
             if length == 0.0 {
                 return false;
             }
-            *out = [turn(position[0], tau * by_u / length), turn(position[1], -tau * by_e / length)];
+            let step = self.forward() * tau / length;
+            *out = [turn(position[0], step * by_u), turn(position[1], -step * by_e)];
             if !settle(&new, out) {
                 return false;
             }
         }
         true
+    }
+
+    fn gaps(&self, x: &Design, state: &Positions, gaps: &mut Vec<f64>) -> bool {
+        if self.sense == 0.0 {
+            return false;
+        }
+        let Some(shape) = self.space.shape(x) else { return false };
+        let mut tangents = state.iter().map(|p| tangent_of(&shape, *p));
+        let Some(Some(first)) = tangents.next() else { return false };
+        let mut last = first;
+        for (w, tangent) in state.windows(2).zip(tangents) {
+            let Some(tangent) = tangent else {
+                gaps.clear();
+                return false;
+            };
+            gaps.push(way(w[0], last, w[1], tangent).map_or(FAR_APART, |way| self.sense * way));
+            last = tangent;
+        }
+        // The last point must not run into the first from behind. Where it is near, it is so either by having
+        // gone almost all the way round or, on a short stretch, by not having gone far.
+        let gone: f64 = gaps.iter().sum();
+        let closing = way(state[state.len() - 1], last, state[0], first).map(|way| self.sense * way);
+        let far = self.problem.task().repeats_first() || closing.is_none_or(|way| way < -0.1 * gone);
+        gaps.push(closing.filter(|_| !far).unwrap_or(FAR_APART));
+        true
+    }
+
+    fn join(&self, state: &mut Positions, leaders: &[usize]) {
+        for (j, &leader) in leaders.iter().enumerate() {
+            state[j] = state[leader];
+        }
     }
 
     fn constraints(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {

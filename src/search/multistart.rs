@@ -178,7 +178,7 @@ pub fn polish(
         };
         ended(problem, solve(&fit, start.design, (), &options, &stop), start.setting, |()| Vec::new())
     } else {
-        let fit = TorusFit::new(problem, start.setting);
+        let fit = TorusFit::new(problem, start.setting).in_order(&start.design, &start.positions);
         let result = solve(&fit, start.design, start.positions, &options, &stop);
         ended(problem, result, start.setting, |positions| positions)
     }

@@ -10,11 +10,15 @@
 //! tau_j = -<t_j, r_j + J_j dx> / (|t_j|^2 + nu)
 //! ```
 //!
-//! so the cost of a step is linear in the number of points. Inequalities enter by an augmented Lagrangian
+//! so the cost of a step is linear in the number of points. Where the points must keep their order along a
+//! common curve, neighbours that the step would let pass each other move as one (a pool): the tangents of a
+//! pool are eliminated together, and which points are pooled is decided anew in every step by isotonic
+//! regression (pool adjacent violators, Ayer et al. 1955), see [`super::ordered`]. Inequalities enter by an augmented Lagrangian
 //! (Powell 1969, Hestenes 1969, Rockafellar 1974): a row sqrt(rho) max(0, m_i - g_i) each, with m_i moved to
 //! max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping
 //! follows Nielsen (1999), *Damping parameter in Marquardt's method*.
 
+use super::ordered::Ordered;
 use nalgebra::{SMatrix, SVector};
 
 /// A point's residual with its derivatives.
@@ -66,6 +70,15 @@ pub trait BlockLeastSquares<const N: usize> {
         to: &[f64; N],
         out: &mut Self::State,
     ) -> bool;
+
+    /// The way from each point to the next along their curve, in units of the own unknowns and positive in
+    /// order; the last one leads back to the first. `false`: the points need not keep an order.
+    fn gaps(&self, _x: &[f64; N], _state: &Self::State, _gaps: &mut Vec<f64>) -> bool {
+        false
+    }
+
+    /// Puts every point where its leader is.
+    fn join(&self, _state: &mut Self::State, _leaders: &[usize]) {}
 
     /// The inequalities, always as many and in the same order.
     fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&ConstraintRow<N>));
@@ -237,41 +250,135 @@ struct Normal<const N: usize> {
     tangent_sq: f64,
 }
 
+/// What an inner solve works with, kept from step to step.
+struct Workspace<const N: usize> {
+    blocks: Vec<PointBlock<N>>,
+    /// The constraints that lack something: (shift - g, dg/dx).
+    lacking: Vec<(f64, [f64; N])>,
+    /// w_j (|t_j|^2 + nu).
+    stiffness: Vec<f64>,
+    /// The points' own steps.
+    tau: Vec<f64>,
+    gaps: Vec<f64>,
+    order: Ordered,
+}
+
+impl<const N: usize> Workspace<N> {
+    fn new(points: usize) -> Self {
+        Workspace {
+            blocks: Vec::with_capacity(points),
+            lacking: Vec::new(),
+            stiffness: vec![0.0; points],
+            tau: vec![0.0; points],
+            gaps: Vec::with_capacity(points),
+            order: Ordered::new(points),
+        }
+    }
+
+    /// Each point's own best step for its residual as it stands.
+    fn own_steps(&mut self, nu: f64) {
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            self.stiffness[j] = block.weight * (t_sq + nu);
+            self.tau[j] = if t_sq == 0.0 {
+                0.0
+            } else {
+                -(t[0] * block.residual[0] + t[1] * block.residual[1]) / (t_sq + nu)
+            };
+        }
+    }
+
+    /// Each point's own step after a shared step `dx`; pooled points end in one place.
+    fn own_steps_after(&mut self, dx: &[f64; N], nu: f64, ordered: bool) {
+        let along = |block: &PointBlock<N>| {
+            let mut moved = block.residual;
+            for (value, row) in moved.iter_mut().zip(&block.jacobian) {
+                let mut sum = 0.0;
+                for (by, d) in row.iter().zip(dx) {
+                    sum += by * d;
+                }
+                *value += sum;
+            }
+            block.tangent[0] * moved[0] + block.tangent[1] * moved[1]
+        };
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t_sq = block.tangent[0].powi(2) + block.tangent[1].powi(2);
+            self.tau[j] = if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
+        }
+        if ordered {
+            self.order.pool(&self.gaps, &mut self.tau, &self.stiffness);
+        }
+    }
+
+    /// What the linear model takes off the cost and the penalty.
+    fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
+        let mut promised = 0.0;
+        for (block, tau) in self.blocks.iter().zip(&self.tau) {
+            for axis in 0..2 {
+                let mut change = block.tangent[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    change += by * d;
+                }
+                promised -= block.weight * change * (2.0 * block.residual[axis] + change);
+            }
+        }
+        for (lack, gradient) in &self.lacking {
+            let change: f64 = gradient.iter().zip(dx).map(|(by, d)| by * d).sum();
+            promised += rho * change * (2.0 * lack - change);
+        }
+        promised
+    }
+}
+
+fn add_row<const N: usize>(
+    matrix: &mut [[f64; N]; N],
+    gradient: &mut [f64; N],
+    weight: f64,
+    row: &[f64; N],
+    residual: f64,
+) {
+    for i in 0..N {
+        let w = weight * row[i];
+        gradient[i] += w * residual;
+        for k in 0..N {
+            matrix[i][k] += w * row[k];
+        }
+    }
+}
+
 fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     at: &LmResult<N, P::State>,
     penalty: &Penalty,
     nu: f64,
-    blocks: &mut Vec<PointBlock<N>>,
+    work: &mut Workspace<N>,
 ) -> Option<Normal<N>> {
-    blocks.clear();
-    let complete = problem.linearise(&at.x, &at.state, &mut |block| blocks.push(*block));
+    work.blocks.clear();
+    let complete = problem.linearise(&at.x, &at.state, &mut |block| work.blocks.push(*block));
     if !complete {
         return None;
     }
-    let mut matrix = SMatrix::<f64, N, N>::zeros();
-    let mut gradient = SVector::<f64, N>::zeros();
+    work.gaps.clear();
+    let ordered = problem.gaps(&at.x, &at.state, &mut work.gaps);
+    if ordered {
+        work.own_steps(nu);
+        work.order.pool(&work.gaps, &mut work.tau, &work.stiffness);
+    }
+    let mut matrix = [[0.0; N]; N];
+    let mut gradient = [0.0; N];
     let mut tangent_sum = 0.0;
-    let mut add = |weight: f64, row: &[f64; N], residual: f64| {
-        for i in 0..N {
-            let w = weight * row[i];
-            if w == 0.0 {
-                continue;
-            }
-            gradient[i] += w * residual;
-            for k in 0..=i {
-                matrix[(i, k)] += w * row[k];
-            }
-        }
-    };
-    for block in blocks.iter() {
+    for (index, block) in work.blocks.iter().enumerate() {
         let t = block.tangent;
         let t_sq = t[0] * t[0] + t[1] * t[1];
         tangent_sum += t_sq;
+        if ordered && !work.order.is_alone(index) {
+            continue;
+        }
         let (r, j) = (&block.residual, &block.jacobian);
         if t_sq == 0.0 {
-            add(block.weight, &j[0], r[0]);
-            add(block.weight, &j[1], r[1]);
+            add_row(&mut matrix, &mut gradient, block.weight, &j[0], r[0]);
+            add_row(&mut matrix, &mut gradient, block.weight, &j[1], r[1]);
             continue;
         }
         let length = t_sq.sqrt();
@@ -281,25 +388,48 @@ fn assemble<const N: usize, P: BlockLeastSquares<N>>(
             for i in 0..N {
                 row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
             }
-            add(block.weight * weight, &row, axis[0] * r[0] + axis[1] * r[1]);
+            let residual = axis[0] * r[0] + axis[1] * r[1];
+            add_row(&mut matrix, &mut gradient, block.weight * weight, &row, residual);
+        }
+    }
+    if ordered {
+        for pool in work.order.pools() {
+            // r_j + t_j m_j + J_j dx + t_j tau with the way m_j to the common place and one tau for all.
+            let mut by_tau = [0.0; N];
+            let (mut along, mut stiffness) = (0.0, 0.0);
+            for &(index, way) in pool {
+                let block = &work.blocks[index];
+                let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
+                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
+                add_row(&mut matrix, &mut gradient, w, &j[0], r[0]);
+                add_row(&mut matrix, &mut gradient, w, &j[1], r[1]);
+                for i in 0..N {
+                    by_tau[i] += w * (t[0] * j[0][i] + t[1] * j[1][i]);
+                }
+                along += w * (t[0] * r[0] + t[1] * r[1]);
+                stiffness += work.stiffness[index];
+            }
+            if stiffness > 0.0 {
+                add_row(&mut matrix, &mut gradient, -1.0 / stiffness, &by_tau, along);
+            }
         }
     }
     let mut i = 0;
+    work.lacking.clear();
     problem.constraints(&at.x, &at.state, &mut |row| {
         let lack = penalty.shift[i] - row.value;
         i += 1;
         if lack > 0.0 {
-            let down = row.gradient.map(|g| -g);
-            add(penalty.rho, &down, lack);
+            work.lacking.push((lack, row.gradient));
+            add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
         }
     });
-    for i in 0..N {
-        for k in 0..i {
-            matrix[(k, i)] = matrix[(i, k)];
-        }
-    }
-    let usable = matrix.iter().chain(gradient.iter()).all(|v| v.is_finite());
-    usable.then(|| Normal { matrix, gradient, tangent_sq: tangent_sum / blocks.len().max(1) as f64 })
+    let usable = matrix.iter().flatten().chain(gradient.iter()).all(|v| v.is_finite());
+    usable.then(|| Normal {
+        matrix: SMatrix::from_fn(|i, k| matrix[i][k]),
+        gradient: SVector::from(gradient),
+        tangent_sq: tangent_sum / work.blocks.len().max(1) as f64,
+    })
 }
 
 fn inner<const N: usize, P: BlockLeastSquares<N>>(
@@ -311,8 +441,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
 ) {
     let bounds = *problem.bounds();
     let mut merit = result.cost + penalty.of(problem, &result.x, &result.state);
-    let mut blocks = Vec::with_capacity(problem.points());
-    let mut tau = vec![0.0; problem.points()];
+    let mut work = Workspace::new(problem.points());
     let mut trial_state = result.state.clone();
     let (mut damping, mut growth) = (FIRST_DAMPING, 2.0);
     let mut normal: Option<Normal<N>> = None;
@@ -337,7 +466,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         }
         if normal.is_none() {
             nu = damping * tangent_sq;
-            match assemble(problem, result, penalty, nu, &mut blocks) {
+            match assemble(problem, result, penalty, nu, &mut work) {
                 Some(assembled) => {
                     tangent_sq = assembled.tangent_sq;
                     normal = Some(assembled);
@@ -363,26 +492,14 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         for i in 0..N {
             trial[i] = (result.x[i] + dx[i]).max(bounds[i].0).min(bounds[i].1);
         }
-        // The reduction that the linear model promises, its own unknowns included.
-        let mut promised = -(2.0 * system.gradient.dot(&dx) + dx.dot(&(system.matrix * dx)));
-        for (block, tau) in blocks.iter().zip(tau.iter_mut()) {
-            let t = block.tangent;
-            let t_sq = t[0] * t[0] + t[1] * t[1];
-            if t_sq == 0.0 {
-                *tau = 0.0;
-                continue;
-            }
-            let along = |r: [f64; 2]| t[0] * r[0] + t[1] * r[1];
-            let mut moved = block.residual;
-            for (axis, value) in moved.iter_mut().enumerate() {
-                *value += (0..N).map(|i| block.jacobian[axis][i] * dx[i]).sum::<f64>();
-            }
-            *tau = (-along(moved) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
-            // What the elimination takes off before any dx: the residual along the tangent.
-            promised += block.weight * along(block.residual).powi(2) / (t_sq + nu);
-        }
+        let shared = dx.into();
+        work.own_steps_after(&shared, nu, !work.gaps.is_empty());
+        let promised = work.promised(&shared, penalty.rho);
         result.evaluations += 1;
-        let trial_merit = if problem.retract(&result.x, &result.state, &tau, &trial, &mut trial_state) {
+        let trial_merit = if problem.retract(&result.x, &result.state, &work.tau, &trial, &mut trial_state) {
+            if !work.gaps.is_empty() {
+                problem.join(&mut trial_state, work.order.leaders());
+            }
             problem
                 .cost(&trial, &trial_state)
                 .map(|cost| (cost, cost + penalty.of(problem, &trial, &trial_state)))
