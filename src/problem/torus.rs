@@ -86,8 +86,12 @@ impl<'a> TorusFit<'a> {
         &self.requirements
     }
 
-    /// The motion through the positions: a stretch of crank angle where the input turns fully.
+    /// The motion through the positions: a stretch of crank angle where the input turns fully. Where no
+    /// requirement looks at the motion, it is not worked out.
     pub fn motion<'p>(&self, shape: &Shape, positions: &'p Positions) -> Motion<'p> {
+        if !self.requirements.depend_on_motion() {
+            return Motion::Positions(positions);
+        }
         let turns = linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully);
         let Some([e, u]) = positions.first().filter(|_| turns) else { return Motion::Positions(positions) };
         let assembly = assembly_of(shape, *e, *u);
@@ -177,30 +181,39 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
     if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
 }
 
-/// A unit vector turned by a small angle, kept at unit length.
+/// A unit vector turned by an angle, to third order, and kept at unit length without trigonometry:
+/// (1 + i h)/(1 - i h) with h = angle/2, and one Newton step to |z| = 1.
+#[inline]
 fn turn(z: Complex, angle: f64) -> Complex {
-    let turned = z * Complex::new(1.0, angle);
-    turned / turned.norm()
+    let h = 0.5 * angle;
+    let h2 = h * h;
+    let turned = z * Complex::new(1.0 - h2, 2.0 * h) * (1.0 / (1.0 + h2));
+    turned * (1.5 - 0.5 * turned.norm_sqr())
 }
 
+/// Brings a position back to its curve by least-norm Newton steps.
+#[inline]
 fn settle(shape: &Shape, position: &mut [Complex; 2]) -> bool {
     let largest = shape.crank.max(shape.coupler).max(shape.follower);
+    let near = ON_CURVE * largest * largest;
+    let mut miss = f64::INFINITY;
     for _ in 0..RETURN_STEPS {
         let (y, by_e, by_u) = frame(shape, *position);
-        let miss = 0.5 * (y.norm_sqr() - shape.follower * shape.follower);
-        if miss.abs() <= ON_CURVE * largest * largest {
+        miss = 0.5 * (y.norm_sqr() - shape.follower * shape.follower);
+        if miss.abs() <= near {
             return true;
         }
         let n2 = by_e * by_e + by_u * by_u;
         if n2 == 0.0 {
             return false;
         }
-        let step = (-miss / n2).clamp(-1.0 / n2.sqrt(), 1.0 / n2.sqrt());
+        // At most a radian at a time.
+        let long = miss * miss / n2;
+        let step = if long > 1.0 { -miss / (n2 * long.sqrt()) } else { -miss / n2 };
         position[0] = turn(position[0], step * by_e);
         position[1] = turn(position[1], step * by_u);
     }
-    let (y, ..) = frame(shape, *position);
-    (y.norm_sqr() - shape.follower * shape.follower).abs() <= 16.0 * ON_CURVE * largest * largest
+    miss.abs() <= 16.0 * near
 }
 
 impl BlockLeastSquares<DESIGN> for TorusFit<'_> {

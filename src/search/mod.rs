@@ -1,5 +1,8 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
+pub mod atlas;
+pub mod coarse;
+pub mod free;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;

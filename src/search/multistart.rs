@@ -127,7 +127,7 @@ pub fn round(
 }
 
 /// Cost plus what the requirements lack, as a mean squared error; `None` where it has none.
-fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.size().powi(2);
@@ -170,7 +170,18 @@ pub fn polish(
     evaluations: u64,
     budget: &Budget<'_>,
 ) -> Fitted {
-    let options = options(problem, steps, rounds, evaluations);
+    fit_with(problem, start, (steps, rounds, 1e-12), evaluations, budget)
+}
+
+/// As [`polish`], with the relative reduction at which a fit counts as converged beside the steps and rounds.
+pub(super) fn fit_with(
+    problem: &Problem,
+    start: Start,
+    (steps, rounds, relative_reduction): (usize, usize, f64),
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    let options = LmOptions { relative_reduction, ..options(problem, steps, rounds, evaluations) };
     let stop = || budget.stopped();
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else {

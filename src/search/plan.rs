@@ -15,12 +15,13 @@ use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::solve::population::PopulationError;
+use crate::task::Timing;
 use rayon::prelude::*;
 
 /// The best answer has to come back from this many rounds before it is believed.
 pub const HITS: usize = 6;
 /// Errors that differ by less than this part are the same optimum.
-const SAME_OPTIMUM: f64 = 1e-6;
+pub(super) const SAME_OPTIMUM: f64 = 1e-6;
 /// Rounds that run side by side before any is read: the same number whatever the threads.
 const BATCH: u64 = 8;
 /// Batches at least, so that rarer answers have their chance, and batches without news that end a search for
@@ -103,11 +104,15 @@ fn alone(
 }
 
 /// The state of a multistart.
-struct Local {
-    found: Vec<Candidate>,
-    evaluations: Evaluations,
-    reason: Reason,
-    used: Vec<String>,
+pub(super) struct Local {
+    /// Judged candidates.
+    pub(super) found: Vec<Candidate>,
+    /// What it cost.
+    pub(super) evaluations: Evaluations,
+    /// Why it ended.
+    pub(super) reason: Reason,
+    /// What ran.
+    pub(super) used: Vec<String>,
 }
 
 impl Local {
@@ -130,6 +135,9 @@ fn local_search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Local {
+    if matches!(problem.task().timing(), Timing::Free) {
+        return super::free::search(problem, limit, patience, budget, observer);
+    }
     let wanted = problem.spec().solve.candidates;
     let exact = exact_objective(problem);
     let starts = Starts::new(problem);

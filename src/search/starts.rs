@@ -10,7 +10,7 @@ use crate::linkage::{
     mobility::{grashof_margin, linkage_type},
 };
 use crate::problem::design_space::{Design, DesignSpace, Shape};
-use crate::problem::linear_fit::{KnownPivots, Ratios, coupler_direction, fit};
+use crate::problem::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
 use crate::problem::torus::Positions;
 use crate::problem::{Problem, Setting};
 use crate::solve::streams::{Stream, below, uniform};
@@ -70,6 +70,44 @@ impl<'a> Starts<'a> {
             arc: along.iter().map(|s| s / whole).collect(),
             spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
         }
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &Problem {
+        self.problem
+    }
+
+    /// The arc length up to each point, in parts of the whole target (closed: of the closed curve).
+    pub fn arc(&self) -> &[f64] {
+        &self.arc
+    }
+
+    /// The points of a closed target, each once.
+    pub fn loop_points(&self) -> &[Complex] {
+        let task = self.problem.task();
+        &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
+    }
+
+    /// A start of free timing from ratios and positions measured from the ground line: the rest by linear least
+    /// squares. `kind` is the type of the ratios and the one aimed at where types are required.
+    pub fn from_positions(
+        &self,
+        ratios: &Ratios,
+        kind: LinkageType,
+        direction: f64,
+        positions: &[[Complex; 2]],
+    ) -> Option<Start> {
+        let (side, space) = &self.spaces[0];
+        let shape = self.fit(ratios, &self.known(), positions)?;
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let turn = ground / ground.norm();
+        let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };
+        let space = self.spaces.iter().find(|(s, _)| *s == side).map_or(space, |(_, space)| space);
+        let aim = if self.problem.types().is_empty() { None } else { Some(kind) };
+        let assembly = AssemblyMode::of(assembly_sign(ratios, positions[0]));
+        let setting = Setting { aim, assembly, direction, side };
+        let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
+        Some(Start { design: space.design(&shape, 0.0), setting, positions })
     }
 
     /// One start; `None` where the draw cannot be assembled at every point.
@@ -202,7 +240,7 @@ impl<'a> Starts<'a> {
 }
 
 /// The mobility of the linkage with ground 1 along the x axis.
-fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
+pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
     let linkage = FourBar::new(NaturalCoordinates {
         crank_pivot: [0.0, 0.0],
         follower_pivot: [1.0, 0.0],
@@ -221,7 +259,7 @@ fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
 /// Slacks and lengths are drawn over this range of ratios, evenly in their logarithm.
 const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
 
-fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
+pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
     let log_uniform =
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {

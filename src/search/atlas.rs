@@ -1,0 +1,287 @@
+//! An atlas of closed coupler curves: which linkages draw something like a given closed target?
+//!
+//! Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier coefficients,
+//!
+//! ```text
+//! F_k = sum_m P_m e^{-2 pi i k m / M},   k = +-1 .. +-K,   divided by sqrt(sum |F_k|^2)
+//! ```
+//!
+//! at M points spaced evenly along the curve. They do not change when the curve is moved, turned, scaled or
+//! begun elsewhere; run backwards, F_k and F_-k change places. (Descriptors of closed curves: Zahn and Roskies
+//! 1972; for coupler curves McGarva and Mullineux 1993.) The nearest entries are then laid onto the target by
+//! similarity at every shift (Procrustes), and the best give starts. The atlas is drawn from a fixed stream,
+//! once in a process, when it is first asked for.
+
+use super::starts::{Start, Starts, draw_ratios};
+use crate::linkage::mobility::Mobility;
+use crate::linkage::{Circuit, Complex, InputArc, LinkageType};
+use crate::problem::linear_fit::{Ratios, coupler_direction};
+use crate::solve::streams::{Stream, below, stream, uniform};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+/// Entries.
+const ENTRIES: usize = 30_000;
+/// Entries drawn from one stream.
+const CHUNK: usize = 500;
+/// The seed of the atlas: it is the same for every problem and run.
+const SEED: u64 = 0x61_746c_6173;
+/// Positions at which a curve is traced.
+const TRACED: usize = 96;
+/// Points evenly along it.
+const EVEN: usize = 32;
+/// Harmonics on each side.
+const HARMONICS: usize = 6;
+/// Entries that are laid onto the target.
+const LAID: usize = 400;
+
+type Descriptor = [f32; 2 * HARMONICS];
+
+/// A linkage of the atlas with the circuit that it runs on.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    kind: LinkageType,
+    ratios: Ratios,
+    /// P from C in the coupler's frame, in parts of the ground.
+    offset: Complex,
+    /// t1 of a crank that turns fully.
+    assembly: f64,
+    arc: Option<InputArc>,
+    descriptor: Descriptor,
+}
+
+/// A traced curve with its length along the parameter.
+struct Traced {
+    points: Vec<Complex>,
+    /// Up to each point, in parts of the whole; one more than points.
+    along: Vec<f64>,
+}
+
+impl Entry {
+    /// The position at a parameter in [0, 1): (e, u) from the ground line.
+    fn at(&self, parameter: f64) -> Option<[Complex; 2]> {
+        let (e, t) = match self.arc {
+            None => (Complex::from_polar(1.0, TAU * parameter), self.assembly),
+            Some(arc) => {
+                // A hair off the toggles, where the assembly is undecided.
+                let psi = TAU * parameter;
+                let angle = arc.middle + (1.0 - 1e-9) * arc.half_width * psi.sin();
+                (Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+            }
+        };
+        Some([e, coupler_direction(&self.ratios, e, t)?])
+    }
+
+    fn trace(&self) -> Option<Traced> {
+        let mut points = Vec::with_capacity(TRACED);
+        for i in 0..TRACED {
+            // Half a step off, so that no sample stands on a toggle.
+            let [e, u] = self.at((i as f64 + 0.5) / TRACED as f64)?;
+            points.push(e * self.ratios.crank + u * self.offset);
+        }
+        let along = lengths(&points)?;
+        Some(Traced { points, along })
+    }
+}
+
+/// The length along a closed polygon up to each corner and back at the first, in parts of the whole.
+fn lengths(points: &[Complex]) -> Option<Vec<f64>> {
+    let mut along = vec![0.0];
+    for i in 0..points.len() {
+        let step = (points[(i + 1) % points.len()] - points[i]).norm_sqr().sqrt();
+        along.push(along[i] + step);
+    }
+    let whole = along[points.len()];
+    (whole > 0.0 && whole.is_finite()).then(|| along.iter().map(|s| s / whole).collect())
+}
+
+/// `count` points evenly along a closed polygon, from its first corner on.
+fn evenly(points: &[Complex], along: &[f64], count: usize) -> Vec<Complex> {
+    let mut corner = 0;
+    (0..count)
+        .map(|m| {
+            let s = m as f64 / count as f64;
+            while along[corner + 1] <= s {
+                corner += 1;
+            }
+            let (from, to) = (points[corner], points[(corner + 1) % points.len()]);
+            from + (to - from) * ((s - along[corner]) / (along[corner + 1] - along[corner]))
+        })
+        .collect()
+}
+
+fn descriptor(even: &[Complex]) -> Option<Descriptor> {
+    let mut out = [0.0f32; 2 * HARMONICS];
+    let mut magnitudes = [0.0; 2 * HARMONICS];
+    let turn = Complex::from_polar(1.0, -TAU / even.len() as f64);
+    let mut step = Complex::new(1.0, 0.0);
+    for k in 0..HARMONICS {
+        step *= turn;
+        let (mut ahead, mut back) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+        let mut phase = Complex::new(1.0, 0.0);
+        for p in even {
+            ahead += p * phase;
+            back += p * phase.conj();
+            phase *= step;
+        }
+        magnitudes[k] = ahead.norm_sqr();
+        magnitudes[HARMONICS + k] = back.norm_sqr();
+    }
+    let whole: f64 = magnitudes.iter().sum();
+    for (out, m) in out.iter_mut().zip(magnitudes) {
+        *out = (m / whole).sqrt() as f32;
+    }
+    whole.is_normal().then_some(out)
+}
+
+const KINDS: [LinkageType; 5] = [
+    LinkageType::CrankRocker,
+    LinkageType::DoubleCrank,
+    LinkageType::RockerCrank,
+    LinkageType::DoubleRocker,
+    LinkageType::TripleRocker,
+];
+
+fn draw(stream: &mut Stream) -> Option<Entry> {
+    let kind = KINDS[below(stream, KINDS.len())];
+    let assembly = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
+    let which = below(stream, 2) as u8;
+    let reach = uniform(stream, 0.05_f64.ln(), 3.0_f64.ln()).exp();
+    let angle = uniform(stream, -PI, PI);
+    let ratios = draw_ratios(stream, kind)?;
+    let longest = ratios.crank.max(ratios.coupler).max(ratios.follower).max(1.0);
+    let offset = Complex::new(0.5 * ratios.coupler, 0.0) + Complex::from_polar(reach * longest, angle);
+    let arc = if kind.input_turns_fully() {
+        None
+    } else {
+        let mobility: Mobility = super::starts::unit_linkage(&ratios)?;
+        Some(mobility.arc(Circuit { index: which % mobility.circuits().max(1) })?)
+    };
+    let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS] };
+    let traced = entry.trace()?;
+    entry.descriptor = descriptor(&evenly(&traced.points, &traced.along, EVEN))?;
+    Some(entry)
+}
+
+fn atlas() -> &'static [Entry] {
+    static ATLAS: OnceLock<Vec<Entry>> = OnceLock::new();
+    ATLAS.get_or_init(|| {
+        let chunk = |index: usize| -> Vec<Entry> {
+            let mut draws = stream(SEED, index as u64);
+            (0..CHUNK).filter_map(|_| draw(&mut draws)).collect()
+        };
+        (0..ENTRIES / CHUNK).into_par_iter().flat_map_iter(chunk).collect()
+    })
+}
+
+/// An entry laid onto a target.
+#[derive(Clone, Copy, Debug)]
+struct Laid {
+    entry: &'static Entry,
+    /// Where on the curve (in parts of its length from its first traced point) the target begins.
+    begin: f64,
+    /// +1: the target runs as the parameter grows, -1: against it.
+    direction: f64,
+    /// The part of the target's spread that is left.
+    misfit: f64,
+}
+
+/// The nearest entries to a closed target, best first.
+#[derive(Debug)]
+pub struct Matches {
+    laid: Vec<Laid>,
+}
+
+impl Matches {
+    /// Matches for the closed target of a problem; none where no entry may be used.
+    pub fn of(starts: &Starts<'_>) -> Matches {
+        let none = Matches { laid: Vec::new() };
+        let problem = starts.problem();
+        let points: Vec<Complex> = starts.loop_points().to_vec();
+        let Some(along) = lengths(&points) else { return none };
+        let mut even = evenly(&points, &along, EVEN);
+        let Some(wanted) = descriptor(&even) else { return none };
+        let middle = even.iter().sum::<Complex>() / EVEN as f64;
+        even.iter_mut().for_each(|p| *p -= middle);
+        let spread: f64 = even.iter().map(|p| p.norm_sqr()).sum();
+        let types = problem.types();
+        let senses: &[f64] = problem.directions();
+        let usable = |entry: &Entry| {
+            (types.is_empty() || types.contains(&entry.kind)) && (entry.arc.is_none() || problem.branch_any())
+        };
+        let apart = |entry: &Entry| -> f32 {
+            let d = &entry.descriptor;
+            let (mut same, mut reversed) = (0.0, 0.0);
+            for k in 0..2 * HARMONICS {
+                same += (d[k] - wanted[k]).powi(2);
+                reversed += (d[(k + HARMONICS) % (2 * HARMONICS)] - wanted[k]).powi(2);
+            }
+            same.min(reversed)
+        };
+        let mut near: Vec<(f32, usize)> = atlas()
+            .iter()
+            .enumerate()
+            .filter(|(_, entry)| usable(entry))
+            .map(|(index, entry)| (apart(entry), index))
+            .collect();
+        let order = |one: &(f32, usize), other: &(f32, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+        if near.len() > LAID {
+            near.select_nth_unstable_by(LAID, order);
+            near.truncate(LAID);
+        }
+        near.sort_by(order);
+        let lay = |&(_, index): &(f32, usize)| -> Option<Laid> {
+            let entry: &'static Entry = &atlas()[index];
+            let traced = entry.trace()?;
+            let mut curve = evenly(&traced.points, &traced.along, EVEN);
+            let middle = curve.iter().sum::<Complex>() / EVEN as f64;
+            curve.iter_mut().for_each(|p| *p -= middle);
+            let own: f64 = curve.iter().map(|p| p.norm_sqr()).sum();
+            let mut best: Option<Laid> = None;
+            for &direction in senses {
+                for shift in 0..EVEN {
+                    let mut inner = Complex::new(0.0, 0.0);
+                    for (m, target) in even.iter().enumerate() {
+                        let at = if direction > 0.0 { shift + m } else { shift + EVEN - m };
+                        inner += curve[at % EVEN].conj() * target;
+                    }
+                    let misfit = 1.0 - inner.norm_sqr() / (own * spread);
+                    if best.is_none_or(|b| misfit < b.misfit) {
+                        best = Some(Laid { entry, begin: shift as f64 / EVEN as f64, direction, misfit });
+                    }
+                }
+            }
+            best
+        };
+        let mut laid: Vec<Laid> = near.iter().filter_map(lay).collect();
+        laid.sort_by(|one, other| one.misfit.total_cmp(&other.misfit));
+        Matches { laid }
+    }
+
+    /// How many.
+    pub fn len(&self) -> usize {
+        self.laid.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.laid.is_empty()
+    }
+
+    /// The start of the match of a rank.
+    pub fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
+        let laid = self.laid.get(rank)?;
+        let traced = laid.entry.trace()?;
+        let mut positions = Vec::with_capacity(starts.arc().len());
+        for s in starts.arc() {
+            let along = (laid.begin + laid.direction * s).rem_euclid(1.0);
+            let corner = traced.along.partition_point(|length| *length <= along).clamp(1, TRACED) - 1;
+            let (from, to) = (traced.along[corner], traced.along[corner + 1]);
+            let part = if to > from { (along - from) / (to - from) } else { 0.0 };
+            let parameter = (corner as f64 + 0.5 + part) / TRACED as f64;
+            positions.push(laid.entry.at(parameter.rem_euclid(1.0))?);
+        }
+        starts.from_positions(&laid.entry.ratios, laid.entry.kind, laid.direction, &positions)
+    }
+}

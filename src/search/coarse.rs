@@ -1,0 +1,88 @@
+//! Dense targets in fewer points: a search explores the coarse problem and fits the answer to all points.
+//!
+//! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group weighs
+//! what its points weigh together. The pivots, bounds and requirements stay the problem's own.
+
+use super::starts::Start;
+use crate::linkage::Complex;
+use crate::problem::Problem;
+use crate::problem::torus::{Positions, TorusFit};
+use crate::task::Timing;
+use std::ops::Range;
+
+/// A target of more points than this is explored in groups.
+const DENSE: usize = 48;
+/// How many groups.
+const GROUPS: usize = 32;
+
+/// A dense problem with its coarse image.
+#[derive(Clone, Debug)]
+pub struct Coarse {
+    /// The problem of the groups.
+    pub problem: Problem,
+    groups: Vec<Range<usize>>,
+    cyclic: bool,
+}
+
+impl Coarse {
+    /// The coarse image; `None` where the target has few points, is timed, or cannot be grouped.
+    pub fn of(problem: &Problem) -> Option<Coarse> {
+        let task = problem.task();
+        let n = if task.repeats_first() { task.len() - 1 } else { task.len() };
+        if n <= DENSE || !matches!(task.timing(), Timing::Free) {
+            return None;
+        }
+        let groups: Vec<Range<usize>> = (0..GROUPS).map(|k| k * n / GROUPS..(k + 1) * n / GROUPS).collect();
+        let weight = |group: &Range<usize>| task.weights()[group.clone()].iter().sum::<f64>();
+        let mut spec = problem.spec().clone();
+        spec.task.path.points = groups
+            .iter()
+            .map(|group| {
+                let pairs = task.points()[group.clone()].iter().zip(&task.weights()[group.clone()]);
+                let mean = pairs.map(|(p, w)| p * w).sum::<Complex>() / weight(group);
+                [mean.re, mean.im]
+            })
+            .collect();
+        spec.task.path.weight = Some(groups.iter().map(weight).collect());
+        spec.task.path.tolerance = None;
+        let cyclic = task.closed() || task.repeats_first();
+        spec.task.path.closed = cyclic;
+        Some(Coarse { problem: Problem::new(spec).ok()?, groups, cyclic })
+    }
+
+    /// The start of the dense problem from one of the coarse one: each point between its group's position and
+    /// the next group's, in equal steps of crank and coupler, brought back to the curve.
+    pub fn refine(&self, dense: &Problem, coarse: &Start) -> Option<Start> {
+        let (at, count) = (&coarse.positions, self.groups.len());
+        let between = |from: [Complex; 2], to: [Complex; 2], part: f64| -> [Complex; 2] {
+            [0, 1].map(|i| from[i] * Complex::from_polar(1.0, part * (to[i] * from[i].conj()).arg()))
+        };
+        let mut positions: Positions = Vec::with_capacity(dense.task().len());
+        for (k, group) in self.groups.iter().enumerate() {
+            for (i, _) in group.clone().enumerate() {
+                // From -1/2 to 1/2 across the group.
+                let part = (i as f64 + 0.5) / group.len() as f64 - 0.5;
+                let neighbour = if part < 0.0 { k.checked_sub(1) } else { Some(k + 1).filter(|k| *k < count) };
+                let neighbour = match neighbour {
+                    None if self.cyclic => Some(if part < 0.0 { count - 1 } else { 0 }),
+                    other => other,
+                };
+                positions.push(match neighbour {
+                    Some(next) => between(at[k], at[next], part.abs()),
+                    // Beyond the ends the motion goes on as it came.
+                    None if part < 0.0 => between(at[k], at[k + 1], part),
+                    None => between(at[k], at[k - 1], -part),
+                });
+            }
+        }
+        if dense.task().repeats_first() {
+            positions.push(positions[0]);
+        }
+        let fit = TorusFit::new(dense, coarse.setting);
+        fit.settle(&coarse.design, &mut positions).then_some(Start {
+            design: coarse.design,
+            setting: coarse.setting,
+            positions,
+        })
+    }
+}

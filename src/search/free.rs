@@ -1,0 +1,350 @@
+//! The search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt on the torus,
+//! and a stop when the best answer keeps coming back.
+//!
+//! A *round* takes [`SCREEN`] drawn starts (for closed targets first the atlas's matches), fits the [`SHORT`]
+//! most promising for a few steps, the best [`MIDDLE`] of those on, and finishes those that can still matter.
+//! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them. Rounds run
+//! side by side in batches of [`BATCH`] and are read in their order: the number of threads changes nothing but
+//! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
+//!
+//! *Stopping rule*: the best accepted error has come back, within [`SAME_OPTIMUM`], from [`HITS`] different
+//! rounds, and either as many distinct answers as were asked for are known or [`QUIET_BATCHES`] batches brought
+//! no new one. An exact answer needs no second hit.
+
+use super::atlas::Matches;
+use super::coarse::Coarse;
+use super::multistart::{fit_with, judged, promise};
+use super::plan::{Local, SAME_OPTIMUM};
+use super::rank::{distinct, exact_objective, exact_sum_sq};
+use super::starts::{Start, Starts};
+use super::{Budget, Observer, Progress};
+use crate::problem::Problem;
+use crate::record::{Candidate, Evaluations, Reason};
+use crate::solve::streams::stream;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Starts drawn and screened in a round.
+const SCREEN: usize = 160;
+/// Matches of the atlas taken in a round.
+const MATCHED: usize = 24;
+/// Starts fitted for a few steps.
+const SHORT: usize = 8;
+/// Starts fitted on.
+const MIDDLE: usize = 3;
+/// Rounds that run side by side before any is read.
+const BATCH: u64 = 8;
+/// The best answer has to come back from this many rounds before it is believed.
+pub const HITS: usize = 6;
+/// Batches without a new distinct answer that end a search for further ones.
+const QUIET_BATCHES: u64 = 6;
+/// Ends that are kept.
+const KEPT: usize = 400;
+/// An end whose merit is beyond this many times the best known one is not finished when one answer is wanted.
+const WORTH_FINISHING: f64 = 1.5;
+
+/// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    steps: usize,
+    rounds: usize,
+    relative_reduction: f64,
+}
+
+const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
+const LAST_FIT: Effort = Effort { steps: 300, rounds: 14, relative_reduction: 1e-12 };
+
+/// The end of a fit.
+#[derive(Clone, Debug)]
+struct End {
+    start: Start,
+    merit: f64,
+    /// `None`: not judged yet; `Some(None)`: cannot be judged.
+    verdict: Option<Option<Candidate>>,
+}
+
+#[derive(Debug, Default)]
+struct Round {
+    ends: Vec<End>,
+    draws: u64,
+    evaluations: u64,
+    positions: u64,
+    /// It met an exact, accepted answer.
+    exact: bool,
+}
+
+/// What all rounds share.
+struct Setup<'a> {
+    problem: &'a Problem,
+    coarse: Option<&'a Coarse>,
+    starts: &'a Starts<'a>,
+    matches: Option<&'a Matches>,
+    /// One answer is wanted: the first exact one ends the search.
+    single: bool,
+    exact: f64,
+}
+
+impl Setup<'_> {
+    /// The problem that is explored.
+    fn explored(&self) -> &Problem {
+        self.coarse.map_or(self.problem, |coarse| &coarse.problem)
+    }
+}
+
+/// Counts while it fits, and stops at the round's allowance.
+struct Spender<'a> {
+    round: Round,
+    allowance: u64,
+    budget: &'a Budget<'a>,
+}
+
+impl Spender<'_> {
+    fn left(&self) -> u64 {
+        self.allowance.saturating_sub(self.round.evaluations)
+    }
+
+    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        let left = self.left();
+        if left == 0 || self.budget.stopped() {
+            return None;
+        }
+        let Effort { steps, rounds, relative_reduction } = effort;
+        let fit = fit_with(problem, start, (steps, rounds, relative_reduction), left, self.budget);
+        self.round.evaluations += fit.evaluations;
+        self.round.positions += problem.task().len() as u64 * fit.evaluations;
+        fit.end.map(|end| (fit.merit, end))
+    }
+}
+
+fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ends.truncate(keep);
+}
+
+fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budget<'_>, found: &AtomicU64) -> Round {
+    let mut spender = Spender { round: Round::default(), allowance, budget };
+    // A round before this one has the exact answer: this one is not read.
+    let beaten = || found.load(Ordering::Relaxed) < index;
+    if beaten() {
+        return spender.round;
+    }
+    let explored = setup.explored();
+    let n = explored.task().len() as u64;
+    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
+        spender.round.draws += 1;
+        let Some(mut start) = start else { return };
+        spender.round.evaluations += 1;
+        spender.round.positions += n;
+        if let Some(promise) = promise(explored, &mut start) {
+            drawn.push((promise, start));
+        }
+    };
+    let first = index as usize * MATCHED;
+    match setup.matches.filter(|matches| first < matches.len()) {
+        Some(matches) => {
+            for rank in first..(first + MATCHED).min(matches.len()) {
+                if spender.left() > 0 {
+                    take(&mut spender, matches.start(setup.starts, rank));
+                }
+            }
+        }
+        None => {
+            let mut draws = stream(setup.problem.spec().solve.seed, index);
+            for _ in 0..SCREEN {
+                if spender.left() > 0 {
+                    take(&mut spender, setup.starts.draw(&mut draws));
+                }
+            }
+        }
+    }
+    by_merit(&mut drawn, SHORT);
+    let spare = drawn.first().cloned();
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+    for (_, start) in drawn {
+        fitted.extend(spender.fit(explored, start, SHORT_FIT));
+    }
+    by_merit(&mut fitted, MIDDLE);
+    let mut middle: Vec<(f64, Start)> = Vec::with_capacity(MIDDLE);
+    for (merit, start) in fitted {
+        if beaten() {
+            return spender.round;
+        }
+        // Out of budget: as it stands.
+        let kept = (merit, start.clone());
+        middle.push(spender.fit(explored, start, MIDDLE_FIT).unwrap_or(kept));
+    }
+    if middle.is_empty() {
+        middle.extend(spare);
+    }
+    by_merit(&mut middle, MIDDLE);
+    let best = middle.first().map_or(f64::INFINITY, |(merit, _)| *merit).min(bar);
+    for (merit, start) in middle {
+        if beaten() {
+            return spender.round;
+        }
+        let start = match setup.coarse {
+            None => start,
+            Some(coarse) => match coarse.refine(setup.problem, &start) {
+                Some(start) => start,
+                None => continue,
+            },
+        };
+        let end = if setup.single && merit > WORTH_FINISHING * best + setup.exact {
+            None
+        } else {
+            spender.fit(setup.problem, start.clone(), LAST_FIT)
+        };
+        let (merit, start) = end.unwrap_or((merit, start));
+        let mut end = End { start, merit, verdict: None };
+        if setup.single && merit <= setup.exact {
+            let verdict = judged(setup.problem, &end.start);
+            spender.round.exact =
+                verdict.as_ref().is_some_and(|c| c.accepted && c.error.objective <= setup.exact);
+            end.verdict = Some(verdict);
+        }
+        spender.round.ends.push(end);
+        if spender.round.exact {
+            found.fetch_min(index, Ordering::Relaxed);
+            return spender.round;
+        }
+    }
+    spender.round
+}
+
+/// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
+/// an acceptable candidate.
+pub(super) fn search(
+    problem: &Problem,
+    limit: u64,
+    patience: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Local {
+    let wanted = problem.spec().solve.candidates;
+    let coarse = Coarse::of(problem);
+    let explored = coarse.as_ref().map_or(problem, |coarse| &coarse.problem);
+    let starts = Starts::new(explored);
+    let closed = explored.task().closed() || explored.task().repeats_first();
+    let matches = (closed && starts.loop_points().len() >= LEAST_MATCHED).then(|| Matches::of(&starts));
+    let exact = exact_objective(problem);
+    let setup = Setup {
+        problem,
+        coarse: coarse.as_ref(),
+        starts: &starts,
+        matches: matches.as_ref(),
+        single: wanted == 1,
+        exact,
+    };
+    let mut local = Local {
+        found: Vec::new(),
+        evaluations: Evaluations::default(),
+        reason: Reason::EvaluationLimit,
+        used: vec!["least-squares".into()],
+    };
+    let mut ends: Vec<End> = Vec::new();
+    let mut best: Option<Candidate> = None;
+    let mut best_merits: Vec<f64> = Vec::new();
+    let (mut known, mut quiet) = (0, 0);
+    let (mut batch, mut draws) = (0, 0);
+    loop {
+        if let Some(reason) = budget.stop_reason() {
+            local.reason = reason;
+            break;
+        }
+        // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
+        let left = limit.saturating_sub(local.evaluations.objective);
+        let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
+        let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
+        let found = AtomicU64::new(u64::MAX);
+        let rounds: Vec<Round> = (batch * BATCH..(batch + 1) * BATCH)
+            .into_par_iter()
+            .map(|index| round(&setup, index, allowance(index), bar, budget, &found))
+            .collect();
+        batch += 1;
+        for round in rounds {
+            draws += round.draws;
+            local.evaluations.objective += round.evaluations;
+            local.evaluations.positions += round.positions;
+            best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
+            ends.extend(round.ends);
+            if round.exact {
+                break;
+            }
+        }
+        ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+        ends.truncate(KEPT);
+        best = judge_from_the_best(problem, &mut ends, wanted, exact);
+        if let Some(reason) = budget.stop_reason() {
+            local.reason = reason;
+            break;
+        }
+        observer(&Progress {
+            phase: "least-squares",
+            evaluations: local.evaluations.objective,
+            budget: limit,
+            best_sum_sq: best.as_ref().or(shown(&ends)).map(|c| c.error.sum_sq),
+            accepted: best.is_some(),
+        });
+        if let Some(best) = &best {
+            let error = best.error.objective;
+            let is_exact = error <= exact;
+            let same = error + (SAME_OPTIMUM * error).max(exact);
+            let hits = best_merits.iter().filter(|merit| **merit <= same).count();
+            if hits >= HITS || (is_exact && wanted == 1) {
+                let now = if wanted == 1 { 1 } else { distinct(problem, accepted(&ends), wanted).len() };
+                quiet = if now > known { 0 } else { quiet + 1 };
+                known = now;
+                if now >= wanted || quiet >= QUIET_BATCHES {
+                    let is_exact = best.error.sum_sq <= exact_sum_sq(problem);
+                    local.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
+                    break;
+                }
+            }
+        }
+        // Draws that cannot be assembled cost no evaluation, and must not go on for ever.
+        let used = local.evaluations.objective;
+        let spent = used.max(draws);
+        if spent >= limit || (spent >= patience && best.is_none()) {
+            local.reason = if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
+            break;
+        }
+    }
+    local.found = ends.into_iter().filter_map(|end| end.verdict.flatten()).collect();
+    local
+}
+
+/// Closed targets of fewer points are not matched with the atlas.
+const LEAST_MATCHED: usize = 12;
+
+/// Judges ends from the least merit up: where one answer is wanted until the first accepted one, else all that
+/// can be among the best.
+fn judge_from_the_best(problem: &Problem, ends: &mut [End], wanted: usize, exact: f64) -> Option<Candidate> {
+    let mut best: Option<Candidate> = None;
+    let mut count = 0;
+    let enough = if wanted == 1 { 1 } else { 8 * wanted };
+    for end in ends.iter_mut() {
+        if count >= enough {
+            break;
+        }
+        let verdict = end.verdict.get_or_insert_with(|| judged(problem, &end.start));
+        let Some(candidate) = verdict.as_ref().filter(|c| c.accepted) else { continue };
+        count += 1;
+        let better = best.as_ref().is_none_or(|b| {
+            candidate.error.objective.max(exact) < b.error.objective.max(exact)
+        });
+        if better {
+            best = Some(candidate.clone());
+        }
+    }
+    best
+}
+
+fn accepted(ends: &[End]) -> Vec<Candidate> {
+    ends.iter().filter_map(|end| end.verdict.clone().flatten()).filter(|c| c.accepted).collect()
+}
+
+fn shown(ends: &[End]) -> Option<&Candidate> {
+    ends.iter().find_map(|end| end.verdict.as_ref()?.as_ref())
+}
