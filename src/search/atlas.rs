@@ -1,6 +1,6 @@
-//! An atlas of closed coupler curves: which linkages draw something like a given closed target?
+//! An atlas of coupler curves: which linkages draw something like a given target?
 //!
-//! Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier coefficients,
+//! *Closed targets.* Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier coefficients,
 //!
 //! ```text
 //! F_k = sum_m P_m e^{-2 pi i k m / M},   k = +-1 .. +-K,   divided by sqrt(sum |F_k|^2)
@@ -9,8 +9,13 @@
 //! at M points spaced evenly along the curve. They do not change when the curve is moved, turned, scaled or
 //! begun elsewhere; run backwards, F_k and F_-k change places. (Descriptors of closed curves: Zahn and Roskies
 //! 1972; for coupler curves McGarva and Mullineux 1993.) The nearest entries are then laid onto the target by
-//! similarity at every shift (Procrustes), and the best give starts. The atlas is drawn from a fixed stream,
-//! once in a process, when it is first asked for.
+//! similarity at every shift (Procrustes), and the best give starts.
+//!
+//! *Open targets.* [`ARCS`] stretches of each entry's curve, of random begin and length, stand in a second
+//! atlas as M points c_m evenly along them, centred and of unit norm. With the target t_m alike, what a
+//! similarity leaves of the target is 1 - |sum conj(c_m) t_m|^2.
+//!
+//! Both are drawn from a fixed stream, once in a process, when they are first asked for, on all cores.
 
 use super::starts::{Start, Starts, draw_ratios};
 use crate::linkage::mobility::Mobility;
@@ -82,6 +87,26 @@ impl Entry {
         }
         let along = lengths(&points)?;
         Some(Traced { points, along })
+    }
+}
+
+impl Traced {
+    /// The corner before a place in [0, 1) of the curve, and the part of the way to the next.
+    fn locate(&self, place: f64) -> (usize, f64) {
+        let corner = self.along.partition_point(|length| *length <= place).clamp(1, TRACED) - 1;
+        let (from, to) = (self.along[corner], self.along[corner + 1]);
+        (corner, if to > from { (place - from) / (to - from) } else { 0.0 })
+    }
+
+    fn point(&self, place: f64) -> Complex {
+        let (corner, part) = self.locate(place);
+        let (from, to) = (self.points[corner], self.points[(corner + 1) % TRACED]);
+        from + (to - from) * part
+    }
+
+    fn parameter(&self, place: f64) -> f64 {
+        let (corner, part) = self.locate(place);
+        ((corner as f64 + 0.5 + part) / TRACED as f64).rem_euclid(1.0)
     }
 }
 
@@ -175,12 +200,94 @@ fn atlas() -> &'static [Entry] {
     })
 }
 
+/// A stretch of an entry's curve.
+#[derive(Clone, Copy, Debug)]
+struct Arc {
+    entry: u32,
+    /// Where it begins and how long it is, in parts of the curve's length.
+    begin: f32,
+    span: f32,
+    /// Whether it keeps to one assembly.
+    one_branch: bool,
+    points: [[f32; 2]; ON_ARC],
+}
+
+/// Points on an arc.
+const ON_ARC: usize = 12;
+/// Arcs of an entry.
+const ARCS: usize = 3;
+/// Their least and greatest length, in parts of the curve's.
+const SPANS: (f64, f64) = (0.1, 0.97);
+
+/// Centred and of unit norm; `None` where all points are one.
+fn normalised(points: &[Complex]) -> Option<[[f32; 2]; ON_ARC]> {
+    let middle = points.iter().sum::<Complex>() / points.len() as f64;
+    let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
+    let mut out = [[0.0; 2]; ON_ARC];
+    for (out, p) in out.iter_mut().zip(points) {
+        let q = (p - middle) / norm;
+        *out = [q.re as f32, q.im as f32];
+    }
+    norm.is_normal().then_some(out)
+}
+
+impl Arc {
+    fn of(index: usize, entry: &Entry, traced: &Traced, stream: &mut Stream) -> Option<Arc> {
+        let begin = uniform(stream, 0.0, 1.0);
+        let span = uniform(stream, SPANS.0, SPANS.1);
+        let mut points = [Complex::new(0.0, 0.0); ON_ARC];
+        for (m, p) in points.iter_mut().enumerate() {
+            *p = traced.point((begin + span * m as f64 / (ON_ARC - 1) as f64).rem_euclid(1.0));
+        }
+        let one_branch = entry.arc.is_none() || {
+            // psi = 2 pi parameter: the toggles stand at a quarter and at three quarters.
+            let half = |s: f64| (traced.parameter(s.rem_euclid(1.0)) + 0.25).rem_euclid(1.0) < 0.5;
+            let halves: Vec<bool> = (0..=24).map(|m| half(begin + span * f64::from(m) / 24.0)).collect();
+            halves.iter().all(|h| *h == halves[0])
+        };
+        let points = normalised(&points)?;
+        Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })
+    }
+
+    /// What a similarity leaves of a target, when the arc runs as the target does and when it runs against it.
+    fn misfits(&self, target: &[[f32; 2]; ON_ARC]) -> [f32; 2] {
+        let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
+        for m in 0..ON_ARC {
+            let t = target[m];
+            let (c, r) = (self.points[m], self.points[ON_ARC - 1 - m]);
+            ahead = [ahead[0] + c[0] * t[0] + c[1] * t[1], ahead[1] + c[0] * t[1] - c[1] * t[0]];
+            back = [back[0] + r[0] * t[0] + r[1] * t[1], back[1] + r[0] * t[1] - r[1] * t[0]];
+        }
+        [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
+    }
+}
+
+fn arcs() -> &'static [Arc] {
+    static ARC_ATLAS: OnceLock<Vec<Arc>> = OnceLock::new();
+    ARC_ATLAS.get_or_init(|| {
+        let of_chunk = |(chunk, entries): (usize, &[Entry])| -> Vec<Arc> {
+            let mut draws = stream(SEED + 1, chunk as u64);
+            let mut out = Vec::with_capacity(ARCS * entries.len());
+            for (i, entry) in entries.iter().enumerate() {
+                let Some(traced) = entry.trace() else { continue };
+                for _ in 0..ARCS {
+                    out.extend(Arc::of(chunk * CHUNK + i, entry, &traced, &mut draws));
+                }
+            }
+            out
+        };
+        atlas().par_chunks(CHUNK).enumerate().flat_map_iter(of_chunk).collect()
+    })
+}
+
 /// An entry laid onto a target.
 #[derive(Clone, Copy, Debug)]
 struct Laid {
     entry: &'static Entry,
     /// Where on the curve (in parts of its length from its first traced point) the target begins.
     begin: f64,
+    /// How much of the curve it takes.
+    span: f64,
     /// +1: the target runs as the parameter grows, -1: against it.
     direction: f64,
     /// The part of the target's spread that is left.
@@ -194,8 +301,61 @@ pub struct Matches {
 }
 
 impl Matches {
-    /// Matches for the closed target of a problem; none where no entry may be used.
+    /// Matches for the target of a problem; none where no entry may be used.
     pub fn of(starts: &Starts<'_>) -> Matches {
+        let task = starts.problem().task();
+        if task.closed() || task.repeats_first() { Matches::closed(starts) } else { Matches::open(starts) }
+    }
+
+    fn open(starts: &Starts<'_>) -> Matches {
+        let none = Matches { laid: Vec::new() };
+        let problem = starts.problem();
+        let (points, along) = (problem.task().points(), starts.arc());
+        // ON_ARC points evenly along the target.
+        let mut even = Vec::with_capacity(ON_ARC);
+        for m in 0..ON_ARC {
+            let s = m as f64 / (ON_ARC - 1) as f64;
+            let next = along.partition_point(|length| *length < s).clamp(1, points.len() - 1);
+            let (from, to) = (along[next - 1], along[next]);
+            let part = if to > from { ((s - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+            even.push(points[next - 1] + (points[next] - points[next - 1]) * part);
+        }
+        let Some(target) = normalised(&even) else { return none };
+        let types = problem.types();
+        let senses = [1.0, -1.0].map(|sense| problem.directions().contains(&sense));
+        let mut near: Vec<(f32, usize, f64)> = Vec::new();
+        for (index, arc) in arcs().iter().enumerate() {
+            let [ahead, back] = arc.misfits(&target);
+            let (misfit, direction) = match senses {
+                [true, true] => if back < ahead { (back, -1.0) } else { (ahead, 1.0) },
+                [true, false] => (ahead, 1.0),
+                _ => (back, -1.0),
+            };
+            let kind = || atlas()[arc.entry as usize].kind;
+            let usable =
+                (arc.one_branch || problem.branch_any()) && (types.is_empty() || types.contains(&kind()));
+            if usable {
+                near.push((misfit, index, direction));
+            }
+        }
+        let order = |one: &(f32, usize, f64), other: &(f32, usize, f64)| {
+            one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
+        };
+        if near.len() > LAID {
+            near.select_nth_unstable_by(LAID, order);
+            near.truncate(LAID);
+        }
+        near.sort_by(order);
+        let lay = |&(misfit, index, direction): &(f32, usize, f64)| {
+            let arc = &arcs()[index];
+            let (begin, span) = (f64::from(arc.begin), f64::from(arc.span));
+            let begin = if direction > 0.0 { begin } else { begin + span };
+            Laid { entry: &atlas()[arc.entry as usize], begin, span, direction, misfit: f64::from(misfit) }
+        };
+        Matches { laid: near.iter().map(lay).collect() }
+    }
+
+    fn closed(starts: &Starts<'_>) -> Matches {
         let none = Matches { laid: Vec::new() };
         let problem = starts.problem();
         let points: Vec<Complex> = starts.loop_points().to_vec();
@@ -248,7 +408,8 @@ impl Matches {
                     }
                     let misfit = 1.0 - inner.norm_sqr() / (own * spread);
                     if best.is_none_or(|b| misfit < b.misfit) {
-                        best = Some(Laid { entry, begin: shift as f64 / EVEN as f64, direction, misfit });
+                        let begin = shift as f64 / EVEN as f64;
+                        best = Some(Laid { entry, begin, span: 1.0, direction, misfit });
                     }
                 }
             }
@@ -275,12 +436,9 @@ impl Matches {
         let traced = laid.entry.trace()?;
         let mut positions = Vec::with_capacity(starts.arc().len());
         for s in starts.arc() {
-            let along = (laid.begin + laid.direction * s).rem_euclid(1.0);
-            let corner = traced.along.partition_point(|length| *length <= along).clamp(1, TRACED) - 1;
-            let (from, to) = (traced.along[corner], traced.along[corner + 1]);
-            let part = if to > from { (along - from) / (to - from) } else { 0.0 };
-            let parameter = (corner as f64 + 0.5 + part) / TRACED as f64;
-            positions.push(laid.entry.at(parameter.rem_euclid(1.0))?);
+            let place = (laid.begin + laid.direction * laid.span * s).rem_euclid(1.0);
+            let parameter = traced.parameter(place);
+            positions.push(laid.entry.at(parameter)?);
         }
         starts.from_positions(&laid.entry.ratios, laid.entry.kind, laid.direction, &positions)
     }

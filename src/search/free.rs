@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Starts drawn and screened in a round.
 const SCREEN: usize = 160;
 /// Matches of the atlas taken in a round.
-const MATCHED: usize = 24;
+const MATCHED: usize = 48;
 /// Starts fitted for a few steps.
 const SHORT: usize = 8;
 /// Starts fitted on.
@@ -141,8 +141,9 @@ fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budge
             drawn.push((promise, start));
         }
     };
-    let first = index as usize * MATCHED;
-    match setup.matches.filter(|matches| first < matches.len()) {
+    // Every other round takes matches, as long as there are any.
+    let first = index as usize / 2 * MATCHED;
+    match setup.matches.filter(|matches| index % 2 == 0 && first < matches.len()) {
         Some(matches) => {
             for rank in first..(first + MATCHED).min(matches.len()) {
                 if spender.left() > 0 {
@@ -226,8 +227,7 @@ pub(super) fn search(
     let coarse = Coarse::of(problem);
     let explored = coarse.as_ref().map_or(problem, |coarse| &coarse.problem);
     let starts = Starts::new(explored);
-    let closed = explored.task().closed() || explored.task().repeats_first();
-    let matches = (closed && starts.loop_points().len() >= LEAST_MATCHED).then(|| Matches::of(&starts));
+    let matches = (starts.loop_points().len() >= LEAST_MATCHED).then(|| Matches::of(&starts));
     let exact = exact_objective(problem);
     let setup = Setup {
         problem,
@@ -315,7 +315,7 @@ pub(super) fn search(
     local
 }
 
-/// Closed targets of fewer points are not matched with the atlas.
+/// Targets of fewer points are not matched with the atlas.
 const LEAST_MATCHED: usize = 12;
 
 /// Judges ends from the least merit up: where one answer is wanted until the first accepted one, else all that
