@@ -25,13 +25,15 @@
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
+//! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
+//! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
 //! | [`problem_file`], [`points_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
-//! | [`report`] | what a person sees: pure functions of the record or of an analysis | linkage, task, problem, record, analysis |
+//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
@@ -48,6 +50,7 @@ pub mod points_file;
 pub mod problem;
 pub mod problem_file;
 pub mod problem_template;
+pub mod published;
 pub mod record;
 pub mod report;
 pub mod results_folder;
@@ -55,6 +58,7 @@ pub mod run;
 pub mod schema;
 pub mod search;
 pub mod solve;
+pub mod suite;
 pub mod task;
 mod toml_text;
 mod toml_values;

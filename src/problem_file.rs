@@ -52,6 +52,8 @@ pub struct ProblemFile {
 pub struct Expect {
     /// The least sum of squared errors that is known.
     pub best_known_sum_sq: Option<f64>,
+    /// What a run has to reach to count as a hit; absent: the best known sum.
+    pub goal_sum_sq: Option<f64>,
     /// Answers that were published.
     pub published: Vec<Published>,
 }
@@ -279,6 +281,7 @@ fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expec
         other => Ok(other),
     };
     let best = not_negative("expect.best_known_sum_sq".into(), raw.best_known_sum_sq.map(|n| n.0))?;
+    let goal = not_negative("expect.goal_sum_sq".into(), raw.goal_sum_sq.map(|n| n.0))?;
     let mut published = Vec::with_capacity(raw.published.len());
     for (i, OnlyTable(p)) in raw.published.into_iter().enumerate() {
         let path = |key: &str| format!("expect.published.{i}.{key}");
@@ -306,5 +309,5 @@ fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expec
             note: p.note,
         });
     }
-    Ok(Expect { best_known_sum_sq: best, published })
+    Ok(Expect { best_known_sum_sq: best, goal_sum_sq: goal, published })
 }

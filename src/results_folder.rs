@@ -177,23 +177,32 @@ impl ResultsFolder {
     }
 
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
-        let target = self.path.join(name);
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(TEMPORARY);
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::PermissionsExt;
-            // Readable as any new file: what the user's mask leaves of it.
-            builder.permissions(fs::Permissions::from_mode(0o666));
-        }
-        let written = builder.tempfile_in(&self.path).and_then(|mut file| {
-            file.write_all(bytes)?;
-            file.as_file().sync_data()?;
-            file.persist(&target).map_err(|e| e.error)?;
-            Ok(())
-        });
-        written.map_err(|e| FolderError::io(&target, e))
+        replace_file(&self.path, name, bytes)
     }
+}
+
+/// Replaces the file `name` of a folder that is there: written to a temporary file beside it first and renamed,
+/// so that a reader sees the old file or the new one, never half of either.
+///
+/// # Errors
+/// [`FolderError::Io`] with the file; what was there before stays.
+pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
+    let target = folder.join(name);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(TEMPORARY);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // Readable as any new file: what the user's mask leaves of it.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    let written = builder.tempfile_in(folder).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.as_file().sync_data()?;
+        file.persist(&target).map_err(|e| e.error)?;
+        Ok(())
+    });
+    written.map_err(|e| FolderError::io(&target, e))
 }
 
 impl Drop for ResultsFolder {

@@ -105,14 +105,15 @@ fn one_type_may_stand_without_a_list() {
 
 #[test]
 fn what_is_expected_never_reaches_the_specification() {
-    let expect = "[expect]\nbest_known_sum_sq = 0.5\n[[expect.published]]\nsource = \"a, 2000\"\n\
+    let expect = "[expect]\nbest_known_sum_sq = 0.5\ngoal_sum_sq = 0.75\n\
+                  [[expect.published]]\nsource = \"a, 2000\"\n\
                   vector = []\n\
                   [[expect.published]]\nsource = \"b, 2001\"\nvector = [1, 2, 3, 4, 5, 6, 7, 8, 9]\nt1 = -1\n\
                   crank_deg = [0, 10]\nprinted_sum_sq = 0.0337\n";
     let (without, with) = (parsed(PLAIN), parsed(&format!("{PLAIN}{expect}")));
     assert_eq!(without.spec, with.spec);
     let expect = with.expect.unwrap();
-    assert_eq!(expect.best_known_sum_sq, Some(0.5));
+    assert_eq!((expect.best_known_sum_sq, expect.goal_sum_sq), (Some(0.5), Some(0.75)));
     assert_eq!(expect.published[1].vector.len(), 9);
     assert_eq!(expect.published[1].t1, Some(AssemblyMode::Minus));
     assert_eq!(expect.published[1].printed_sum_sq, Some(0.0337));

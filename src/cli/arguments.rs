@@ -38,6 +38,8 @@ pub enum Command {
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
     Cognates(Cognates),
+    /// Run problems whose answer is known from many seeds, beside what was published
+    Suite(Suite),
     /// Print the JSON Schema of a file, for editors
     Schema {
         /// problem or linkage
@@ -173,6 +175,26 @@ pub struct Cognates {
     /// Draw all three together
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+}
+
+/// Options of `suite`.
+#[derive(Debug, Args)]
+pub struct Suite {
+    /// Only problems whose name or file name holds this
+    #[arg(value_name = "FILTER")]
+    pub filter: Option<String>,
+    /// The folder of the problem files; those with `best_known_sum_sq` in `[expect]` are run
+    #[arg(long, value_name = "DIR", default_value = crate::cli::suite::PROBLEMS)]
+    pub problems: PathBuf,
+    /// Seeds 1 to N for each problem
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: u64,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+    /// Write results/literature.md and results/literature.json too (all problems, no FILTER)
+    #[arg(long, conflicts_with = "filter")]
+    pub write: bool,
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -10,6 +10,7 @@ mod compare;
 mod interrupt;
 mod new;
 mod progress;
+mod suite;
 mod synth;
 mod terminal;
 mod verify;
@@ -68,6 +69,7 @@ fn dispatch(command: Command) -> Ended {
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
+        Command::Suite(options) => suite::run(&options),
         Command::Schema { kind } => {
             terminal::answer(&format!("{:#}\n", crate::schema::schema(kind)));
             Ended::Good

@@ -1,6 +1,7 @@
 //! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
 
 use crate::search::Progress;
+use crate::suite::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
@@ -11,6 +12,60 @@ use std::time::{Duration, Instant};
 const QUIET_FOR: Duration = Duration::from_millis(700);
 /// Plain lines come at most this often.
 const LINE_EVERY: Duration = Duration::from_secs(5);
+/// The bar of a suite moves at most this often.
+const BAR_EVERY: Duration = Duration::from_millis(100);
+
+/// Shows where a suite stands.
+pub struct SuiteShown {
+    start: Instant,
+    bar: Option<ProgressBar>,
+    last: Mutex<Instant>,
+}
+
+impl SuiteShown {
+    /// Progress from now on.
+    pub fn new() -> Self {
+        let bar = stderr().is_terminal().then(|| {
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr_with_hz(10));
+            let style = "[{bar:24}] {pos} of {len} runs, {msg}";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        SuiteShown { start: Instant::now(), bar, last: Mutex::new(Instant::now()) }
+    }
+
+    /// Takes a word from the suite.
+    pub fn update(&self, step: &Step<'_>) {
+        if self.start.elapsed() < QUIET_FOR {
+            return;
+        }
+        // A word comes many times during a run whose time is measured: most are dropped at once.
+        let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
+        let Ok(mut last) = self.last.lock() else { return };
+        if last.elapsed() < every {
+            return;
+        }
+        *last = Instant::now();
+        let name = crate::report::text::clean(step.problem);
+        let what = format!("{name}: {}, seed {}", step.method.name(), step.seed);
+        let Some(bar) = &self.bar else {
+            super::terminal::tell(&format!("{what}, {} of {} runs done", step.done, step.total));
+            return;
+        };
+        bar.set_length(step.total);
+        bar.set_position(step.done);
+        bar.set_message(what);
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
 
 /// Shows where a search stands.
 pub struct Shown {

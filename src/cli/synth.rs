@@ -42,7 +42,7 @@ pub fn run(options: &Synth) -> Ended {
             }
         }
     }
-    let cancel = interrupt::watch();
+    let cancel = interrupt::watch("saving the best so far");
     let several = problems.len() > 1;
     let mut finished: Vec<Record> = Vec::new();
     let mut ended = Ended::Good;

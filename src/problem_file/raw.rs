@@ -177,6 +177,8 @@ pub(crate) struct RawSolve {
 pub(crate) struct RawExpect {
     /// The least sum of squared errors that is known.
     pub best_known_sum_sq: Option<Number>,
+    /// What a run has to reach to count as a hit; absent: best_known_sum_sq.
+    pub goal_sum_sq: Option<Number>,
     /// Answers that were published.
     #[serde(default)]
     pub published: Vec<OnlyTable<RawPublished>>,

@@ -13,6 +13,7 @@
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
 //! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`analysis_sheets::cognates_svg`] |
 //! | several results | [`compare::compare`] |
+//! | a suite of problems | [`suite::suite_text`], [`suite::suite_markdown`] |
 
 pub mod analysis_csv;
 pub mod analysis_sheets;
@@ -31,6 +32,7 @@ mod parts;
 pub mod plot;
 mod scene;
 mod sheet;
+pub mod suite;
 pub mod svg;
 pub mod table;
 pub mod text;

@@ -1,0 +1,55 @@
+//! What published answers really give: the vectors of the literature, evaluated by our own referee.
+//!
+//! A vector is [r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0] with
+//! P = (x0, y0) + e^{i theta0} (r2 e^{i theta2} + (rcx + i rcy) e^{i theta3}), both angles measured from the
+//! ground line (Cabrera, Simon and Prado 2002, section 2). So A = (x0, y0), B = A + r1 e^{i theta0}, a = r2,
+//! b = r3, c = r4, and P lies (rcx, rcy) along and across C -> D.
+
+use crate::assess::assess;
+use crate::linkage::{AssemblyMode, Complex, FourBar};
+use crate::problem::Problem;
+use crate::problem_file::Published;
+use crate::record::Candidate;
+use crate::search::nearest::nearest_positions;
+use crate::search::rank::compare;
+
+/// The linkage of a vector [ground, crank, coupler, follower, rcx, rcy, x0, y0, theta0], theta0 in radians.
+///
+/// `None` where the nine numbers are no linkage: a negative or zero link, a number that is not finite.
+///
+/// ```
+/// use linkwright::linkage::AssemblyMode;
+/// use linkwright::published::linkage_of;
+/// let vector = [4.0, 1.0, 3.0, 3.0, 1.5, 2.0, 5.0, 6.0, 0.0];
+/// let l = linkage_of(&vector, AssemblyMode::Plus).expect("four links and a point");
+/// assert_eq!((l.follower_pivot().re, l.crank(), l.crank_side()), (9.0, 1.0, 2.5));
+/// ```
+pub fn linkage_of(vector: &[f64; 9], assembly: AssemblyMode) -> Option<FourBar> {
+    let [ground, crank, coupler, follower, along, across, x, y, turned] = *vector;
+    let a = Complex::new(x, y);
+    let b = a + Complex::from_polar(ground, turned);
+    let links = [crank, coupler, follower];
+    FourBar::with_coupler_offset([a, b], links, Complex::new(along, across), assembly).ok()
+}
+
+/// A published answer as a candidate of the problem, every figure and verdict by our referee.
+///
+/// Its points are met as the problem's timing asks ([`nearest_positions`]): at the prescribed crank angles,
+/// with the offset that suits the vector best where it is free; each at its nearest crank angle with free
+/// timing. The crank angles that were published are not used. Where the source leaves the assembly open the
+/// better one counts. `None` without a vector, for numbers that are no linkage, and where the loop is open at a point.
+pub fn evaluate(problem: &Problem, published: &Published) -> Option<Candidate> {
+    let vector: &[f64; 9] = published.vector.as_slice().try_into().ok()?;
+    let judged = |assembly: AssemblyMode| {
+        let linkage = linkage_of(vector, assembly)?;
+        let (crank_deg, assemblies) = nearest_positions(problem, &linkage)?;
+        assess(problem, &linkage, &crank_deg, &assemblies)
+    };
+    match published.t1 {
+        Some(assembly) => judged(assembly),
+        None => [AssemblyMode::Plus, AssemblyMode::Minus]
+            .into_iter()
+            .filter_map(judged)
+            .min_by(|one, other| compare(problem, one, other)),
+    }
+}

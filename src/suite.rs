@@ -1,0 +1,403 @@
+//! The suite: problems whose answer is known, each from many seeds, beside the population searches at equal
+//! evaluations and beside what was published.
+//!
+//! Every run is [`run`] on the problem as its file has it, with two changes: the seed, and one candidate
+//! asked for. Runs go one after the other on one thread, so that their times can be compared. What stands in a
+//! [`Suite`] is the referee's; nothing but the times differs from one machine to the next.
+
+pub mod statistics;
+
+use crate::problem::Problem;
+use crate::problem::spec::{MAX_EVALUATIONS, Method, ProblemSpec};
+use crate::problem_file::{ProblemFile, Published};
+use crate::published;
+use crate::record::{Reason, Tool};
+use crate::run::{Context, Job, RunError, run};
+use crate::search::rank::exact_sum_sq;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use serde::Serialize;
+use statistics::{Bar, Summary};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The format of a suite as JSON.
+pub const FORMAT: u32 = 1;
+/// The searches on the design vector that stand beside the problem's own method.
+pub const POPULATIONS: [Method; 2] = [Method::Genetic, Method::DifferentialEvolution];
+
+/// What a suite is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Seeds 1 to this many for each problem.
+    pub seeds: u64,
+    /// Seeds 1 to this many, and not more than `seeds`, for each population search.
+    pub population_seeds: u64,
+    /// The command that makes the same suite again; kept with the figures.
+    pub command: String,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { seeds: 10, population_seeds: 5, command: String::new() }
+    }
+}
+
+impl Options {
+    fn population_seeds(&self) -> u64 {
+        self.population_seeds.min(self.seeds)
+    }
+
+    /// How many runs this makes for so many problems.
+    pub fn runs(&self, problems: usize) -> u64 {
+        problems as u64 * (self.seeds + POPULATIONS.len() as u64 * self.population_seeds())
+    }
+}
+
+/// The run that a suite is at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<'a> {
+    /// Which problem.
+    pub problem: &'a str,
+    /// Which method.
+    pub method: Method,
+    /// Which seed.
+    pub seed: u64,
+    /// Runs that are over.
+    pub done: u64,
+    /// Runs in all.
+    pub total: u64,
+}
+
+/// Whoever wants to know where a suite stands: told at the beginning of a run and now and then during it.
+pub type StepObserver<'a> = dyn Fn(&Step<'_>) + Sync + 'a;
+
+/// Why a suite cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SuiteError {
+    /// A problem that makes no search.
+    #[error("{problem}: {source}")]
+    Run {
+        /// Its name.
+        problem: String,
+        /// Why.
+        source: RunError,
+    },
+    /// The thread that it runs on cannot be had.
+    #[error("no thread to search with: {0}")]
+    Thread(String),
+}
+
+/// Problems, seeds, figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Suite {
+    /// [`FORMAT`].
+    pub format: u32,
+    /// What made it.
+    pub tool: Tool,
+    /// The command that makes it again.
+    pub command: String,
+    /// Seeds 1 to this many were asked for.
+    pub seeds: u64,
+    /// Threads of every search: 1.
+    pub threads: usize,
+    /// Whether every run came to its end; not after a cancellation.
+    pub complete: bool,
+    /// The problems, as they were given; after a cancellation those that were begun.
+    pub problems: Vec<ProblemResult>,
+}
+
+/// One problem of a suite.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProblemResult {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from.
+    pub source: Option<String>,
+    /// How many target points it has.
+    pub points: usize,
+    /// The least sum of squares that is known.
+    pub best_known_sum_sq: f64,
+    /// What a run has to reach to count as a hit.
+    pub goal_sum_sq: f64,
+    /// The method that the file asks for, from every seed.
+    pub search: MethodResult,
+    /// The population searches at the evaluations that `search` used in the median.
+    pub populations: Vec<MethodResult>,
+    /// An accepted answer smaller than the best known by more than one part in a million: the smallest of all
+    /// runs.
+    pub smaller_than_best_known: Option<Smaller>,
+    /// What was published, evaluated again.
+    pub published: Vec<PublishedResult>,
+    /// The one of `published` with the least sum by our evaluation; of those that cannot be evaluated the least
+    /// printed one.
+    pub best_published: Option<PublishedResult>,
+}
+
+/// One method on one problem.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MethodResult {
+    /// Which.
+    pub method: Method,
+    /// Evaluations of the objective that each run had at most.
+    pub evaluations_at_most: u64,
+    /// The figures of all runs.
+    pub summary: Summary,
+    /// The runs, by seed.
+    pub runs: Vec<Run>,
+}
+
+/// One run: one problem, one method, one seed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// The seed.
+    pub seed: u64,
+    /// Whether its first candidate is acceptable; `false` without one.
+    pub accepted: bool,
+    /// The sum of squares of its first candidate at the crank angles; none without a candidate.
+    pub sum_sq: Option<f64>,
+    /// The sum of squared distances of the points to that candidate's whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+    /// How often the objective was computed.
+    pub evaluations: u64,
+    /// Seconds from the checked problem to ranked, refereed candidates.
+    pub search_s: f64,
+    /// Why it ended.
+    pub reason: Reason,
+}
+
+/// An accepted answer that is smaller than the best known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Smaller {
+    /// Whose.
+    pub method: Method,
+    /// From which seed.
+    pub seed: u64,
+    /// Its sum of squares.
+    pub sum_sq: f64,
+}
+
+/// A published answer, evaluated again.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PublishedResult {
+    /// Author and year.
+    pub source: String,
+    /// The sum that was printed, where it could be read in the source.
+    pub printed_sum_sq: Option<f64>,
+    /// The sum that the vector has by our referee; none without a vector that can be assembled at every point.
+    pub sum_sq: Option<f64>,
+    /// The same to the whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+    /// Whether it meets the problem's own requirements.
+    pub accepted: Option<bool>,
+    /// The requirements that it does not meet.
+    pub unmet: Vec<String>,
+}
+
+impl Suite {
+    /// Whether every seed of every problem has an accepted answer, and none is missing.
+    pub fn is_accepted(&self) -> bool {
+        self.complete && self.problems.iter().all(|p| p.search.summary.accepted == p.search.runs.len())
+    }
+}
+
+/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] by the method of its file, then by each of
+/// [`POPULATIONS`] with the median of the evaluations that this took. Problems that expect no
+/// `best_known_sum_sq` are left out.
+///
+/// `cancel` ends the run that is under way; that run does not count, and what came before it is given.
+///
+/// # Errors
+/// [`SuiteError`].
+pub fn suite(
+    problems: &[ProblemFile],
+    options: &Options,
+    cancel: &AtomicBool,
+    observer: &StepObserver<'_>,
+) -> Result<Suite, SuiteError> {
+    let pool =
+        ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| SuiteError::Thread(e.to_string()))?;
+    let known: Vec<(&ProblemFile, f64)> =
+        problems.iter().filter_map(|file| Some((file, file.expect.as_ref()?.best_known_sum_sq?))).collect();
+    let mut runner = Runner { pool, cancel, observer, done: 0, total: options.runs(known.len()) };
+    let mut results = Vec::with_capacity(known.len());
+    for (file, best_known) in known {
+        let result = runner
+            .problem(file, best_known, options)
+            .map_err(|source| SuiteError::Run { problem: file.name.clone(), source })?;
+        if !result.search.runs.is_empty() {
+            results.push(result);
+        }
+        if runner.cancelled() {
+            break;
+        }
+    }
+    Ok(Suite {
+        format: FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        command: options.command.clone(),
+        seeds: options.seeds,
+        threads: 1,
+        complete: runner.done == runner.total,
+        problems: results,
+    })
+}
+
+/// What the runs of a suite share.
+struct Runner<'a> {
+    pool: ThreadPool,
+    cancel: &'a AtomicBool,
+    observer: &'a StepObserver<'a>,
+    done: u64,
+    total: u64,
+}
+
+impl Runner<'_> {
+    fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
+    fn problem(
+        &mut self,
+        file: &ProblemFile,
+        best_known: f64,
+        options: &Options,
+    ) -> Result<ProblemResult, RunError> {
+        let problem = Problem::new(file.spec.clone())?;
+        let expect = file.expect.clone().unwrap_or_default();
+        let bar =
+            Bar { goal: expect.goal_sum_sq.unwrap_or(best_known), best_known, exact: exact_sum_sq(&problem) };
+        let search = self.method(file, file.spec.clone(), options.seeds, &bar)?;
+        let mut populations = Vec::with_capacity(POPULATIONS.len());
+        for method in POPULATIONS {
+            let Some(evaluations) = search.summary.median_evaluations.filter(|_| !self.cancelled()) else {
+                break;
+            };
+            let mut spec = file.spec.clone();
+            spec.solve.method = method;
+            spec.solve.evaluations = evaluations.clamp(1, MAX_EVALUATIONS);
+            populations.push(self.method(file, spec, options.population_seeds(), &bar)?);
+        }
+        let smaller_than_best_known = smallest(std::iter::once(&search).chain(&populations), &bar);
+        let published: Vec<PublishedResult> =
+            expect.published.iter().map(|entry| evaluated(&problem, entry)).collect();
+        Ok(ProblemResult {
+            name: file.name.clone(),
+            source: file.source.clone(),
+            points: problem.task().len(),
+            best_known_sum_sq: bar.best_known,
+            goal_sum_sq: bar.goal,
+            search,
+            populations,
+            smaller_than_best_known,
+            best_published: best_published(&published).cloned(),
+            published,
+        })
+    }
+
+    fn method(
+        &mut self,
+        file: &ProblemFile,
+        mut spec: ProblemSpec,
+        seeds: u64,
+        bar: &Bar,
+    ) -> Result<MethodResult, RunError> {
+        spec.solve.candidates = 1;
+        let (method, evaluations_at_most) = (spec.solve.method, spec.solve.evaluations);
+        let mut job = Job { name: file.name.clone(), source: file.source.clone(), unit: file.unit, spec };
+        let mut runs = Vec::new();
+        for seed in 1..=seeds {
+            if self.cancelled() {
+                break;
+            }
+            job.spec.solve.seed = seed;
+            let step = Step { problem: &file.name, method, seed, done: self.done, total: self.total };
+            (self.observer)(&step);
+            let context = Context { cancel: self.cancel, observer: &|_| (self.observer)(&step) };
+            let finished = self.pool.install(|| run(&job, &context))?;
+            let record = finished.record;
+            if record.termination.reason == Reason::Cancelled {
+                break;
+            }
+            let first = record.candidates.first();
+            runs.push(Run {
+                seed,
+                accepted: first.is_some_and(|c| c.accepted),
+                sum_sq: first.map(|c| c.error.sum_sq),
+                to_curve_sum_sq: first.map(|c| c.error.to_curve.sum_sq),
+                evaluations: record.evaluations.objective,
+                search_s: finished.search_s,
+                reason: record.termination.reason,
+            });
+            self.done += 1;
+        }
+        Ok(MethodResult { method, evaluations_at_most, summary: Summary::of(&runs, bar), runs })
+    }
+}
+
+/// The smallest accepted answer of all runs, where it is smaller than the best known.
+fn smallest<'a>(methods: impl Iterator<Item = &'a MethodResult>, bar: &Bar) -> Option<Smaller> {
+    methods
+        .filter_map(|of| {
+            let best = of.summary.best.as_ref().filter(|best| bar.is_beaten_by(best.sum_sq))?;
+            Some(Smaller { method: of.method, seed: best.seed, sum_sq: best.sum_sq })
+        })
+        .min_by(|one, other| one.sum_sq.total_cmp(&other.sum_sq))
+}
+
+fn evaluated(problem: &Problem, entry: &Published) -> PublishedResult {
+    let candidate = published::evaluate(problem, entry);
+    let unmet = candidate.iter().flat_map(|c| &c.requirements).filter(|r| !r.met);
+    PublishedResult {
+        source: entry.source.clone(),
+        printed_sum_sq: entry.printed_sum_sq,
+        sum_sq: candidate.as_ref().map(|c| c.error.sum_sq),
+        to_curve_sum_sq: candidate.as_ref().map(|c| c.error.to_curve.sum_sq),
+        accepted: candidate.as_ref().map(|c| c.accepted),
+        unmet: unmet.map(|r| r.name.clone()).collect(),
+    }
+}
+
+fn best_published(published: &[PublishedResult]) -> Option<&PublishedResult> {
+    let least = |of: fn(&PublishedResult) -> Option<f64>| {
+        let known = published.iter().filter_map(|entry| Some((of(entry)?, entry)));
+        known.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, entry)| entry)
+    };
+    least(|entry| entry.sum_sq).or_else(|| least(|entry| entry.printed_sum_sq))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn published(source: &str, printed_sum_sq: Option<f64>, sum_sq: Option<f64>) -> PublishedResult {
+        PublishedResult {
+            source: source.into(),
+            printed_sum_sq,
+            sum_sq,
+            to_curve_sum_sq: None,
+            accepted: None,
+            unmet: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_best_published_answer_is_the_best_by_our_own_evaluation() {
+        let flattering = published("printed small, evaluates large", Some(1e-9), Some(0.5));
+        let true_best = published("printed large", Some(0.3), Some(0.2));
+        let only_printed = published("no vector", Some(1e-12), None);
+        let all = [flattering, true_best, only_printed];
+        assert_eq!(best_published(&all), Some(&all[1]));
+        assert_eq!(
+            best_published(&all[2..]),
+            Some(&all[2]),
+            "without a vector the printed figure is all there is"
+        );
+        assert_eq!(best_published(&[published("nothing", None, None)]), None);
+    }
+
+    #[test]
+    fn the_number_of_runs_counts_no_more_population_seeds_than_seeds() {
+        let options = |seeds| Options { seeds, ..Options::default() };
+        assert_eq!(options(10).runs(3), 3 * (10 + 2 * 5));
+        assert_eq!(options(2).runs(1), 2 + 2 * 2);
+    }
+}
