@@ -40,8 +40,9 @@ pub const HITS: usize = 6;
 const QUIET_BATCHES: u64 = 6;
 /// Ends that are kept.
 const KEPT: usize = 400;
-/// An end whose merit is beyond this many times the best known one is not finished when one answer is wanted.
-const WORTH_FINISHING: f64 = 1.5;
+/// An end whose merit on the explored points is beyond this many times the best one there is not finished when
+/// one answer is wanted.
+const WORTH_FINISHING: f64 = 4.0;
 
 /// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
 #[derive(Clone, Copy, Debug)]
@@ -64,12 +65,14 @@ struct End {
     verdict: Option<Option<Candidate>>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Round {
     ends: Vec<End>,
     draws: u64,
     evaluations: u64,
     positions: u64,
+    /// The least merit on the explored points.
+    explored: f64,
     /// It met an exact, accepted answer.
     exact: bool,
 }
@@ -123,7 +126,9 @@ fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
 }
 
 fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budget<'_>, found: &AtomicU64) -> Round {
-    let mut spender = Spender { round: Round::default(), allowance, budget };
+    let nothing =
+        Round { ends: Vec::new(), draws: 0, evaluations: 0, positions: 0, explored: f64::INFINITY, exact: false };
+    let mut spender = Spender { round: nothing, allowance, budget };
     // A round before this one has the exact answer: this one is not read.
     let beaten = || found.load(Ordering::Relaxed) < index;
     if beaten() {
@@ -180,7 +185,8 @@ fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budge
         middle.extend(spare);
     }
     by_merit(&mut middle, MIDDLE);
-    let best = middle.first().map_or(f64::INFINITY, |(merit, _)| *merit).min(bar);
+    spender.round.explored = middle.first().map_or(f64::INFINITY, |(merit, _)| *merit);
+    let best = spender.round.explored.min(bar);
     for (merit, start) in middle {
         if beaten() {
             return spender.round;
@@ -246,6 +252,7 @@ pub(super) fn search(
     let mut ends: Vec<End> = Vec::new();
     let mut best: Option<Candidate> = None;
     let mut best_merits: Vec<f64> = Vec::new();
+    let mut bar = f64::INFINITY;
     let (mut known, mut quiet) = (0, 0);
     let (mut batch, mut draws) = (0, 0);
     loop {
@@ -256,7 +263,6 @@ pub(super) fn search(
         // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
         let left = limit.saturating_sub(local.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
-        let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
         let found = AtomicU64::new(u64::MAX);
         let rounds: Vec<Round> = (batch * BATCH..(batch + 1) * BATCH)
             .into_par_iter()
@@ -265,6 +271,7 @@ pub(super) fn search(
         batch += 1;
         for round in rounds {
             draws += round.draws;
+            bar = bar.min(round.explored);
             local.evaluations.objective += round.evaluations;
             local.evaluations.positions += round.positions;
             best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
