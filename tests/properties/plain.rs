@@ -365,7 +365,9 @@ impl Look<'_> {
             }
             self.at_most("the turn of the crank", high - low, 360.0 + 1e-6);
         }
-        if require.direction != DirectionPolicy::Any && (turns || !timed) {
+        // Points in any order have no plain direction.
+        let one_way = if timed { turns } else { require.order == OrderPolicy::Required };
+        if require.direction != DirectionPolicy::Any && one_way {
             let rises = deg[deg.len() - 1] >= deg[0];
             if rises != (require.direction == DirectionPolicy::Ccw) {
                 self.say(format!("the crank turns the wrong way: {deg:?}"));
