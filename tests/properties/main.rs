@@ -18,7 +18,7 @@ use linkwright::verify::verify;
 use problems::case;
 
 const SEED: u64 = 20_261_121;
-const CASES: u64 = 400;
+const CASES: u64 = 300;
 
 /// A range of cases from the environment, to look at one alone: `PROPERTY_CASES=17..18`.
 fn cases() -> std::ops::Range<u64> {

@@ -400,7 +400,7 @@ struct Circuit {
 }
 
 /// Radians a step of (crank, coupler).
-const STEP: f64 = 4e-3;
+const STEP: f64 = 8e-3;
 
 impl Circuit {
     /// The circuit through a position: along the curve |A + a e + b u - B| = c in the angles of e and u.
