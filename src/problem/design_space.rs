@@ -244,6 +244,13 @@ impl DesignSpace {
             .collect()
     }
 
+    /// Whether a number of the design vector is the length of a link or of a side.
+    pub fn is_length(&self, i: usize) -> bool {
+        (4..7).contains(&i)
+            || (i == 2 && self.ground == GroundChart::Polar)
+            || ((7..9).contains(&i) && self.coupler != CouplerChart::Offset)
+    }
+
     fn is_angle(&self, i: usize) -> bool {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }

@@ -16,6 +16,7 @@
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::requirements::{Motion, Requirements, assembly_of};
 use super::{Problem, Setting};
+use crate::linkage::dispatch::vectorised;
 use crate::linkage::mobility::linkage_type;
 use crate::linkage::{Complex, LinkageType, dot, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
@@ -117,7 +118,7 @@ impl<'a> TorusFit<'a> {
     /// Brings positions to the curves of a design; `false` where one cannot get there.
     pub fn settle(&self, x: &Design, positions: &mut Positions) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
-        positions.iter_mut().all(|p| settle(&shape, p))
+        settle_all(&shape, positions)
     }
 }
 
@@ -171,7 +172,10 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
         Some(arc) => arc.parameter(e.arg(), assembly_of(shape, *e, *u)),
     };
     let total = |direction: f64| -> f64 {
-        positions.windows(2).map(|w| (direction * (parameter(&w[1]) - parameter(&w[0]))).rem_euclid(TAU)).sum()
+        positions
+            .windows(2)
+            .map(|w| (direction * (parameter(&w[1]) - parameter(&w[0]))).rem_euclid(TAU))
+            .sum()
     };
     let (forward, backward) = (total(1.0), total(-1.0));
     let runs = if backward < forward { -1.0 } else { 1.0 };
@@ -181,39 +185,142 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
     if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
 }
 
-/// A unit vector turned by an angle, to third order, and kept at unit length without trigonometry:
-/// (1 + i h)/(1 - i h) with h = angle/2, and one Newton step to |z| = 1.
-#[inline]
-fn turn(z: Complex, angle: f64) -> Complex {
-    let h = 0.5 * angle;
-    let h2 = h * h;
-    let turned = z * Complex::new(1.0 - h2, 2.0 * h) * (1.0 / (1.0 + h2));
-    turned * (1.5 - 0.5 * turned.norm_sqr())
+/// The numbers of a shape that positions depend on.
+#[derive(Clone, Copy)]
+struct Loop {
+    /// A - B.
+    ground: [f64; 2],
+    a: f64,
+    b: f64,
+    c2: f64,
+    /// Half a squared miss below this is on the curve.
+    near: f64,
 }
 
-/// Brings a position back to its curve by least-norm Newton steps.
-#[inline]
-fn settle(shape: &Shape, position: &mut [Complex; 2]) -> bool {
-    let largest = shape.crank.max(shape.coupler).max(shape.follower);
-    let near = ON_CURVE * largest * largest;
-    let mut miss = f64::INFINITY;
-    for _ in 0..RETURN_STEPS {
-        let (y, by_e, by_u) = frame(shape, *position);
-        miss = 0.5 * (y.norm_sqr() - shape.follower * shape.follower);
-        if miss.abs() <= near {
-            return true;
+impl Loop {
+    fn of(shape: &Shape) -> Loop {
+        let ground = shape.crank_pivot - shape.follower_pivot;
+        let largest = shape.crank.max(shape.coupler).max(shape.follower);
+        Loop {
+            ground: [ground.re, ground.im],
+            a: shape.crank,
+            b: shape.coupler,
+            c2: shape.follower * shape.follower,
+            near: ON_CURVE * largest * largest,
         }
-        let n2 = by_e * by_e + by_u * by_u;
-        if n2 == 0.0 {
-            return false;
-        }
-        // At most a radian at a time.
-        let long = miss * miss / n2;
-        let step = if long > 1.0 { -miss / (n2 * long.sqrt()) } else { -miss / n2 };
-        position[0] = turn(position[0], step * by_e);
-        position[1] = turn(position[1], step * by_u);
     }
-    miss.abs() <= 16.0 * near
+
+    /// (|Y|^2 - c^2)/2, c_phi, c_w at e = (ex, ey), u = (ux, uy).
+    #[inline(always)]
+    fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
+        let yx = self.ground[0] + self.a * ex + self.b * ux;
+        let yy = self.ground[1] + self.a * ey + self.b * uy;
+        let miss = 0.5 * (yx * yx + yy * yy - self.c2);
+        (miss, self.a * (yy * ex - yx * ey), self.b * (yy * ux - yx * uy))
+    }
+}
+
+/// A unit vector turned by an angle, to third order, and kept at unit length without trigonometry:
+/// (1 + i h)/(1 - i h) with h = angle/2, and one Newton step to |z| = 1.
+#[inline(always)]
+fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
+    let h = 0.5 * angle;
+    let h2 = h * h;
+    let inverse = 1.0 / (1.0 + h2);
+    let (cos, sin) = ((1.0 - h2) * inverse, 2.0 * h * inverse);
+    let (x, y) = (x * cos - y * sin, y * cos + x * sin);
+    let unit = 1.5 - 0.5 * (x * x + y * y);
+    (x * unit, y * unit)
+}
+
+/// Positions as a structure of arrays: the loops over them are plain ones that become vector instructions.
+struct Columns {
+    ex: Vec<f64>,
+    ey: Vec<f64>,
+    ux: Vec<f64>,
+    uy: Vec<f64>,
+}
+
+impl Columns {
+    fn gather(positions: &[[Complex; 2]]) -> Columns {
+        Columns {
+            ex: positions.iter().map(|p| p[0].re).collect(),
+            ey: positions.iter().map(|p| p[0].im).collect(),
+            ux: positions.iter().map(|p| p[1].re).collect(),
+            uy: positions.iter().map(|p| p[1].im).collect(),
+        }
+    }
+
+    fn scatter(&self, positions: &mut [[Complex; 2]]) {
+        for (i, p) in positions.iter_mut().enumerate() {
+            *p = [Complex::new(self.ex[i], self.ey[i]), Complex::new(self.ux[i], self.uy[i])];
+        }
+    }
+
+    /// Moves each position along its own curve by `forward` tau.
+    #[inline(always)]
+    fn step(&mut self, on: &Loop, forward: f64, tau: &[f64]) {
+        let n = self.ex.len();
+        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
+        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let tau = &tau[..n];
+        for i in 0..n {
+            let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+            let step = forward * tau[i] / (by_e * by_e + by_u * by_u).sqrt();
+            (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_u);
+            (ux[i], uy[i]) = turn(ux[i], uy[i], -step * by_e);
+        }
+    }
+
+    /// Brings the positions back to their curves by least-norm Newton steps of at most a radian; `false` where
+    /// one does not get there.
+    #[inline(always)]
+    fn settle(&mut self, on: &Loop) -> bool {
+        let n = self.ex.len();
+        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
+        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let mut limit = on.near;
+        for round in 0..=RETURN_STEPS {
+            let mut off = 0_u64;
+            for i in 0..n {
+                let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
+                // A miss that is no number is no position.
+                off += u64::from(miss > limit || miss.is_nan());
+            }
+            if off == 0 {
+                return true;
+            }
+            if round == RETURN_STEPS {
+                break;
+            }
+            for i in 0..n {
+                let (miss, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+                let n2 = by_e * by_e + by_u * by_u;
+                let long = (miss * miss / n2).sqrt();
+                let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
+                let step = if miss.abs() <= on.near { 0.0 } else { step };
+                (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
+                (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
+            }
+            if round + 2 == RETURN_STEPS {
+                // Rounding may keep a position from the last digit.
+                limit = 16.0 * on.near;
+            }
+        }
+        false
+    }
+}
+
+/// Brings positions back to the curves of a shape.
+fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
+    let on = Loop::of(shape);
+    let mut columns = Columns::gather(positions);
+    let settled = vectorised(
+        #[inline(always)]
+        || columns.settle(&on),
+    );
+    columns.scatter(positions);
+    settled
 }
 
 impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
@@ -285,19 +392,22 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         out: &mut Positions,
     ) -> bool {
         let (Some(old), Some(new)) = (self.space.shape(from), self.space.shape(to)) else { return false };
-        for ((position, &tau), out) in state.iter().zip(tau).zip(out.iter_mut()) {
-            let (_, by_e, by_u) = frame(&old, *position);
-            let length = (by_e * by_e + by_u * by_u).sqrt();
-            if length == 0.0 {
-                return false;
-            }
-            let step = self.forward() * tau / length;
-            *out = [turn(position[0], step * by_u), turn(position[1], -step * by_e)];
-            if !settle(&new, out) {
-                return false;
-            }
-        }
-        true
+        let (from, to) = (Loop::of(&old), Loop::of(&new));
+        let forward = self.forward();
+        let mut columns = Columns::gather(state);
+        let settled = vectorised(
+            #[inline(always)]
+            || {
+                columns.step(&from, forward, tau);
+                columns.settle(&to)
+            },
+        );
+        columns.scatter(out);
+        settled
+    }
+
+    fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
+        vectorised(work)
     }
 
     fn gaps(&self, x: &Design, state: &Positions, gaps: &mut Vec<f64>) -> bool {

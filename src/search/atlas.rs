@@ -27,13 +27,13 @@ use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
 /// Entries.
-const ENTRIES: usize = 30_000;
+const ENTRIES: usize = 20_000;
 /// Entries drawn from one stream.
 const CHUNK: usize = 500;
 /// The seed of the atlas: it is the same for every problem and run.
 const SEED: u64 = 0x61_746c_6173;
 /// Positions at which a curve is traced.
-const TRACED: usize = 96;
+const TRACED: usize = 72;
 /// Points evenly along it.
 const EVEN: usize = 32;
 /// Harmonics on each side.
@@ -80,14 +80,25 @@ impl Entry {
 
     fn trace(&self) -> Option<Traced> {
         let mut points = Vec::with_capacity(TRACED);
-        for i in 0..TRACED {
+        for (i, circle) in unit_circle().iter().enumerate() {
             // Half a step off, so that no sample stands on a toggle.
-            let [e, u] = self.at((i as f64 + 0.5) / TRACED as f64)?;
+            let [e, u] = match self.arc {
+                None => [*circle, coupler_direction(&self.ratios, *circle, self.assembly)?],
+                Some(_) => self.at((i as f64 + 0.5) / TRACED as f64)?,
+            };
             points.push(e * self.ratios.crank + u * self.offset);
         }
         let along = lengths(&points)?;
         Some(Traced { points, along })
     }
+}
+
+/// The crank directions at which a full turn is traced.
+fn unit_circle() -> &'static [Complex; TRACED] {
+    static CIRCLE: OnceLock<[Complex; TRACED]> = OnceLock::new();
+    CIRCLE.get_or_init(|| {
+        std::array::from_fn(|i| Complex::from_polar(1.0, TAU * ((i as f64 + 0.5) / TRACED as f64)))
+    })
 }
 
 impl Traced {
@@ -252,9 +263,7 @@ impl Arc {
     /// What a similarity leaves of a target, when the arc runs as the target does and when it runs against it.
     fn misfits(&self, target: &[[f32; 2]; ON_ARC]) -> [f32; 2] {
         let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
-        for m in 0..ON_ARC {
-            let t = target[m];
-            let (c, r) = (self.points[m], self.points[ON_ARC - 1 - m]);
+        for ((t, c), r) in target.iter().zip(&self.points).zip(self.points.iter().rev()) {
             ahead = [ahead[0] + c[0] * t[0] + c[1] * t[1], ahead[1] + c[0] * t[1] - c[1] * t[0]];
             back = [back[0] + r[0] * t[0] + r[1] * t[1], back[1] + r[0] * t[1] - r[1] * t[0]];
         }
@@ -327,7 +336,13 @@ impl Matches {
         for (index, arc) in arcs().iter().enumerate() {
             let [ahead, back] = arc.misfits(&target);
             let (misfit, direction) = match senses {
-                [true, true] => if back < ahead { (back, -1.0) } else { (ahead, 1.0) },
+                [true, true] => {
+                    if back < ahead {
+                        (back, -1.0)
+                    } else {
+                        (ahead, 1.0)
+                    }
+                }
                 [true, false] => (ahead, 1.0),
                 _ => (back, -1.0),
             };
@@ -385,7 +400,8 @@ impl Matches {
             .filter(|(_, entry)| usable(entry))
             .map(|(index, entry)| (apart(entry), index))
             .collect();
-        let order = |one: &(f32, usize), other: &(f32, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+        let order =
+            |one: &(f32, usize), other: &(f32, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
         if near.len() > LAID {
             near.select_nth_unstable_by(LAID, order);
             near.truncate(LAID);

@@ -19,8 +19,9 @@ use super::rank::{distinct, exact_objective, exact_sum_sq};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
 use crate::problem::Problem;
+use crate::problem::torus::TorusFit;
 use crate::record::{Candidate, Evaluations, Reason};
-use crate::solve::streams::stream;
+use crate::solve::streams::{Stream, normal, stream, uniform};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -28,10 +29,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const SCREEN: usize = 160;
 /// Matches of the atlas taken in a round.
 const MATCHED: usize = 48;
+/// Starts near a known end taken in a round.
+const JITTERED: usize = 40;
 /// Starts fitted for a few steps.
-const SHORT: usize = 8;
+const SHORT: usize = 16;
 /// Starts fitted on.
 const MIDDLE: usize = 3;
+/// Different ends that later rounds start near.
+const LEADING: usize = 8;
 /// Rounds that run side by side before any is read.
 const BATCH: u64 = 8;
 /// The best answer has to come back from this many rounds before it is believed.
@@ -73,6 +78,8 @@ struct Round {
     positions: u64,
     /// The least merit on the explored points.
     explored: f64,
+    /// The ends on the explored points.
+    leaders: Vec<(f64, Start)>,
     /// It met an exact, accepted answer.
     exact: bool,
 }
@@ -125,9 +132,41 @@ fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
     ends.truncate(keep);
 }
 
-fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budget<'_>, found: &AtomicU64) -> Round {
-    let nothing =
-        Round { ends: Vec::new(), draws: 0, evaluations: 0, positions: 0, explored: f64::INFINITY, exact: false };
+/// A start near a known end: every free number of the design moved by a random part of its size, the positions
+/// brought back to the curves.
+fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Option<Start> {
+    let scale = uniform(stream, JITTER.0.ln(), JITTER.1.ln()).exp();
+    let fit = TorusFit::new(problem, end.setting);
+    let mut start = end.clone();
+    let size = problem.task().size();
+    for (i, (value, &(low, high))) in start.design.iter_mut().zip(fit.space().bounds()).enumerate() {
+        let step = normal(stream, 0.0, scale);
+        let unit = if fit.space().is_length(i) { value.abs() } else { size };
+        *value = (*value + step * unit).max(low).min(high);
+    }
+    fit.settle(&start.design, &mut start.positions).then_some(start)
+}
+
+/// Random steps away from a known end, in parts of a length or of the target's size.
+const JITTER: (f64, f64) = (0.01, 0.5);
+
+fn round(
+    setup: &Setup<'_>,
+    index: u64,
+    allowance: u64,
+    (bar, known): (f64, &[Start]),
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> Round {
+    let nothing = Round {
+        ends: Vec::new(),
+        draws: 0,
+        evaluations: 0,
+        positions: 0,
+        explored: f64::INFINITY,
+        leaders: Vec::new(),
+        exact: false,
+    };
     let mut spender = Spender { round: nothing, allowance, budget };
     // A round before this one has the exact answer: this one is not read.
     let beaten = || found.load(Ordering::Relaxed) < index;
@@ -148,19 +187,28 @@ fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budge
     };
     // Every other round takes matches, as long as there are any.
     let first = index as usize / 2 * MATCHED;
-    match setup.matches.filter(|matches| index % 2 == 0 && first < matches.len()) {
-        Some(matches) => {
-            for rank in first..(first + MATCHED).min(matches.len()) {
-                if spender.left() > 0 {
-                    take(&mut spender, matches.start(setup.starts, rank));
-                }
+    let mut draws = stream(setup.problem.spec().solve.seed, index);
+    if !known.is_empty() && index % 2 == 1 {
+        let end = &known[(index / 2) as usize % known.len()];
+        for _ in 0..JITTERED {
+            if spender.left() > 0 {
+                take(&mut spender, near(explored, end, &mut draws));
             }
         }
-        None => {
-            let mut draws = stream(setup.problem.spec().solve.seed, index);
-            for _ in 0..SCREEN {
-                if spender.left() > 0 {
-                    take(&mut spender, setup.starts.draw(&mut draws));
+    } else {
+        match setup.matches.filter(|matches| index.is_multiple_of(2) && first < matches.len()) {
+            Some(matches) => {
+                for rank in first..(first + MATCHED).min(matches.len()) {
+                    if spender.left() > 0 {
+                        take(&mut spender, matches.start(setup.starts, rank));
+                    }
+                }
+            }
+            None => {
+                for _ in 0..SCREEN {
+                    if spender.left() > 0 {
+                        take(&mut spender, setup.starts.draw(&mut draws));
+                    }
                 }
             }
         }
@@ -186,6 +234,7 @@ fn round(setup: &Setup<'_>, index: u64, allowance: u64, bar: f64, budget: &Budge
     }
     by_merit(&mut middle, MIDDLE);
     spender.round.explored = middle.first().map_or(f64::INFINITY, |(merit, _)| *merit);
+    spender.round.leaders = middle.clone();
     let best = spender.round.explored.min(bar);
     for (merit, start) in middle {
         if beaten() {
@@ -250,9 +299,9 @@ pub(super) fn search(
         used: vec!["least-squares".into()],
     };
     let mut ends: Vec<End> = Vec::new();
-    let mut best: Option<Candidate> = None;
     let mut best_merits: Vec<f64> = Vec::new();
     let mut bar = f64::INFINITY;
+    let mut leading: Vec<(f64, Start)> = Vec::new();
     let (mut known, mut quiet) = (0, 0);
     let (mut batch, mut draws) = (0, 0);
     loop {
@@ -263,15 +312,21 @@ pub(super) fn search(
         // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
         let left = limit.saturating_sub(local.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
+        let near_ends = leading.iter().map(|(_, start)| start.clone()).collect::<Vec<_>>();
         let found = AtomicU64::new(u64::MAX);
         let rounds: Vec<Round> = (batch * BATCH..(batch + 1) * BATCH)
             .into_par_iter()
-            .map(|index| round(&setup, index, allowance(index), bar, budget, &found))
+            .map(|index| round(&setup, index, allowance(index), (bar, &near_ends), budget, &found))
             .collect();
         batch += 1;
         for round in rounds {
             draws += round.draws;
             bar = bar.min(round.explored);
+            for (merit, start) in round.leaders {
+                if leading.iter().all(|(other, _): &(f64, Start)| (merit - other).abs() > 1e-3 * other) {
+                    leading.push((merit, start));
+                }
+            }
             local.evaluations.objective += round.evaluations;
             local.evaluations.positions += round.positions;
             best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
@@ -280,9 +335,10 @@ pub(super) fn search(
                 break;
             }
         }
+        by_merit(&mut leading, LEADING);
         ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
         ends.truncate(KEPT);
-        best = judge_from_the_best(problem, &mut ends, wanted, exact);
+        let best = judge_from_the_best(problem, &mut ends, wanted, exact);
         if let Some(reason) = budget.stop_reason() {
             local.reason = reason;
             break;
@@ -338,9 +394,8 @@ fn judge_from_the_best(problem: &Problem, ends: &mut [End], wanted: usize, exact
         let verdict = end.verdict.get_or_insert_with(|| judged(problem, &end.start));
         let Some(candidate) = verdict.as_ref().filter(|c| c.accepted) else { continue };
         count += 1;
-        let better = best.as_ref().is_none_or(|b| {
-            candidate.error.objective.max(exact) < b.error.objective.max(exact)
-        });
+        let better =
+            best.as_ref().is_none_or(|b| candidate.error.objective.max(exact) < b.error.objective.max(exact));
         if better {
             best = Some(candidate.clone());
         }

@@ -80,6 +80,11 @@ pub trait BlockLeastSquares<const N: usize> {
     /// Puts every point where its leader is.
     fn join(&self, _state: &mut Self::State, _leaders: &[usize]) {}
 
+    /// Runs a loop over numbers; a problem that knows of wider vector instructions runs it with them.
+    fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
+        work()
+    }
+
     /// The inequalities, always as many and in the same order.
     fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&ConstraintRow<N>));
 }
@@ -304,7 +309,8 @@ impl<const N: usize> Workspace<N> {
         };
         for (j, block) in self.blocks.iter().enumerate() {
             let t_sq = block.tangent[0].powi(2) + block.tangent[1].powi(2);
-            self.tau[j] = if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
+            self.tau[j] =
+                if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
         }
         if ordered {
             self.order.pool(&self.gaps, &mut self.tau, &self.stiffness);
@@ -331,6 +337,7 @@ impl<const N: usize> Workspace<N> {
     }
 }
 
+#[inline(always)]
 fn add_row<const N: usize>(
     matrix: &mut [[f64; N]; N],
     gradient: &mut [f64; N],
@@ -368,30 +375,35 @@ fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     let mut matrix = [[0.0; N]; N];
     let mut gradient = [0.0; N];
     let mut tangent_sum = 0.0;
-    for (index, block) in work.blocks.iter().enumerate() {
-        let t = block.tangent;
-        let t_sq = t[0] * t[0] + t[1] * t[1];
-        tangent_sum += t_sq;
-        if ordered && !work.order.is_alone(index) {
-            continue;
-        }
-        let (r, j) = (&block.residual, &block.jacobian);
-        if t_sq == 0.0 {
-            add_row(&mut matrix, &mut gradient, block.weight, &j[0], r[0]);
-            add_row(&mut matrix, &mut gradient, block.weight, &j[1], r[1]);
-            continue;
-        }
-        let length = t_sq.sqrt();
-        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
-        let mut row = [0.0; N];
-        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
-            for i in 0..N {
-                row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
+    problem.wide(
+        #[inline(always)]
+        || {
+            for (index, block) in work.blocks.iter().enumerate() {
+                let t = block.tangent;
+                let t_sq = t[0] * t[0] + t[1] * t[1];
+                tangent_sum += t_sq;
+                if ordered && !work.order.is_alone(index) {
+                    continue;
+                }
+                let (r, j) = (&block.residual, &block.jacobian);
+                if t_sq == 0.0 {
+                    add_row(&mut matrix, &mut gradient, block.weight, &j[0], r[0]);
+                    add_row(&mut matrix, &mut gradient, block.weight, &j[1], r[1]);
+                    continue;
+                }
+                let length = t_sq.sqrt();
+                let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+                let mut row = [0.0; N];
+                for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+                    for i in 0..N {
+                        row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
+                    }
+                    let residual = axis[0] * r[0] + axis[1] * r[1];
+                    add_row(&mut matrix, &mut gradient, block.weight * weight, &row, residual);
+                }
             }
-            let residual = axis[0] * r[0] + axis[1] * r[1];
-            add_row(&mut matrix, &mut gradient, block.weight * weight, &row, residual);
-        }
-    }
+        },
+    );
     if ordered {
         for pool in work.order.pools() {
             // r_j + t_j m_j + J_j dx + t_j tau with the way m_j to the common place and one tau for all.

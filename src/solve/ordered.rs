@@ -155,14 +155,13 @@ mod tests {
         let mut draws = stream(3, 0);
         for _ in 0..200 {
             let n = 6;
-            let gaps: Vec<f64> = (0..n).map(|j| if j + 1 == n { 50.0 } else { uniform(&mut draws, -0.2, 1.0) }).collect();
+            let gaps: Vec<f64> =
+                (0..n).map(|j| if j + 1 == n { 50.0 } else { uniform(&mut draws, -0.2, 1.0) }).collect();
             let stiffness: Vec<f64> = (0..n).map(|_| uniform(&mut draws, 0.1, 2.0)).collect();
             let wants: Vec<f64> = (0..n).map(|_| uniform(&mut draws, -1.0, 1.0)).collect();
             let mut tau = wants.clone();
             Ordered::new(n).pool(&gaps, &mut tau, &stiffness);
-            let cost = |t: &[f64]| -> f64 {
-                (0..n).map(|j| stiffness[j] * (t[j] - wants[j]).powi(2)).sum()
-            };
+            let cost = |t: &[f64]| -> f64 { (0..n).map(|j| stiffness[j] * (t[j] - wants[j]).powi(2)).sum() };
             let in_order = |t: &[f64], by: f64| (0..n - 1).all(|j| gaps[j] + t[j + 1] - t[j] >= by);
             assert!(in_order(&tau, -1e-12));
             // No feasible neighbour is better: random moves that keep the order.
