@@ -6,6 +6,7 @@ pub mod plan;
 pub mod population;
 pub mod rank;
 pub mod starts;
+pub mod timed;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -4,6 +4,7 @@
 //! [`population::PopulationProblem`] and [`levenberg_marquardt::BlockLeastSquares`].
 
 pub mod argmin_bridge;
+pub mod compact_lm;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod levenberg_marquardt;
