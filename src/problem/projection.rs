@@ -245,7 +245,7 @@ impl Projection {
         matches!(self.origin, Origin::Mean(_))
     }
 
-    fn from_follower_pivot(&self) -> bool {
+    fn measured_from_b(&self) -> bool {
         matches!(self.origin, Origin::FollowerPivot(_))
     }
 }

@@ -1,5 +1,6 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
+pub mod belief;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;

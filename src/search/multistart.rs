@@ -127,7 +127,7 @@ pub fn round(
 }
 
 /// Cost plus what the requirements lack, as a mean squared error; `None` where it has none.
-fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
     let scale = weight * task.size().powi(2);

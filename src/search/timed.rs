@@ -6,29 +6,30 @@
 //! is. One that does not, and is better than what stands, is a lower bound of what its basin can give: it is
 //! polished in the physical parameters under all requirements ([`polish`]).
 //!
+//! Where such ends turn up, the requirements bind, and later waves also fit under all requirements from the first
+//! step on: the screened draws that promise most with what they lack, and rounds of [`super::multistart`] in turn.
+//!
 //! [`WAVE`] batches run side by side and are read in their order; what a wave may skip (polishes of ends that are
 //! no better than the best so far) depends on earlier waves only. So the number of threads changes no digit.
 //!
-//! *Stopping rule.* The best objective is believed when it has come back, within one part in 1e6, from [`HITS`]
-//! different batches (the one that found it included). Where it is approached and not reached (at a toggle or a
-//! change point every end is a little better than the last) it is enough that [`FLAT_HITS`] batches came within
-//! one part in a thousand. Where several answers are wanted the search goes on until as many distinct ones are
-//! known or [`QUIET_WAVES`] waves brought no further one.
+//! *Stopping rule.* The best objective has to come back from independent batches ([`super::belief`]). Where
+//! requirements bind, [`BINDING_WAVES`] waves have had to look at them; where several answers are wanted the
+//! search goes on until as many distinct ones are known or [`QUIET_WAVES`] waves brought no further one.
 
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::belief::Belief;
+use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
 use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
-use super::starts::{Start, draw_ratios, drawn_types};
+use super::starts::{Start, Starts, draw_ratios, drawn_types};
 use super::{Budget, Observer, Progress};
 use crate::linkage::{AssemblyMode, CouplerSide, LinkageType};
-use crate::problem::design_space::{Design, Shape};
+use crate::problem::design_space::{Design, DesignSpace};
 use crate::problem::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
-use crate::problem::requirements::nearest_type;
-use crate::problem::timed::TimedFit;
+use crate::problem::requirements::{Motion, Requirements, nearest_type};
 use crate::problem::{Problem, Setting};
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::solve::compact_lm::{CompactOptions, solve};
 use crate::solve::streams::{Stream, below, stream, uniform};
-use crate::task::Timing;
+use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
@@ -43,18 +44,21 @@ const SHORT_EVALUATIONS: u32 = 10;
 const LONG_EVALUATIONS: u32 = 100;
 /// Ends polished in a batch at most.
 const POLISHES: usize = 2;
+/// Draws looked at with what they lack, fitted for a few steps and fitted to the end under all requirements, where
+/// these bind.
+const PROMISING: usize = 256;
+const CONSTRAINED_SHORT: usize = 6;
+const CONSTRAINED_STEPS: usize = 24;
+const CONSTRAINED_LONG: usize = 2;
+/// Waves with such fits at least, where requirements bind.
+const BINDING_WAVES: u64 = 2;
 /// Batches that run side by side.
 pub const WAVE: u64 = 4;
-/// The best objective has to come from this many batches.
-pub const HITS: usize = 4;
-/// Or within a thousandth from this many.
-pub const FLAT_HITS: usize = 16;
 /// Waves at least where several answers are wanted, and waves without news that end the search for more.
 const LEAST_WAVES: u64 = 6;
 const QUIET_WAVES: u64 = 12;
 /// Errors that differ by less than this part are the same optimum.
 const SAME_OPTIMUM: f64 = 1e-6;
-const NEAR_OPTIMUM: f64 = 1e-3;
 /// Designs that agree within this part of the target's size are judged once.
 const SAME_NUMBERS: f64 = 1e-6;
 /// Candidates that are kept while searching.
@@ -93,9 +97,13 @@ struct Judged {
 struct BatchOutcome {
     /// Ends that keep every bound and requirement the search knows, best first.
     ends: Vec<End>,
+    /// Ends of a round in the physical parameters, judged.
+    judged: Vec<Candidate>,
     evaluations: u64,
     draws: u64,
     polished: bool,
+    /// An end that breaks a bound or a requirement was better than all that keep them.
+    binding: bool,
 }
 
 struct Search<'a> {
@@ -103,6 +111,10 @@ struct Search<'a> {
     budget: &'a Budget<'a>,
     forms: Vec<(f64, Projection)>,
     types: Vec<LinkageType>,
+    starts: Starts<'a>,
+    /// One space a side of the coupler point.
+    spaces: Vec<(CouplerSide, DesignSpace)>,
+    requirements: Requirements,
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
     span: (f64, f64),
     exact: f64,
@@ -119,7 +131,6 @@ pub fn search(
 ) -> Option<TimedOutcome> {
     let search = Search::new(problem, budget)?;
     let wanted = problem.spec().solve.candidates;
-    let exact = search.exact;
     let mut out = TimedOutcome {
         found: Vec::new(),
         evaluations: Evaluations::default(),
@@ -129,8 +140,9 @@ pub fn search(
     let n = problem.task().len() as u64;
     let mut best: Option<Candidate> = None;
     let mut seen: Vec<Judged> = Vec::new();
-    let (mut hits, mut near_hits) = (0, 0);
+    let mut belief = Belief::new(search.exact);
     let (mut known, mut quiet, mut wave, mut draws) = (0, 0, 0, 0);
+    let (mut binding, mut binding_waves) = (false, 0);
     loop {
         if let Some(reason) = budget.stop_reason() {
             out.reason = reason;
@@ -138,56 +150,49 @@ pub fn search(
         }
         let left = limit.saturating_sub(out.evaluations.objective);
         let allowance = |index: u64| left / WAVE + u64::from(index % WAVE < left % WAVE);
-        let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
+        let bar = belief.best();
         let batches: Vec<BatchOutcome> = (wave * WAVE..(wave + 1) * WAVE)
             .into_par_iter()
-            .map(|index| search.batch(index, allowance(index), bar))
+            .map(|index| search.batch(index, allowance(index), bar, binding))
             .collect();
         wave += 1;
+        binding_waves += u64::from(binding);
         for batch in batches {
+            binding |= batch.binding;
             draws += batch.draws;
             out.polished |= batch.polished;
             out.evaluations.objective += batch.evaluations;
             out.evaluations.positions += n * batch.evaluations;
-            let (mut hit, mut near) = (false, false);
-            for end in batch.ends {
-                let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
-                let within = |part: f64| best.is_some() && end.cost <= bar + (part * bar).max(exact);
-                let better = best.is_none() || end.cost < bar - SAME_OPTIMUM * bar.max(exact);
-                if !better && wanted == 1 && end.cost > exact {
-                    // One answer is wanted, and this is not a better one.
-                    hit |= within(SAME_OPTIMUM);
-                    near |= within(NEAR_OPTIMUM);
-                    continue;
-                }
-                if let Some(accepted) = search.judged_before(&seen, &end) {
-                    hit |= accepted && within(SAME_OPTIMUM);
-                    near |= accepted && within(NEAR_OPTIMUM);
-                    continue;
-                }
-                let Some(candidate) = judged(problem, &end.start) else { continue };
-                seen.push(Judged {
-                    setting: end.start.setting,
-                    design: end.start.design,
-                    accepted: candidate.accepted,
-                });
+            let mut take = |candidate: Candidate, belief: &mut Belief| {
                 if candidate.accepted {
-                    if better {
-                        hits = 0;
-                    }
-                    if best.is_none() || candidate.error.objective < bar * (1.0 - NEAR_OPTIMUM) - exact {
-                        near_hits = 0;
-                    }
-                    hit |= better || within(SAME_OPTIMUM);
-                    near |= better || within(NEAR_OPTIMUM);
-                    if candidate.error.objective < bar {
+                    belief.came_to(candidate.error.objective);
+                    if best.as_ref().is_none_or(|b| candidate.error.objective < b.error.objective) {
                         best = Some(candidate.clone());
                     }
                 }
                 out.found.push(candidate);
+            };
+            for end in batch.ends {
+                if wanted == 1 && end.cost > search.exact && !belief.would_improve(end.cost) {
+                    // One answer is wanted, and this is not a better one.
+                    belief.came_back_to(end.cost);
+                    continue;
+                }
+                if let Some(accepted) = search.judged_before(&seen, &end) {
+                    if accepted {
+                        belief.came_back_to(end.cost);
+                    }
+                    continue;
+                }
+                let Some(candidate) = judged(problem, &end.start) else { continue };
+                let Start { setting, design, .. } = end.start;
+                seen.push(Judged { setting, design, accepted: candidate.accepted });
+                take(candidate, &mut belief);
             }
-            hits += usize::from(hit);
-            near_hits += usize::from(near);
+            for candidate in batch.judged {
+                take(candidate, &mut belief);
+            }
+            belief.end_batch();
         }
         out.found.sort_by(|one, other| compare(problem, one, other));
         out.found.truncate(KEPT);
@@ -202,7 +207,9 @@ pub fn search(
             best_sum_sq: best.as_ref().or(out.found.first()).map(|c| c.error.sum_sq),
             accepted: best.is_some(),
         });
-        if (hits >= HITS || near_hits >= FLAT_HITS) && (wanted == 1 || wave >= LEAST_WAVES) {
+        let explored = !binding || binding_waves >= BINDING_WAVES;
+        let enough = wanted == 1 || wave >= LEAST_WAVES;
+        if belief.is_firm() && explored && enough {
             let distinct = if wanted == 1 { 1 } else { distinct(problem, out.found.clone(), wanted).len() };
             quiet = if distinct > known { 0 } else { quiet + 1 };
             known = distinct;
@@ -233,7 +240,11 @@ impl<'a> Search<'a> {
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &a| (low.min(a), high.max(a)));
         let high = if problem.task().closed() { high.max(low + TAU) } else { high };
+        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
         Some(Search {
+            requirements: problem.requirements(&spaces[0].1),
+            starts: Starts::new(problem),
+            spaces,
             forms,
             types: drawn_types(problem),
             span: (low, high),
@@ -288,7 +299,7 @@ impl<'a> Search<'a> {
         least >= (q - r) * (q - r) && greatest <= (q + r) * (q + r)
     }
 
-    fn batch(&self, index: u64, allowance: u64, bar: f64) -> BatchOutcome {
+    fn batch(&self, index: u64, allowance: u64, bar: f64, thorough: bool) -> BatchOutcome {
         let problem = self.problem;
         let mut out = BatchOutcome::default();
         let mut stream = stream(problem.spec().solve.seed, index);
@@ -393,38 +404,101 @@ impl<'a> Search<'a> {
                 continue;
             }
             polishes += 1;
+            out.binding = true;
+            self.polished(end.start, allowance, &mut out);
+        }
+        if thorough && index.is_multiple_of(2) {
+            let left = allowance - out.evaluations;
+            let round = round(problem, &self.starts, index, left, self.budget);
+            out.evaluations += round.evaluations;
             out.polished = true;
-            let fitted = polish(problem, end.start, LONG_STEPS, LONG_ROUNDS, left, self.budget);
-            out.evaluations += fitted.evaluations;
-            if let Some(start) = fitted.end {
-                out.ends.push(End { start, cost: fitted.merit });
-            }
+            out.judged = round.found;
+        } else if thorough {
+            self.constrained(&screened, &batch, &mut fits, allowance, &mut out);
         }
         out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
         out
+    }
+
+    /// Fits to the end under all requirements and keeps where that ends.
+    fn polished(&self, start: Start, allowance: u64, out: &mut BatchOutcome) {
+        let left = allowance - out.evaluations;
+        let fitted = polish(self.problem, start, LONG_STEPS, LONG_ROUNDS, left, self.budget);
+        out.evaluations += fitted.evaluations;
+        out.polished = true;
+        out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
+    }
+
+    /// Fits that obey all requirements from the first step on, from the draws of least cost and violation.
+    fn constrained(
+        &self,
+        screened: &[(f64, usize, usize, AssemblyMode)],
+        batch: &Batch,
+        fits: &mut [ProjectedFit<'_>],
+        allowance: u64,
+        out: &mut BatchOutcome,
+    ) {
+        let mut starts = Vec::new();
+        for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
+            let x = &batch.draws()[i];
+            if out.evaluations >= allowance || !self.stays_closed(form, x) {
+                continue;
+            }
+            out.evaluations += 1;
+            fits[form].set_assembly(assembly);
+            let Some(solution) = fits[form].solution(x) else { continue };
+            // As the fit will start: brought into the bounds.
+            let physical = self.physical(&solution, self.forms[form].0, assembly);
+            if let Some((mut start, _)) = physical
+                && let Some(promise) = promise(self.problem, &mut start)
+            {
+                starts.push((promise, start));
+            }
+        }
+        starts.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let mut short = Vec::new();
+        for (_, start) in starts.into_iter().take(CONSTRAINED_SHORT) {
+            if out.evaluations >= allowance || self.budget.stopped() {
+                break;
+            }
+            let left = allowance - out.evaluations;
+            let fitted = polish(self.problem, start, CONSTRAINED_STEPS, 2, left, self.budget);
+            out.evaluations += fitted.evaluations;
+            short.extend(fitted.end.map(|start| (fitted.merit, start)));
+        }
+        short.sort_by(|x, y| x.0.total_cmp(&y.0));
+        for (_, start) in short.into_iter().take(CONSTRAINED_LONG) {
+            if out.evaluations >= allowance || self.budget.stopped() {
+                break;
+            }
+            self.polished(start, allowance, out);
+        }
     }
 
     /// A solution as a start of the physical fit, and what it lacks of bounds and requirements in sizes.
     fn physical(&self, solution: &Solution, direction: f64, assembly: AssemblyMode) -> Option<(Start, f64)> {
         let problem = self.problem;
         let Solution { shape, offset, .. } = solution;
-        let side = side_of(problem, shape);
+        let side = match self.spaces.as_slice() {
+            [(only, _)] => *only,
+            _ if shape.offset.im < 0.0 => CouplerSide::Minus,
+            _ => CouplerSide::Plus,
+        };
+        let (_, space) = self.spaces.iter().find(|(s, _)| *s == side)?;
         let aim =
             if problem.types().is_empty() { None } else { nearest_type(shape.links(), problem.types()) };
         let setting = Setting { aim, assembly, direction, side };
-        let fit = TimedFit::new(problem, setting)?;
-        let design = fit.space().design(shape, *offset);
-        let outside = fit.space().excess(shape) / problem.task().size();
-        let lack = fit.requirements().lack(aim, shape, &fit.motion(&design, shape));
-        Some((Start { design, setting, positions: Vec::new() }, outside + lack))
-    }
-}
-
-/// t2 where d and e are the coordinates, else the side that stands for both.
-fn side_of(problem: &Problem, shape: &Shape) -> CouplerSide {
-    match problem.sides() {
-        [only] => *only,
-        _ if shape.offset.im < 0.0 => CouplerSide::Minus,
-        _ => CouplerSide::Plus,
+        let base = match problem.task().timing() {
+            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
+                (shape.follower_pivot - shape.crank_pivot).arg()
+            }
+            _ => *offset,
+        };
+        let (one, other) = (direction * self.span.0 + base, direction * self.span.1 + base);
+        let motion = Motion::Stretch(one.min(other), one.max(other), assembly);
+        let lack = self.requirements.lack(aim, shape, &motion);
+        let outside = space.excess(shape) / problem.task().size();
+        let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
+        Some((start, outside + lack))
     }
 }

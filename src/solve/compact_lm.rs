@@ -164,10 +164,8 @@ fn step<const N: usize>(
     let mut dx = normal.gradient.map(|g| -g);
     for i in 0..N {
         if held[i] {
-            for k in 0..N {
-                matrix[i][k] = 0.0;
-                matrix[k][i] = 0.0;
-            }
+            matrix[i] = [0.0; N];
+            matrix.iter_mut().for_each(|row| row[i] = 0.0);
             matrix[i][i] = 1.0;
             dx[i] = 0.0;
         } else {
@@ -190,6 +188,7 @@ fn step<const N: usize>(
 }
 
 /// Solves a symmetric positive definite system in place by Cholesky's factors; `None` where it is not one.
+#[expect(clippy::needless_range_loop, reason = "two rows of the matrix at once")]
 pub fn solve_positive<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N]) -> Option<()> {
     for i in 0..N {
         for k in 0..=i {

@@ -20,6 +20,7 @@ use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::{AssemblyMode, Complex, turned};
 use crate::problem::design_space::{Shape, unit};
 use crate::solve::compact_lm::{CompactLeastSquares, Normal};
+use std::array::from_fn;
 
 /// A column of complex numbers.
 #[derive(Clone, Debug)]
@@ -230,7 +231,7 @@ impl<'a> ProjectedFit<'a> {
         let n = c.weight.len();
         let zero = splat(Complex::new(0.0, 0.0));
         let centred = form.centred();
-        let back = if form.from_follower_pivot() { 1.0 / ratio[0] } else { 0.0 };
+        let back = if form.measured_from_b() { 1.0 / ratio[0] } else { 0.0 };
         let (u_mean, a_mean) =
             if centred { (u_sum, e_sum) } else { (Complex::new(0.0, 0.0), Complex::new(back, 0.0)) };
         let (u_mean, a_mean) = (splat(u_mean), splat(a_mean));
@@ -314,7 +315,7 @@ impl<'a> ProjectedFit<'a> {
         let zero = splat(Complex::new(0.0, 0.0));
         let i_z = splat(turned(at.z));
         let (k, i_k) = (at.k, turned(at.k));
-        let from_b = form.from_follower_pivot();
+        let from_b = form.measured_from_b();
         let nothing = Complex::new(0.0, 0.0);
         // d(K a)/dln x = slope K a, and K/p besides for x = p where the column is e - 1/p.
         let by_ratio = at.slope.map(|slope| k * slope);
@@ -395,20 +396,16 @@ impl<'a> ProjectedFit<'a> {
                 let m = sub(sub(m, mul(u_off, along_u)), mul(a_off, along_a));
                 gradient[x] = gradient[x] + (m[0] * rest[0] + m[1] * rest[1]);
                 off_m[x] = m;
-                for y in 0..=x {
-                    matrix[x][y] = matrix[x][y] + (m[0] * off_m[y][0] + m[1] * off_m[y][1]);
+                for (sum, other) in matrix[x].iter_mut().zip(&off_m).take(x + 1) {
+                    *sum = *sum + (m[0] * other[0] + m[1] * other[1]);
                 }
             }
         }
-        let mut normal = Normal { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], gradient: [0.0; UNKNOWNS] };
-        for x in 0..unknowns {
-            normal.gradient[x] = -form.total_weight * gradient[x].sum();
-            for y in 0..=x {
-                let value = form.total_weight * matrix[x][y].sum();
-                (normal.matrix[x][y], normal.matrix[y][x]) = (value, value);
-            }
+        let lower = matrix.map(|row| row.map(|sum| form.total_weight * sum.sum()));
+        Normal {
+            matrix: from_fn(|x| from_fn(|y| if y <= x { lower[x][y] } else { lower[y][x] })),
+            gradient: gradient.map(|sum| -form.total_weight * sum.sum()),
         }
-        normal
     }
 }
 
