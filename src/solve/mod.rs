@@ -1,7 +1,8 @@
 //! Numbers only: population searches, bounded least squares with a block a point, random streams.
 //!
 //! This room imports nothing else of the crate. It owns the traits that problems implement:
-//! [`population::PopulationProblem`] and [`levenberg_marquardt::BlockLeastSquares`].
+//! [`population::PopulationProblem`], [`levenberg_marquardt::BlockLeastSquares`] and
+//! [`compact_lm::CompactLeastSquares`].
 
 pub mod argmin_bridge;
 pub mod compact_lm;
