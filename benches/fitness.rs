@@ -1,13 +1,16 @@
 //! Fitness evaluations of the population searches: a core's rate, and two threads against one.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use linkwright::linkage::AssemblyMode;
 use linkwright::problem::Problem;
 use linkwright::problem::fitness::PathFitness;
+use linkwright::problem::projection::{Batch, ProjectedFit, Projection};
 use linkwright::problem::spec::{
     DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
+use linkwright::solve::compact_lm::CompactLeastSquares;
 use linkwright::solve::population::{Individual, PopulationProblem, draw_uniform, evaluate_generation};
-use linkwright::solve::streams::stream;
+use linkwright::solve::streams::{stream, uniform};
 use linkwright::task::AngleOffset;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -91,5 +94,42 @@ fn threads(c: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, rates, threads);
+/// The reduced form: screening of 512 draws on both assemblies (1,024 costs), and what a step of a fit takes.
+fn reduced(c: &mut Criterion) {
+    for n in [18, 360] {
+        let problem = problem(n, true);
+        let form = Projection::new(&problem, 1.0).expect("the timing is prescribed");
+        let mut draws = stream(1, 0);
+        let mut number = |reach: f64| uniform(&mut draws, -reach, reach);
+        let batch = Batch::new(
+            (0..512).map(|_| [number(0.5) - 0.9, number(0.5), number(0.5), number(3.0)]).collect(),
+        );
+        let once = form.screen(&batch);
+        let both = [AssemblyMode::Plus, AssemblyMode::Minus];
+        for (assembly, costs) in both.into_iter().zip(&once) {
+            let mut fit = ProjectedFit::new(&form, assembly);
+            for (x, cost) in batch.draws().iter().zip(costs) {
+                assert_eq!(cost.to_bits(), form.screen_one(x, assembly).to_bits(), "lanes change no digit");
+                let near = |fitted: f64| (fitted - cost).abs() <= 1e-9 * (1.0 + cost);
+                assert!(fit.cost(x).map_or(cost.is_infinite(), near), "screening and fit agree");
+            }
+        }
+        let mut group = c.benchmark_group("reduced form, one core");
+        group.throughput(Throughput::Elements(1024));
+        group.bench_function(format!("{n} points, screened costs"), |b| {
+            b.iter(|| form.screen(black_box(&batch)))
+        });
+        let mut fit = ProjectedFit::new(&form, AssemblyMode::Plus);
+        let start =
+            batch.draws().iter().zip(&once[0]).find(|(_, cost)| cost.is_finite()).expect("one closes").0;
+        group.throughput(Throughput::Elements(1));
+        group.bench_function(format!("{n} points, cost of a fit"), |b| b.iter(|| fit.cost(black_box(start))));
+        group.bench_function(format!("{n} points, cost and Jacobian of a fit"), |b| {
+            b.iter(|| (fit.cost(black_box(start)), fit.normal()));
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, rates, reduced, threads);
 criterion_main!(benches);

@@ -21,7 +21,7 @@
 //! | [`linkage`] | what a four-bar is and where it is: position, gradient, mobility, transmission, curve | |
 //! | [`task`] | what is wanted: paths, timing, errors, the referee | linkage |
 //! | [`solve`] | numbers only: populations, Levenberg-Marquardt, random streams | |
-//! | [`problem`] | the task as mathematics: design space, residuals, requirements, fitness | linkage, task, solve |
+//! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
 //! | [`mod@run`] | a job in, a record out | all above |

@@ -229,7 +229,10 @@ fn a_record_that_lies_is_found_out() {
         ("error.sum_sq", |r| r["candidates"][0]["error"]["sum_sq"] = 0.009.into()),
         ("error.max_at", |r| r["candidates"][0]["error"]["max_at"] = 3.into()),
         ("error.rms", |r| r["candidates"][0]["linkage"]["a"] = 0.3128.into()),
-        ("defects", |r| r["candidates"][0]["t1_at"][4] = (1).into()),
+        ("defects", |r| {
+            let other = -r["candidates"][0]["t1_at"][4].as_i64().expect("a sign");
+            r["candidates"][0]["t1_at"][4] = other.into();
+        }),
         ("transmission_deg.worst", |r| r["candidates"][0]["transmission_deg"]["worst"] = 45.0.into()),
         ("type", |r| r["candidates"][0]["type"] = "double-crank".into()),
         ("accepted", |r| r["candidates"][1]["accepted"] = false.into()),
@@ -241,7 +244,10 @@ fn a_record_that_lies_is_found_out() {
         ("link_ratio", |r| r["candidates"][0]["link_ratio"] = 2.0.into()),
         ("link_ratio_max", |r| r["candidates"][0]["requirements"][1]["met"] = false.into()),
         ("rank", |r| r["candidates"][1]["rank"] = 1.into()),
-        ("linkage.t1", |r| r["candidates"][0]["linkage"]["t1"] = 1.into()),
+        ("linkage.t1", |r| {
+            let other = -r["candidates"][0]["linkage"]["t1"].as_i64().expect("a sign");
+            r["candidates"][0]["linkage"]["t1"] = other.into();
+        }),
         ("reproducible", |r| r["termination"]["reproducible"] = false.into()),
         ("target-reached", |r| r["termination"]["reason"] = "target-reached".into()),
         ("order of ranks", |r| {

@@ -213,6 +213,20 @@ impl DesignSpace {
         &self.derived
     }
 
+    /// The limits of ground, a, b and c.
+    pub fn link_limits(&self) -> [Limits; 4] {
+        let of = |i: usize| Limits(self.bounds[i].0, self.bounds[i].1);
+        let ground = match self.ground {
+            GroundChart::Polar => of(2),
+            GroundChart::Pivot => self
+                .derived
+                .iter()
+                .find(|bound| bound.quantity == Derived::Ground)
+                .map_or(Limits(0.0, f64::INFINITY), |bound| bound.limits),
+        };
+        [ground, of(4), of(5), of(6)]
+    }
+
     /// The box of the numbers that are not fixed, for a population search: angles within half a turn.
     pub fn free_box(&self) -> Vec<(f64, f64)> {
         self.free.iter().map(|&i| self.finite(i)).collect()
@@ -284,6 +298,29 @@ impl DesignSpace {
 
     /// The design of a shape, brought into the bounds.
     pub fn design(&self, shape: &Shape, offset: f64) -> Design {
+        let mut x = self.coordinates(shape, offset);
+        for (value, &(low, high)) in x.iter_mut().zip(&self.bounds) {
+            *value = value.max(low).min(high);
+        }
+        x
+    }
+
+    /// How far a shape is outside the bounds: the distances of its coordinates from them, added up (a direction
+    /// as an arc of the ground); 0 where only rounding takes it out, as [`DesignSpace::project`] would bring it back.
+    pub fn excess(&self, shape: &Shape) -> f64 {
+        let x = self.coordinates(shape, 0.0);
+        let mut excess = 0.0;
+        for (i, (value, &(low, high))) in x.iter().zip(&self.bounds).enumerate().take(SHAPE) {
+            let out = (low - value).max(value - high);
+            if out > 1e-9 * (1.0 + value.abs()) {
+                excess += if self.is_angle(i) { out * x[2] } else { out };
+            }
+        }
+        excess
+    }
+
+    /// The design vector of a shape, wherever it lies.
+    fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let (g_1, g_2) = match self.ground {
             GroundChart::Pivot => (shape.follower_pivot.re, shape.follower_pivot.im),
@@ -298,11 +335,7 @@ impl DesignSpace {
             CouplerChart::Distances(_) => (shape.offset.norm(), (shape.offset - shape.coupler).norm()),
         };
         let a = shape.crank_pivot;
-        let mut x = [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset];
-        for (value, &(low, high)) in x.iter_mut().zip(&self.bounds) {
-            *value = value.max(low).min(high);
-        }
-        x
+        [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
     }
 
     /// A derivative by the design vector from one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,

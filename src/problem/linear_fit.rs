@@ -12,7 +12,9 @@
 //! What the problem fixes of A, B or the ground's direction makes some of the six real unknowns known or
 //! dependent: v = T w + v0 with fewer unknowns w. Only a start is made here; the fit proper follows.
 
+use super::Problem;
 use super::design_space::{Shape, unit};
+use super::spec::Limits;
 use crate::linkage::{Complex, cross};
 use nalgebra::{SMatrix, SVector};
 
@@ -27,6 +29,24 @@ pub struct KnownPivots {
     pub ground_angle: Option<f64>,
     /// |AB|, where it is fixed and the direction is known.
     pub ground: Option<f64>,
+}
+
+impl KnownPivots {
+    /// What the design's bounds fix of the pivots.
+    pub fn of(problem: &Problem) -> Self {
+        let fixed = |limits: Option<Limits>| limits.filter(Limits::is_fixed).map(|l| l.0);
+        let design = &problem.spec().design;
+        let pivot = |p: Option<[Limits; 2]>| {
+            let [x, y] = p?;
+            Some(Complex::new(fixed(Some(x))?, fixed(Some(y))?))
+        };
+        KnownPivots {
+            crank_pivot: pivot(design.crank_pivot),
+            follower_pivot: pivot(design.follower_pivot),
+            ground_angle: fixed(design.ground_angle_deg).map(f64::to_radians),
+            ground: fixed(design.ground),
+        }
+    }
 }
 
 /// The ratios of the links to the ground: p = a/g, q = b/g, r = c/g.

@@ -3,12 +3,14 @@
 pub mod atlas;
 pub mod coarse;
 pub mod free;
+pub mod belief;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;
 pub mod population;
 pub mod rank;
 pub mod starts;
+pub mod timed;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -9,6 +9,7 @@ use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::population::{self, Population};
 use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
 use super::starts::Starts;
+use super::timed;
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::assess::assess;
 use crate::problem::Problem;
@@ -30,6 +31,8 @@ const LEAST_BATCHES: u64 = 3;
 const QUIET_BATCHES: u64 = 6;
 /// The part of the budget that `auto` gives to local searches when nothing acceptable turns up.
 const LOCAL_SHARE: f64 = 0.6;
+/// The part of that which the reduced form of prescribed timing gets before rounds in the physical parameters.
+const REDUCED_SHARE: f64 = 0.5;
 /// One part in this many of what differential evolution is given goes to the polish of its best.
 const POLISH_SHARE: u64 = 5;
 /// Candidates that are kept while searching; the worst are dropped beyond it.
@@ -126,9 +129,48 @@ impl Local {
     }
 }
 
+/// Prescribed timing: the reduced form first; where it is not to be had or nothing acceptable came of it within its
+/// share, and with free timing, rounds in the physical parameters.
+fn local_search(
+    problem: &Problem,
+    limit: u64,
+    patience: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Local {
+    let share = (patience as f64 * REDUCED_SHARE) as u64;
+    let Some(timed) = timed::search(problem, limit, share, budget, observer) else {
+        return rounds(problem, limit, patience, budget, observer);
+    };
+    let mut local = Local {
+        found: timed.found,
+        evaluations: timed.evaluations,
+        reason: timed.reason,
+        used: vec!["variable-projection".into()],
+    };
+    if timed.polished {
+        local.used.push("least-squares".into());
+    }
+    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled);
+    let left = limit.saturating_sub(local.evaluations.objective);
+    if !gave_up || left == 0 || local.found.iter().any(|c| c.accepted) {
+        return local;
+    }
+    let patience = patience.saturating_sub(local.evaluations.objective).min(left);
+    let more = rounds(problem, left, patience, budget, observer);
+    local.found.extend(more.found);
+    local.evaluations.objective += more.evaluations.objective;
+    local.evaluations.positions += more.evaluations.positions;
+    local.reason = more.reason;
+    if !timed.polished {
+        local.used.extend(more.used);
+    }
+    local
+}
+
 /// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
 /// an acceptable candidate.
-fn local_search(
+fn rounds(
     problem: &Problem,
     limit: u64,
     patience: u64,

@@ -52,21 +52,9 @@ impl<'a> Starts<'a> {
         if task.closed() && !task.repeats_first() {
             whole += (points[0] - points[points.len() - 1]).norm();
         }
-        let types = match problem.types() {
-            // Any type: those that a motor can turn get half of the draws.
-            [] => vec![
-                LinkageType::CrankRocker,
-                LinkageType::CrankRocker,
-                LinkageType::DoubleCrank,
-                LinkageType::RockerCrank,
-                LinkageType::DoubleRocker,
-                LinkageType::TripleRocker,
-            ],
-            some => some.to_vec(),
-        };
         Starts {
             problem,
-            types,
+            types: drawn_types(problem),
             arc: along.iter().map(|s| s / whole).collect(),
             spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
         }
@@ -123,7 +111,7 @@ impl<'a> Starts<'a> {
         let phase = uniform(stream, -PI, PI);
         let (side, space) = &self.spaces[which];
         let setting = Setting { aim, assembly, direction, side: *side };
-        let mut known = self.known();
+        let mut known = KnownPivots::of(self.problem);
         match self.problem.task().timing() {
             Timing::Prescribed { offset, .. } => {
                 let t = assembly.sign();
@@ -167,24 +155,6 @@ impl<'a> Starts<'a> {
     fn fit(&self, ratios: &Ratios, known: &KnownPivots, positions: &[[Complex; 2]]) -> Option<Shape> {
         let task = self.problem.task();
         fit(ratios, known, positions, task.points(), task.weights())
-    }
-
-    /// What the design's bounds fix of the pivots.
-    fn known(&self) -> KnownPivots {
-        let fixed = |limits: Option<crate::problem::spec::Limits>| {
-            limits.filter(crate::problem::spec::Limits::is_fixed).map(|l| l.0)
-        };
-        let design = &self.problem.spec().design;
-        let pivot = |p: Option<[crate::problem::spec::Limits; 2]>| {
-            let [x, y] = p?;
-            Some(Complex::new(fixed(Some(x))?, fixed(Some(y))?))
-        };
-        KnownPivots {
-            crank_pivot: pivot(design.crank_pivot),
-            follower_pivot: pivot(design.follower_pivot),
-            ground_angle: fixed(design.ground_angle_deg).map(f64::to_radians),
-            ground: fixed(design.ground),
-        }
     }
 
     /// Positions (from the ground line) spread along the circuit as the points are along the target.
@@ -239,6 +209,22 @@ impl<'a> Starts<'a> {
     }
 }
 
+/// The types that draws are made of.
+pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
+    match problem.types() {
+        // Any type: those that a motor can turn get half of the draws.
+        [] => vec![
+            LinkageType::CrankRocker,
+            LinkageType::CrankRocker,
+            LinkageType::DoubleCrank,
+            LinkageType::RockerCrank,
+            LinkageType::DoubleRocker,
+            LinkageType::TripleRocker,
+        ],
+        some => some.to_vec(),
+    }
+}
+
 /// The mobility of the linkage with ground 1 along the x axis.
 pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
     let linkage = FourBar::new(NaturalCoordinates {
@@ -259,6 +245,7 @@ pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
 /// Slacks and lengths are drawn over this range of ratios, evenly in their logarithm.
 const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
 
+/// The ratios of a linkage of a type; `None` where a few draws found none.
 pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
     let log_uniform =
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();

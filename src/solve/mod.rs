@@ -1,9 +1,11 @@
 //! Numbers only: population searches, bounded least squares with a block a point, random streams.
 //!
 //! This room imports nothing else of the crate. It owns the traits that problems implement:
-//! [`population::PopulationProblem`] and [`levenberg_marquardt::BlockLeastSquares`].
+//! [`population::PopulationProblem`], [`levenberg_marquardt::BlockLeastSquares`] and
+//! [`compact_lm::CompactLeastSquares`].
 
 pub mod argmin_bridge;
+pub mod compact_lm;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod levenberg_marquardt;

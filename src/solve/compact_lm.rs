@@ -1,0 +1,293 @@
+//! Bounded Levenberg-Marquardt for a handful of unknowns: fixed-size arrays, no allocation.
+//!
+//! minimise  |r(x)|^2   subject to  lo <= x <= hi,   x in R^N with N small
+//!
+//! A problem gives its cost at a point and then, at that same point, J^T J and J^T r. What lies behind them
+//! (eliminated linear unknowns, thousands of rows) is its own affair. A step solves
+//! (J^T J + lambda D) dx = -J^T r with D the diagonal of J^T J; lambda follows Nielsen (1999), *Damping
+//! parameter in Marquardt's method*. An unknown that stands at a bound and would leave it is held there.
+
+/// J^T J and J^T r.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Normal<const N: usize> {
+    /// J^T J, symmetric.
+    pub matrix: [[f64; N]; N],
+    /// J^T r: half the gradient of the cost.
+    pub gradient: [f64; N],
+}
+
+/// A least-squares problem in a few unknowns.
+pub trait CompactLeastSquares<const N: usize> {
+    /// |r(x)|^2; `None` where it does not exist.
+    fn cost(&mut self, x: &[f64; N]) -> Option<f64>;
+
+    /// J^T J and J^T r at the point that `cost` was last asked for.
+    fn normal(&mut self) -> Normal<N>;
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub struct CompactOptions {
+    /// Computations of the cost, at least one.
+    pub max_evaluations: u32,
+    /// Converged when a step promises, or two in a row bring, less than this part of the cost.
+    pub relative_reduction: f64,
+    /// Converged when the cost is below this.
+    pub exact_cost: f64,
+    /// After [`CompactOptions::patience`] computations the cost has to be below this, or the solve is given up.
+    pub hopeless_cost: f64,
+    /// See `hopeless_cost`.
+    pub patience: u32,
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompactOutcome {
+    /// No step promises more, or the cost is below `exact_cost`.
+    Converged,
+    /// Out of evaluations.
+    EvaluationLimit,
+    /// Not below `hopeless_cost` in time.
+    Hopeless,
+    /// The start has no cost.
+    NoStart,
+}
+
+/// The end of a solve.
+#[derive(Clone, Copy, Debug)]
+pub struct CompactResult<const N: usize> {
+    /// The best point.
+    pub x: [f64; N],
+    /// Its cost; infinite where the start has none.
+    pub cost: f64,
+    /// How often the cost was computed.
+    pub evaluations: u32,
+    /// How it ended.
+    pub outcome: CompactOutcome,
+}
+
+/// First damping, in parts of the diagonal.
+const FIRST_DAMPING: f64 = 1e-3;
+/// Past this damping a step is below rounding.
+const LAST_DAMPING: f64 = 1e12;
+/// Steps in a row that hardly reduce before a solve counts as converged.
+const QUIET_STEPS: u32 = 2;
+
+/// Solves from a start, which is brought into its bounds. Equal bounds fix an unknown.
+pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
+    problem: &mut P,
+    start: [f64; N],
+    bounds: &[(f64, f64); N],
+    options: &CompactOptions,
+) -> CompactResult<N> {
+    let mut x = start;
+    for (value, &(low, high)) in x.iter_mut().zip(bounds) {
+        *value = value.max(low).min(high);
+    }
+    let mut result =
+        CompactResult { x, cost: f64::INFINITY, evaluations: 1, outcome: CompactOutcome::NoStart };
+    let Some(cost) = problem.cost(&x) else { return result };
+    result.cost = cost;
+    let (mut damping, mut growth, mut quiet) = (FIRST_DAMPING, 2.0, 0);
+    let mut normal = problem.normal();
+    loop {
+        if result.cost <= options.exact_cost {
+            result.outcome = CompactOutcome::Converged;
+            return result;
+        }
+        if result.evaluations >= options.max_evaluations {
+            result.outcome = CompactOutcome::EvaluationLimit;
+            return result;
+        }
+        if result.evaluations >= options.patience && result.cost > options.hopeless_cost {
+            result.outcome = CompactOutcome::Hopeless;
+            return result;
+        }
+        let Some((trial, promised)) = step(&normal, &result.x, bounds, damping) else {
+            damping *= growth;
+            growth *= 2.0;
+            if damping > LAST_DAMPING {
+                result.outcome = CompactOutcome::Converged;
+                return result;
+            }
+            continue;
+        };
+        if promised <= 1e-3 * options.relative_reduction * result.cost {
+            result.outcome = CompactOutcome::Converged;
+            return result;
+        }
+        result.evaluations += 1;
+        match problem.cost(&trial) {
+            Some(cost) if cost < result.cost => {
+                let reduction = result.cost - cost;
+                let gain = reduction / promised;
+                result.x = trial;
+                result.cost = cost;
+                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0)).max(1e-15);
+                growth = 2.0;
+                quiet = if reduction <= options.relative_reduction * cost { quiet + 1 } else { 0 };
+                if quiet >= QUIET_STEPS {
+                    result.outcome = CompactOutcome::Converged;
+                    return result;
+                }
+                normal = problem.normal();
+            }
+            _ => {
+                damping *= growth;
+                growth *= 2.0;
+                if damping > LAST_DAMPING {
+                    result.outcome = CompactOutcome::Converged;
+                    return result;
+                }
+            }
+        }
+    }
+}
+
+/// The damped step's end inside the bounds and the reduction of the cost that the linear model promises for it;
+/// `None` where the damped matrix is not positive definite.
+fn step<const N: usize>(
+    normal: &Normal<N>,
+    x: &[f64; N],
+    bounds: &[(f64, f64); N],
+    damping: f64,
+) -> Option<([f64; N], f64)> {
+    let largest = (0..N).map(|i| normal.matrix[i][i]).fold(f64::MIN_POSITIVE, f64::max);
+    let mut held = [false; N];
+    for i in 0..N {
+        let (low, high) = bounds[i];
+        held[i] = low == high
+            || (x[i] <= low && normal.gradient[i] >= 0.0)
+            || (x[i] >= high && normal.gradient[i] <= 0.0);
+    }
+    let mut matrix = normal.matrix;
+    let mut dx = normal.gradient.map(|g| -g);
+    for i in 0..N {
+        if held[i] {
+            matrix[i] = [0.0; N];
+            matrix.iter_mut().for_each(|row| row[i] = 0.0);
+            matrix[i][i] = 1.0;
+            dx[i] = 0.0;
+        } else {
+            matrix[i][i] += damping * matrix[i][i].max(1e-12 * largest);
+        }
+    }
+    solve_positive(&mut matrix, &mut dx)?;
+    let mut to = *x;
+    for i in 0..N {
+        to[i] = (x[i] + dx[i]).max(bounds[i].0).min(bounds[i].1);
+        dx[i] = to[i] - x[i];
+    }
+    // |r|^2 - |r + J dx|^2
+    let mut promised = 0.0;
+    for i in 0..N {
+        let product: f64 = (0..N).map(|k| normal.matrix[i][k] * dx[k]).sum();
+        promised -= dx[i] * (2.0 * normal.gradient[i] + product);
+    }
+    promised.is_finite().then_some((to, promised))
+}
+
+/// Solves a symmetric positive definite system in place by Cholesky's factors; `None` where it is not one.
+#[expect(clippy::needless_range_loop, reason = "two rows of the matrix at once")]
+pub fn solve_positive<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N]) -> Option<()> {
+    for i in 0..N {
+        for k in 0..=i {
+            let mut sum = matrix[i][k];
+            for m in 0..k {
+                sum -= matrix[i][m] * matrix[k][m];
+            }
+            if i == k {
+                if sum.is_nan() || sum <= 0.0 {
+                    return None;
+                }
+                matrix[i][i] = sum.sqrt();
+            } else {
+                matrix[i][k] = sum / matrix[k][k];
+            }
+        }
+    }
+    for i in 0..N {
+        for k in 0..i {
+            right[i] -= matrix[i][k] * right[k];
+        }
+        right[i] /= matrix[i][i];
+    }
+    for i in (0..N).rev() {
+        for k in i + 1..N {
+            right[i] -= matrix[k][i] * right[k];
+        }
+        right[i] /= matrix[i][i];
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rosenbrock's valley: r = (10 (y - x^2), 1 - x).
+    struct Valley([f64; 2]);
+
+    impl CompactLeastSquares<2> for Valley {
+        fn cost(&mut self, x: &[f64; 2]) -> Option<f64> {
+            self.0 = *x;
+            let r = [10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]];
+            // Undefined left of -1.5, as a linkage that does not close.
+            (x[0] > -1.5).then_some(r[0] * r[0] + r[1] * r[1])
+        }
+
+        fn normal(&mut self) -> Normal<2> {
+            let [x, y] = self.0;
+            let r = [10.0 * (y - x * x), 1.0 - x];
+            let j = [[-20.0 * x, 10.0], [-1.0, 0.0]];
+            let mut normal = Normal { matrix: [[0.0; 2]; 2], gradient: [0.0; 2] };
+            for i in 0..2 {
+                normal.gradient[i] = j[0][i] * r[0] + j[1][i] * r[1];
+                for k in 0..2 {
+                    normal.matrix[i][k] = j[0][i] * j[0][k] + j[1][i] * j[1][k];
+                }
+            }
+            normal
+        }
+    }
+
+    const OPTIONS: CompactOptions = CompactOptions {
+        max_evaluations: 200,
+        relative_reduction: 1e-14,
+        exact_cost: 0.0,
+        hopeless_cost: f64::INFINITY,
+        patience: 0,
+    };
+    const WIDE: [(f64, f64); 2] = [(-10.0, 10.0); 2];
+
+    #[test]
+    fn a_curved_valley_is_followed_to_its_end() {
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &OPTIONS);
+        assert_eq!(end.outcome, CompactOutcome::Converged);
+        assert!((end.x[0] - 1.0).abs() < 1e-9 && (end.x[1] - 1.0).abs() < 1e-9, "{end:?}");
+        assert!(end.evaluations < 60, "{}", end.evaluations);
+    }
+
+    #[test]
+    fn a_bound_that_binds_is_kept_and_the_rest_is_minimised_on_it() {
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &[(-2.0, 0.5), (-10.0, 10.0)], &OPTIONS);
+        assert_eq!(end.x[0], 0.5);
+        assert!((end.x[1] - 0.25).abs() < 1e-9 && (end.cost - 0.25).abs() < 1e-9, "{end:?}");
+        let fixed = solve(&mut Valley([0.0; 2]), [0.0, 7.0], &[(2.0, 2.0), (-10.0, 10.0)], &OPTIONS);
+        assert_eq!(fixed.x[0], 2.0, "equal bounds fix an unknown, whatever the start says");
+        assert!((fixed.x[1] - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn limits_end_a_solve_and_say_so() {
+        let short = CompactOptions { max_evaluations: 5, ..OPTIONS };
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &short);
+        assert_eq!((end.outcome, end.evaluations), (CompactOutcome::EvaluationLimit, 5));
+        let strict = CompactOptions { hopeless_cost: 1e-9, patience: 4, ..OPTIONS };
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &strict);
+        assert_eq!((end.outcome, end.evaluations), (CompactOutcome::Hopeless, 4));
+        let end = solve(&mut Valley([0.0; 2]), [-1.6, 1.0], &WIDE, &OPTIONS);
+        assert_eq!(end.outcome, CompactOutcome::NoStart);
+        assert!(end.cost.is_infinite());
+    }
+}
