@@ -7,6 +7,7 @@
 
 use crate::linkage::{Complex, CouplerCurve};
 use crate::problem::Problem;
+use crate::problem::spec::Objective;
 use crate::record::Candidate;
 use std::cmp::Ordering;
 
@@ -20,9 +21,31 @@ pub fn exact_sum_sq(problem: &Problem) -> f64 {
     EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
-/// The objective (weighted) below which a fit is exact.
-pub fn exact_objective(problem: &Problem) -> f64 {
+/// The weighted sum of squares below which a fit is exact.
+pub fn exact_cost(problem: &Problem) -> f64 {
     EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+}
+
+/// The objective below which a fit is exact: a weighted sum of squares; a largest deviation, which is a length,
+/// or where tolerances are given that length in parts of the least of them.
+pub fn exact_objective(problem: &Problem) -> f64 {
+    match problem.spec().solve.objective {
+        Objective::SumOfSquares => exact_cost(problem),
+        Objective::MaxDeviation => {
+            let least = problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
+            EXACT.sqrt() * problem.task().size() / least
+        }
+    }
+}
+
+/// What searches by least squares lessen: the weighted sum of squares, whatever the objective is.
+pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
+    if problem.spec().solve.objective == Objective::SumOfSquares {
+        return candidate.error.objective;
+    }
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.objective)
 }
 
 /// Better first.
