@@ -16,8 +16,8 @@ use crate::linkage::AssemblyMode;
 use crate::linkage_file::{check_format, checked_name};
 use crate::name;
 use crate::problem::spec::{
-    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Objective, PathSpec, ProblemSpec, RequireSpec, SolveSpec,
-    TaskSpec, TimingSpec,
+    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Objective, PathSpec, ProblemSpec,
+    RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use crate::record::Unit;
 use crate::solve::population::PopulationError;

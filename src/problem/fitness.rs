@@ -105,9 +105,8 @@ impl<'a> PathFitness<'a> {
             problem,
             spaces,
             targets,
-            deviation: (problem.spec().solve.objective == Objective::MaxDeviation).then(|| {
-                task.tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min))
-            }),
+            deviation: (problem.spec().solve.objective == Objective::MaxDeviation)
+                .then(|| task.tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min))),
             clocks,
             wheel: (wheel.iter().map(|e| e.re).collect(), wheel.iter().map(|e| e.im).collect()),
             span,

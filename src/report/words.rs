@@ -137,17 +137,31 @@ fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
         .collect()
 }
 
-/// Whether the best candidate keeps to the tolerances, and by how much and where it does not: a sentence or two;
+/// Whether a candidate keeps to the tolerances, and by how much and where the nearest does not: a sentence or two;
 /// `None` where no tolerance was asked.
 pub(super) fn tolerances(record: &Record) -> Option<String> {
-    let best = record.candidates.first()?;
-    let row = best.requirements.iter().find(|r| r.name == "tolerance")?;
     let part = |d: &Deviation| if d.error == 0.0 { 0.0 } else { d.error / d.tolerance };
     let band = |candidate: &Candidate| {
-        let parts = deviations(record, candidate).iter().map(part).fold(f64::NAN, f64::max);
-        if parts.is_finite() { Some(parts) } else { None }
+        deviations(record, candidate).iter().map(part).fold(f64::NEG_INFINITY, f64::max)
     };
-    let list = deviations(record, best);
+    // Among the candidates that keep to everything else, if there are any.
+    let otherwise_good = |c: &&Candidate| {
+        let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
+        !forbidden && c.requirements.iter().all(|r| r.met || r.name == "tolerance")
+    };
+    let nearest = |list: &mut dyn Iterator<Item = &Candidate>| {
+        let measured = list.map(|c| (band(c), c.rank, c.clone()));
+        measured.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))).map(|(_, _, c)| c)
+    };
+    let first = record.candidates.first()?;
+    let best = if first.accepted {
+        first.clone()
+    } else {
+        nearest(&mut record.candidates.iter().filter(otherwise_good))
+            .or_else(|| nearest(&mut record.candidates.iter()))?
+    };
+    let row = best.requirements.iter().find(|r| r.name == "tolerance")?;
+    let list = deviations(record, &best);
     let unit = unit_suffix(record);
     if row.met {
         let worst = list.iter().max_by(|x, y| part(x).total_cmp(&part(y)))?;
@@ -162,22 +176,17 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     }
     let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
     let mut text = format!(
-        "Tolerances not met by {}{unit} at point {}: #{} has an error of {}{unit} there and {}{unit} is allowed.",
+        "Tolerances not met by {}{unit} at point {}: the nearest, #{}, has an error of {}{unit} there and {}{unit} is allowed.",
         short(worst.error - worst.tolerance),
         worst.point,
         best.rank,
         short(worst.error),
         short(worst.tolerance)
     );
-    // Over the candidates that keep to everything else, if there are any.
-    let otherwise_good = |c: &&Candidate| {
-        let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
-        !forbidden && c.requirements.iter().all(|r| r.met || r.name == "tolerance")
-    };
-    let bands = record.candidates.iter().filter(otherwise_good).filter_map(band);
-    if let Some(least) = bands.min_by(f64::total_cmp) {
+    let least = band(&best);
+    if least.is_finite() {
         // Never rounded down to what was not found.
-        let shown = (least * 1e4).ceil() / 1e4;
+        let shown = brief((least * 1e4).ceil() / 1e4, 6);
         text.push_str(&format!(" The narrowest band found is {shown} times the tolerances."));
     }
     Some(text)
@@ -187,7 +196,8 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
 fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
     let list = deviations(record, candidate);
     let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
-    let (excess, j, error, limit) = (worst.error - worst.tolerance, worst.point, worst.error, worst.tolerance);
+    let (excess, j, error, limit) =
+        (worst.error - worst.tolerance, worst.point, worst.error, worst.tolerance);
     let (mut shown, mut allowed) = (short(error), short(limit));
     if shown == allowed {
         (shown, allowed) = (exact(error), exact(limit));

@@ -6,8 +6,8 @@
 //! design and polishes what that finds. The population searches alone run without a polish.
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
-use super::population::{self, Population};
 use super::polish::{improve, promising, reserve};
+use super::population::{self, Population};
 use super::rank::{compare, distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::Starts;
 use super::{Budget, Observer, Progress, SearchOutcome};

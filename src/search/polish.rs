@@ -18,14 +18,28 @@ use crate::problem::{Problem, Setting};
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::solve::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
 use crate::solve::levenberg_marquardt::BlockLeastSquares;
+use crate::solve::streams::{Stream, stream, uniform};
 use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 
-/// Distinct optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
+/// Different optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
 /// them.
-const BASINS: usize = 24;
+const BASINS: usize = 32;
 /// Steps of a polish.
 const STEPS: usize = 150;
+/// Optima of the largest deviation around which is looked for better ones, starts around each, how far they go
+/// (in trust boxes; of a long link a tenth counts), rounds at most, and rounds without news that end it.
+const HOPPED: usize = 3;
+const HOPS: usize = 6;
+const HOP: f64 = 0.4;
+const MAX_HOPS: u64 = 4;
+const QUIET_HOPS: usize = 2;
+/// Starts whose largest deviation and link ratio differ by less than this part are the same.
+const SAME_START: f64 = 1e-2;
+/// Largest deviations that differ by less than this part are the same optimum.
+const SAME_DEVIATION: f64 = 1e-6;
+/// The random stream of the first round; those of a multistart count up from 0.
+const FIRST_HOP: u64 = 1 << 62;
 /// Evaluations of a polish at most.
 const EVALUATIONS: u64 = 400;
 /// The part of a budget that is kept for polishing where there is something to polish for.
@@ -41,7 +55,8 @@ const AT_LIMIT: f64 = 1e-4;
 
 /// The evaluations of a budget that a search by least squares leaves to [`improve`].
 pub fn reserve(problem: &Problem, evaluations: u64) -> u64 {
-    let wanted = problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
+    let wanted =
+        problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
     if wanted { evaluations / SHARE } else { 0 }
 }
 
@@ -55,7 +70,8 @@ pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
 pub fn start_of_candidate(problem: &Problem, candidate: &Candidate) -> Option<Start> {
     let linkage = &candidate.linkage;
     let shape = Shape::from(linkage);
-    let side = if problem.sides().contains(&linkage.side()) { linkage.side() } else { *problem.sides().first()? };
+    let side =
+        if problem.sides().contains(&linkage.side()) { linkage.side() } else { *problem.sides().first()? };
     let space = problem.space(side);
     let types = problem.types();
     let aim = if types.is_empty() || types.contains(&candidate.linkage_type) {
@@ -235,7 +251,8 @@ fn held(candidate: &Candidate) -> bool {
 /// Polishes what a search has found as the objective and the tolerances ask, and adds what comes of it.
 ///
 /// `limit` is the budget of evaluations of which `evaluations` tells what is used; it is kept. The best
-/// [`BASINS`] distinct candidates are polished side by side; where neither tolerances nor the largest deviation
+/// [`BASINS`] distinct candidates are polished side by side, and so are starts around the best of what comes of
+/// them until that is no news, or until the tolerances are met; where neither tolerances nor the largest deviation
 /// ask for it, only accepted ones that a limit holds.
 pub fn improve(
     problem: &Problem,
@@ -250,26 +267,115 @@ pub fn improve(
     }
     let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
     let toleranced = problem.task().tolerances().is_some();
-    let mut worth: Vec<Candidate> = if deviation || toleranced {
-        let mut all: Vec<Candidate> = found.iter().filter(|c| promising(problem, c)).cloned().collect();
-        if all.is_empty() {
-            all.clone_from(found);
-        }
-        // As if none were within: those that are must not hide those that can be brought there.
-        all.iter_mut().for_each(|c| c.accepted = false);
-        distinct(problem, all, BASINS)
+    let worth: Vec<Candidate> = if deviation || toleranced {
+        let promising: Vec<&Candidate> = found.iter().filter(|c| promising(problem, c)).collect();
+        let all = if promising.is_empty() { found.iter().collect() } else { promising };
+        optima(problem, &all).into_iter().take(BASINS).cloned().collect()
     } else {
         let mut held: Vec<Candidate> = found.iter().filter(|c| c.accepted && held(c)).cloned().collect();
         held.sort_by(|one, other| compare(problem, one, other));
         distinct(problem, held, problem.spec().solve.candidates)
     };
-    worth.truncate(usize::try_from(left).unwrap_or(usize::MAX));
-    let each = (left / worth.len().max(1) as u64).min(EVALUATIONS);
-    let polished: Vec<(Option<Candidate>, u64)> = worth
+    let starts = worth.iter().filter_map(|candidate| start_of_candidate(problem, candidate)).collect();
+    polish_all(problem, starts, found, evaluations, limit, budget);
+    if !(deviation || toleranced) {
+        return;
+    }
+    // The largest deviation has many optima in one basin of least squares: look around the best.
+    let mut best = f64::INFINITY;
+    let mut quiet = 0;
+    for hop in 0..MAX_HOPS {
+        let mut near: Vec<(f64, &Candidate)> = Vec::new();
+        for candidate in found.iter().filter(|c| promising(problem, c)) {
+            near.push((deviation_of(problem, candidate), candidate));
+        }
+        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
+        let Some(&(least, _)) = near.first() else { return };
+        let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
+        if done || least <= exact_objective(problem) || budget.stopped() {
+            return;
+        }
+        quiet = if least < best * (1.0 - SAME_DEVIATION) { 0 } else { quiet + 1 };
+        best = best.min(least);
+        if quiet >= QUIET_HOPS {
+            return;
+        }
+        let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
+        let mut starts = Vec::new();
+        for (_, candidate) in near.into_iter().take(HOPPED) {
+            let Some(start) = start_of_candidate(problem, candidate) else { continue };
+            // The last goes on from where it is, without what its curvature was thought to be.
+            for _ in 1..HOPS {
+                starts.push(moved(problem, &start, &mut draws));
+            }
+            starts.push(start);
+        }
+        let before = evaluations.objective;
+        polish_all(problem, starts, found, evaluations, limit, budget);
+        if evaluations.objective == before {
+            return;
+        }
+    }
+}
+
+/// The candidates that differ in more than digits, least deviation first. One curve may stand here several times:
+/// cognates and points along a valley of least squares lead to different largest deviations.
+fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
+    let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
+    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut kept: Vec<(f64, &Candidate)> = Vec::new();
+    for (deviation, candidate) in measured {
+        let near = |one: f64, other: f64| (one - other).abs() <= SAME_START * other.abs();
+        let same = kept.iter().any(|(other, c)| {
+            near(deviation, *other)
+                && near(candidate.link_ratio, c.link_ratio)
+                && candidate.linkage.assembly() == c.linkage.assembly()
+                && candidate.linkage.side() == c.linkage.side()
+        });
+        if !same {
+            kept.push((deviation, candidate));
+        }
+    }
+    kept.into_iter().map(|(_, candidate)| candidate).collect()
+}
+
+/// The largest error of a candidate, in parts of the tolerances where there are any.
+fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
+    let task = problem.task();
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+}
+
+/// A start near another, in its bounds.
+fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
+    let space = problem.space(start.setting.side);
+    let trust = space.trust(problem.task().size());
+    let mut near = start.clone();
+    for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
+        let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
+        *value = (*value + by).max(low).min(high);
+    }
+    near
+}
+
+/// Polishes starts side by side, each with its share of what is left of `limit`, and adds what comes of them.
+fn polish_all(
+    problem: &Problem,
+    mut starts: Vec<Start>,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+    budget: &Budget<'_>,
+) {
+    let left = limit.saturating_sub(evaluations.objective);
+    starts.truncate(usize::try_from(left).unwrap_or(usize::MAX));
+    let each = (left / starts.len().max(1) as u64).min(EVALUATIONS);
+    let polished: Vec<(Option<Candidate>, u64)> = starts
         .par_iter()
-        .map(|candidate| {
-            let Some(start) = start_of_candidate(problem, candidate) else { return (None, 0) };
-            let fit = finish(problem, &start, each, budget);
+        .map(|start| {
+            let fit = finish(problem, start, each, budget);
             (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
         })
         .collect();

@@ -2,13 +2,13 @@
 //!
 //! Two linkages count as one answer when they draw the same curve through the target (Roberts' cognates
 //! included): their coupler points at the target points and 48 points of their curves lie within a small part
-//! of the target's size of each other. Ranked by acceptance, then error (errors of exact answers are equal),
-//! then worst transmission angle, then size.
+//! of the target's size of each other. Ranked by acceptance, then (where tolerances are missed) by how far,
+//! then error (errors of exact answers are equal), then worst transmission angle, then size.
 
 use crate::linkage::{Complex, CouplerCurve};
 use crate::problem::Problem;
 use crate::problem::spec::Objective;
-use crate::record::Candidate;
+use crate::record::{Candidate, Figure};
 use std::cmp::Ordering;
 
 /// Curves nearer to each other than this part of the target's size are one answer.
@@ -32,7 +32,8 @@ pub fn exact_objective(problem: &Problem) -> f64 {
     match problem.spec().solve.objective {
         Objective::SumOfSquares => exact_cost(problem),
         Objective::MaxDeviation => {
-            let least = problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
+            let least =
+                problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
             EXACT.sqrt() * problem.task().size() / least
         }
     }
@@ -55,10 +56,24 @@ pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Orderin
     let unmet = |c: &Candidate| {
         if c.accepted { 0 } else { 1 + c.requirements.iter().filter(|r| !r.met).count() }
     };
+    // Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
+    let missed = |c: &Candidate| {
+        let row = c.requirements.iter().find(|r| !c.accepted && r.name == "tolerance");
+        row.map_or((false, 0.0), |row| {
+            let otherwise = c.requirements.iter().all(|r| r.met || r.name == "tolerance");
+            let part = match (&row.value, &row.limit) {
+                (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
+                _ => 0.0,
+            };
+            (!otherwise, part)
+        })
+    };
     let size = |c: &Candidate| c.linkage.longest_link().max(c.linkage.crank_side());
     let accepted = |c: &Candidate| u8::from(!c.accepted);
     accepted(one)
         .cmp(&accepted(other))
+        .then_with(|| missed(one).0.cmp(&missed(other).0))
+        .then_with(|| missed(one).1.total_cmp(&missed(other).1))
         .then_with(|| error(one).total_cmp(&error(other)))
         .then_with(|| unmet(one).cmp(&unmet(other)))
         .then_with(|| other.transmission_deg.worst.total_cmp(&one.transmission_deg.worst))

@@ -6,9 +6,9 @@ use super::{At, ConvexOptions, Goal, MAX_TAU, Multipliers, norm};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
 /// Points that get a cone of their own without being looked at; of more, the worst this many.
-const CONES: usize = 120;
+const CONES: usize = 48;
 /// Rounds in which points that the model puts above the maximum are added.
-const CONE_ROUNDS: usize = 8;
+const CONE_ROUNDS: usize = 12;
 
 /// A step and what the model says of it.
 #[derive(Clone, Debug)]
