@@ -24,13 +24,13 @@ use rayon::prelude::*;
 
 /// Different optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
 /// them.
-const BASINS: usize = 32;
+const BASINS: usize = 24;
 /// Steps of a polish.
 const STEPS: usize = 150;
 /// Optima of the largest deviation around which is looked for better ones, starts around each, how far they go
 /// (in trust boxes; of a long link a tenth counts), rounds at most, and rounds without news that end it.
 const HOPPED: usize = 3;
-const HOPS: usize = 6;
+const HOPS: usize = 4;
 const HOP: f64 = 0.4;
 const MAX_HOPS: u64 = 4;
 const QUIET_HOPS: usize = 2;
@@ -268,7 +268,15 @@ pub fn improve(
     let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
     let toleranced = problem.task().tolerances().is_some();
     let worth: Vec<Candidate> = if deviation || toleranced {
-        let promising: Vec<&Candidate> = found.iter().filter(|c| promising(problem, c)).collect();
+        // Without the largest deviation as objective, what is accepted has no more to gain.
+        let open = |c: &&Candidate| promising(problem, c) && (deviation || !c.accepted);
+        let promising: Vec<&Candidate> = found.iter().filter(open).collect();
+        if !deviation && found.iter().any(|c| c.accepted) {
+            let wanted = problem.spec().solve.candidates;
+            if promising.is_empty() || distinct(problem, found.clone(), wanted).len() == wanted {
+                return;
+            }
+        }
         let all = if promising.is_empty() { found.iter().collect() } else { promising };
         optima(problem, &all).into_iter().take(BASINS).cloned().collect()
     } else {
