@@ -79,7 +79,6 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
     assert!(best.accepted);
     let list = errors(&record, best);
     let equal = list.iter().filter(|e| **e >= list[0] * (1.0 - 1e-6)).count();
-    println!("{equal} {list:?} {}", best.transmission_deg.worst);
     let squares = true_record(parse(&text.replace("objective = \"max-deviation\"", "")));
     assert!(best.error.max < squares.candidates[0].error.max);
     // Derivative-free: random small changes, each point at its nearest on the changed curve.
@@ -136,17 +135,12 @@ fn weights_do_not_enter_the_largest_deviation() {
 fn a_tolerance_that_least_squares_breaks_is_met_where_a_linkage_meets_it() {
     // Least squares leaves more than 0.034 at a point; 0.0301 is possible.
     let squares = run_on(2, literature("k18", &[]));
-    println!("least squares {} {}", squares.candidates[0].error.max, squares.candidates[0].error.sum_sq);
     for tolerance in ["0.0302", "0.032"] {
         assert!(squares.candidates[0].error.max > 0.032);
         for method in ["auto", "least-squares"] {
             let set = [("task.path.tolerance", tolerance), ("solve.method", method)];
             let record = true_record(literature("k18", &set));
             let best = &record.candidates[0];
-            println!(
-                "{tolerance} {method} {} {} {:?}",
-                best.error.max, best.error.sum_sq, record.evaluations
-            );
             assert!(best.accepted, "{tolerance} by {method}: {}", best.error.max);
             assert!(best.error.sum_sq > squares.candidates[0].error.sum_sq);
             let page = candidates_table(&record, Colour::Never);
@@ -162,7 +156,7 @@ fn a_tolerance_that_no_linkage_meets_is_said_to_be_missed_where_and_by_how_much(
     assert!(record.candidates.iter().all(|c| !c.accepted));
     let page = candidates_table(&record, Colour::Never);
     let flat = page.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(flat.contains("Tolerances not met by 0.0000416"), "{page}");
+    assert!(flat.contains("Tolerances not met by 4.16"), "{page}");
     assert!(flat.contains("The narrowest band found is 1.0014 times the tolerances."), "{page}");
 }
 
@@ -171,7 +165,7 @@ fn records_repeat_on_any_number_of_threads_and_keep_their_budgets() {
     for set in [LARGEST, ("task.path.tolerance", "0.0302")] {
         let [one, two] = [1, 2].map(|threads| bytes(&run_on(threads, literature("k18", &[set]))));
         assert_eq!(one, two);
-        for budget in [1_u64, 7, 100, 2345, 20_000] {
+        for budget in [1_u64, 7, 100, 2345] {
             for method in ["auto", "least-squares", "genetic", "differential-evolution"] {
                 let text = budget.to_string();
                 let set = [set, ("solve.evaluations", text.as_str()), ("solve.method", method)];
@@ -253,24 +247,12 @@ fn convex_programs_and_the_augmented_lagrangian_end_at_the_same_optimum() {
             let convex = finish(&problem, &start, 100_000, &budget);
             let [one, other] = [&lagrangian, &convex]
                 .map(|fit| judged(&problem, fit.end.as_ref().expect("it ended")).expect("it closes"));
-            println!(
-                "{line} {} | {} {} {} | {} {} {} | {}",
-                !timing.is_empty(),
-                one.error.sum_sq,
-                lagrangian.evaluations,
-                one.accepted,
-                other.error.sum_sq,
-                convex.evaluations,
-                other.accepted,
-                best.error.sum_sq
-            );
             assert!(other.accepted, "{text}");
             assert!(other.error.sum_sq <= one.error.sum_sq.max(best.error.sum_sq) * (1.0 + 1e-6), "{line}");
             cases += 1;
             fewer += usize::from(convex.evaluations < lagrangian.evaluations);
         }
     }
-    println!("{fewer} {cases}");
     assert!(2 * fewer > cases, "{fewer} of {cases}");
 }
 
@@ -286,17 +268,15 @@ fn thousands_of_points_have_a_least_largest_error_too() {
         let angles: Vec<String> = (0..n).map(|i| format!("{}", 360.0 * i as f64 / n as f64)).collect();
         format!(
             "format = 1\n[task.path]\npoints = [{}]\nclosed = true\n[task.path.timing]\ncrank_deg = [{}]\n\
-             [solve]\nobjective = \"max-deviation\"\nevaluations = 4000\n",
+             [solve]\nobjective = \"max-deviation\"\nevaluations = 2500\n",
             list.join(", "),
             angles.join(", ")
         )
     };
     // Finer samples of one curve: the largest errors agree to the square of the spacing.
-    let [coarse, fine] = [120, 1200].map(|n| {
-        let at = std::time::Instant::now();
+    let [coarse, fine] = [60, 600].map(|n| {
         let record = true_record(parse(&points(n)));
         let list = errors(&record, &record.candidates[0]);
-        println!("{n} {:?} {} {:?}", at.elapsed(), list[0], record.evaluations);
         assert!(list.iter().filter(|e| **e >= list[0] * (1.0 - 1e-5)).count() >= 4);
         record.candidates[0].error.max
     });

@@ -2,11 +2,14 @@
 
 use super::*;
 
+type Residual<'a> = Box<dyn Fn(&[f64; 2]) -> [f64; 2] + 'a>;
+type Inequality<'a> = Box<dyn Fn(&[f64; 2]) -> f64 + 'a>;
+
 /// Residuals and inequalities as plain functions of x in R^2, differentiated by central differences.
 struct Plain<'a> {
     bounds: [(f64, f64); 2],
-    residuals: Vec<Box<dyn Fn(&[f64; 2]) -> [f64; 2] + 'a>>,
-    rows: Vec<Box<dyn Fn(&[f64; 2]) -> f64 + 'a>>,
+    residuals: Vec<Residual<'a>>,
+    rows: Vec<Inequality<'a>>,
 }
 
 const H: f64 = 1e-6;
@@ -31,13 +34,8 @@ impl BlockLeastSquares<2> for Plain<'_> {
     }
     fn linearise(&self, x: &[f64; 2], (): &(), each: &mut dyn FnMut(&PointBlock<2>)) -> bool {
         for r in &self.residuals {
-            let mut jacobian = [[0.0; 2]; 2];
-            for i in 0..2 {
-                let (up, down) = (r(&shifted(x, i, H)), r(&shifted(x, i, -H)));
-                for axis in 0..2 {
-                    jacobian[axis][i] = (up[axis] - down[axis]) / (2.0 * H);
-                }
-            }
+            let by = |i, axis: usize| (r(&shifted(x, i, H))[axis] - r(&shifted(x, i, -H))[axis]) / (2.0 * H);
+            let jacobian = [0, 1].map(|axis| [by(0, axis), by(1, axis)]);
             each(&PointBlock { residual: r(x), jacobian, tangent: [0.0; 2], weight: 1.0 });
         }
         true
@@ -79,14 +77,10 @@ fn solved(problem: &Plain<'_>, goal: &Goal<'_>, start: [f64; 2]) -> ConvexResult
 }
 
 /// Values f(t) - x0 - x1 t at evenly spaced t in [0, 1] as residuals along the x axis.
-fn line_fit(n: usize, f: impl Fn(f64) -> f64 + Copy) -> Plain<'static>
-where
-    f64: Sized,
-{
+fn line_fit(n: usize, f: impl Fn(f64) -> f64) -> Plain<'static> {
     let values: Vec<(f64, f64)> = (0..n).map(|i| i as f64 / (n - 1) as f64).map(|t| (t, f(t))).collect();
-    let residual = |(t, value): (f64, f64)| -> Box<dyn Fn(&[f64; 2]) -> [f64; 2]> {
-        Box::new(move |x| [value - x[0] - x[1] * t, 0.0])
-    };
+    let residual =
+        |(t, value): (f64, f64)| -> Residual<'static> { Box::new(move |x| [value - x[0] - x[1] * t, 0.0]) };
     Plain { bounds: ANYWHERE, residuals: values.into_iter().map(residual).collect(), rows: Vec::new() }
 }
 
@@ -118,7 +112,7 @@ fn a_tolerance_a_point_scales_its_deviation() {
 /// Distances to four places minus given ranges: curved residuals.
 fn ranges() -> Plain<'static> {
     let places = [([0.0, 0.0], 2.0), ([4.0, 0.0], 3.0), ([0.0, 3.0], 2.2), ([5.0, 4.0], 3.1)];
-    let residual = |(at, range): ([f64; 2], f64)| -> Box<dyn Fn(&[f64; 2]) -> [f64; 2]> {
+    let residual = |(at, range): ([f64; 2], f64)| -> Residual<'static> {
         Box::new(move |x| [(x[0] - at[0]).hypot(x[1] - at[1]) - range, 0.0])
     };
     Plain { bounds: ANYWHERE, residuals: places.into_iter().map(residual).collect(), rows: Vec::new() }
