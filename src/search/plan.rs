@@ -234,7 +234,8 @@ fn auto(
     let patience = (limit as f64 * LOCAL_SHARE) as u64;
     let mut local = local_search(problem, limit - reserve(problem, limit), patience, budget, observer);
     local.finish(problem, limit, budget);
-    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled);
+    // Converged without an accepted answer: a tolerance that no polish could meet.
+    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged);
     let spent = local.evaluations.objective >= limit;
     if !gave_up || spent || local.found.iter().any(|c| c.accepted) {
         return Ok(local.outcome(problem));
@@ -242,7 +243,8 @@ fn auto(
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
     let for_polish = left / POLISH_SHARE;
     let which = Population::DifferentialEvolution;
-    let end = population::search(problem, which, left - for_polish, budget, observer)?;
+    let end =
+        population::search(problem, which, left - for_polish - reserve(problem, left), budget, observer)?;
     local.used.push(which.name().into());
     local.evaluations.objective += end.evaluations;
     local.evaluations.positions += end.positions;
