@@ -5,7 +5,7 @@
 
 use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
-use crate::problem::spec::{DirectionPolicy, Limits, OnePolicy, OrderPolicy, TransmissionOver};
+use crate::problem::spec::{DirectionPolicy, Limits, Objective, OnePolicy, OrderPolicy, TransmissionOver};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
 use crate::task::error::rms;
 use crate::task::referee::{Verdict, judge};
@@ -60,7 +60,10 @@ pub fn assess(
         crank_deg: crank_deg.to_vec(),
         t1_at: assemblies.to_vec(),
         error: ErrorRecord {
-            objective: error.objective,
+            objective: match problem.spec().solve.objective {
+                Objective::SumOfSquares => error.objective,
+                Objective::MaxDeviation => error.deviation(task.tolerances()),
+            },
             sum_sq: error.sum_sq,
             rms: rms(error.sum_sq, n),
             max: error.max,

@@ -16,8 +16,8 @@ use crate::linkage::AssemblyMode;
 use crate::linkage_file::{check_format, checked_name};
 use crate::name;
 use crate::problem::spec::{
-    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, ProblemSpec, RequireSpec, SolveSpec,
-    TaskSpec, TimingSpec,
+    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Objective, PathSpec, ProblemSpec,
+    RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use crate::record::Unit;
 use crate::solve::population::PopulationError;
@@ -118,6 +118,9 @@ pub fn parse(
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
     warnings.extend(design::against_requirements(&toml, &design, &require)?);
     let solve = solve_of(&toml, raw.solve.0)?;
+    if solve.objective == Objective::MaxDeviation {
+        warnings.extend(deviation_of(&toml, &path)?);
+    }
     let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
     design.resolve(&task);
     let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
@@ -267,6 +270,21 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
         genetic: raw.genetic.0,
         differential_evolution: raw.differential_evolution.0,
     })
+}
+
+/// What the largest deviation asks of the points: tolerances above zero; a warning where weights are given.
+fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+    if let Some(j) = path.tolerance.iter().flatten().position(|t| *t == 0.0) {
+        let message = format!("deviations are measured by the tolerances, and that of point {j} is 0");
+        return Err(Box::new(
+            toml.at("solve.objective", message).with_help("give every point a tolerance above 0, or none"),
+        ));
+    }
+    let message = "weights do not enter the largest deviation";
+    Ok(path.weight.is_some().then(|| {
+        toml.at("solve.objective", message)
+            .with_help("give tolerances: a point with half the tolerance counts twice")
+    }))
 }
 
 /// How many numbers a published vector has.

@@ -75,6 +75,7 @@ transmission_deg_min = 30       # how well the coupler pushes the follower: 90 i
 [solve]
 candidates = 5                  # how many different answers
 seed = 1                        # the same seed gives the same answers; another one may give others
+# objective = "max-deviation"   # the least largest error; where silent, the least sum of squared errors
 # evaluations = 200000          # how long to search
 # time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
 "#;

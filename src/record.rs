@@ -162,7 +162,8 @@ pub struct Candidate {
 /// The errors of a candidate, in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorRecord {
-    /// What was minimised (weighted).
+    /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
+    /// point's tolerance where tolerances are given.
     pub objective: f64,
     /// The unweighted sum of squared distances at the points.
     pub sum_sq: f64,

@@ -39,8 +39,7 @@ const KEYS_TO_COME: [KeyToCome; 5] = [
 ];
 
 /// A value that is known and not read yet, and a value that stands beside it.
-const VALUES_TO_COME: [(&str, &str); 2] =
-    [("continuation", "least-squares"), ("max-deviation", "sum-of-squares")];
+const VALUES_TO_COME: [(&str, &str); 1] = [("continuation", "least-squares")];
 
 impl<'a> TomlText<'a> {
     /// The text as a value of type T.

@@ -3,10 +3,10 @@
 use crate::assess::{MET_TOLERANCE, assess};
 use crate::linkage::mobility::wrapped;
 use crate::problem::Problem;
-use crate::problem::spec::DirectionPolicy;
+use crate::problem::spec::{DirectionPolicy, Objective};
 use crate::record::{Candidate, FORMAT, Figure, Reason, Record, Requirement};
 use crate::run::{RunError, digest};
-use crate::search::rank::{compare, exact_sum_sq};
+use crate::search::rank::{compare, exact_objective, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
 /// Figures may differ by this part of themselves ..
@@ -114,7 +114,11 @@ impl Against<'_> {
         // A sum of squares of errors near e changes by 2 e times the change of e.
         let sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (n as f64).sqrt();
         let (r, f) = (&recorded.error, &found.error);
-        self.number("error.objective", r.objective, f.objective, sq(f.objective));
+        let objective_scale = match problem.spec().solve.objective {
+            Objective::SumOfSquares => sq(f.objective),
+            Objective::MaxDeviation => exact_objective(problem) / ABSOLUTE,
+        };
+        self.number("error.objective", r.objective, f.objective, objective_scale);
         self.number("error.sum_sq", r.sum_sq, f.sum_sq, sq(f.sum_sq));
         self.number("error.rms", r.rms, f.rms, size);
         self.number("error.max", r.max, f.max, size);

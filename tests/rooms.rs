@@ -90,7 +90,7 @@ fn the_command_line_stays_in_its_room() {
 }
 
 #[test]
-fn argmin_is_named_in_one_file_and_unsafe_code_stands_in_one() {
+fn argmin_and_clarabel_are_named_in_one_file_each_and_unsafe_code_stands_in_one() {
     for file in sources(&root().join("src")) {
         let text = std::fs::read_to_string(&file).expect("it is text");
         let code = |line: &&str| !line.trim_start().starts_with("//");
@@ -101,6 +101,7 @@ fn argmin_is_named_in_one_file_and_unsafe_code_stands_in_one() {
             "{}",
             file.display()
         );
+        assert!(!has("clarabel::") || is("conic.rs"), "{}", file.display());
         assert!(!has("unsafe ") || is("dispatch.rs"), "{}", file.display());
     }
     let main = std::fs::read_to_string(root().join("src/main.rs")).expect("it is text");

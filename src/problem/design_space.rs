@@ -265,6 +265,12 @@ impl DesignSpace {
             || ((7..9).contains(&i) && self.coupler != CouplerChart::Offset)
     }
 
+    /// How far a step may go before linear models say little, for a target of this size: a tenth of it for
+    /// lengths, a tenth of a radian for angles.
+    pub fn trust(&self, size: f64) -> Design {
+        std::array::from_fn(|i| if self.is_angle(i) { 0.1 } else { 0.1 * size })
+    }
+
     fn is_angle(&self, i: usize) -> bool {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }

@@ -2,7 +2,7 @@
 //!
 //! *Prescribed timing*: the cost is the weighted sum of squared errors at the prescribed angles; both
 //! assemblies come from one position solution, both directions are tried where allowed, and the better one
-//! counts. *Free timing*: the coupler curve is sampled at evenly spaced crank angles and each point is met at
+//! counts; for the largest deviation the cost is that, in parts of the tolerances. *Free timing*: the coupler curve is sampled at evenly spaced crank angles and each point is met at
 //! the angle that is nearest to it alone (a parabola through the three samples around the nearest one). The
 //! crank angles are no genes. Order, circuit and branch, where required, enter the violation.
 //!
@@ -11,6 +11,7 @@
 
 use super::design_space::{Design, DesignSpace, Shape};
 use super::requirements::{Motion, Requirements, nearest_type};
+use super::spec::Objective;
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
 use crate::linkage::lane::{F64x8, LANES, Lane};
@@ -41,6 +42,8 @@ pub struct PathFitness<'a> {
     requirements: Requirements,
     genes: Vec<(f64, f64)>,
     targets: Columns,
+    /// The unit of the largest deviation, where that is minimised: the least tolerance, or 1.
+    deviation: Option<f64>,
     /// For each direction the sign and the columns cos, sin of direction psi_j (prescribed timing).
     clocks: Vec<(f64, Vec<f64>, Vec<f64>)>,
     /// cos, sin of the sampled crank angles (free timing).
@@ -102,6 +105,8 @@ impl<'a> PathFitness<'a> {
             problem,
             spaces,
             targets,
+            deviation: (problem.spec().solve.objective == Objective::MaxDeviation)
+                .then(|| task.tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min))),
             clocks,
             wheel: (wheel.iter().map(|e| e.re).collect(), wheel.iter().map(|e| e.im).collect()),
             span,
@@ -199,7 +204,7 @@ impl<'a> PathFitness<'a> {
         let aim = nearest_type(shape.links(), self.problem.types());
         let mut shared = None;
         for (direction, cos, sin) in &self.clocks {
-            let sums = timed_sums(&kernel, turn, cos, sin, &self.targets);
+            let sums = timed_sums(&kernel, turn, cos, sin, &self.targets, self.deviation);
             for (sum, assembly) in sums.cost.into_iter().zip([AssemblyMode::Plus, AssemblyMode::Minus]) {
                 let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
                 let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
@@ -232,7 +237,8 @@ impl<'a> PathFitness<'a> {
                 for (j, target) in self.problem.task().points().iter().enumerate() {
                     match curve.nearest(assembly, *target, &reachable) {
                         Some((angle, sq)) => {
-                            cost += self.targets.weight[j] * sq;
+                            let part = self.targets.weight[j] * sq;
+                            cost = if self.deviation.is_some() { f64::max(cost, part) } else { cost + part };
                             if j + 1 < self.problem.task().len() || !self.problem.task().repeats_first() {
                                 course.pass(angle);
                             }
@@ -247,6 +253,9 @@ impl<'a> PathFitness<'a> {
                 let (direction, disorder, motion) = course.judged(turns, self.problem.directions(), assembly);
                 let disorder = if self.problem.order_required() { disorder } else { 0.0 };
                 let lack = self.lack(aim, shape, &motion, &mut shared);
+                if let Some(unit) = self.deviation {
+                    cost = cost.sqrt() / unit;
+                }
                 let violation = if open { f64::INFINITY } else { lack + disorder };
                 offer(Reading {
                     fitness: Fitness { violation, cost },
@@ -302,7 +311,7 @@ impl PopulationProblem for PathFitness<'_> {
 }
 
 struct TimedSums {
-    /// The cost of both assemblies.
+    /// The cost of both assemblies: a sum, or the largest deviation.
     cost: [f64; 2],
     /// How far the loop is from closing, summed over the points; 0 where it closes at all of them.
     open: f64,
@@ -311,14 +320,23 @@ struct TimedSums {
 /// Points whose errors are computed before they are summed.
 const BLOCK: usize = 64;
 
-/// The weighted sums of squared errors of both assemblies at the angles turned by `turn`.
+/// The weighted sums of squared errors of both assemblies at the angles turned by `turn`; with the unit of a
+/// deviation the root of the largest weighted square in that unit.
 ///
 /// Errors are stored block by block and summed afterwards, always in the same order: a running sum inside the
 /// loop would keep the compiler from using vectors.
 #[inline]
-fn timed_sums(kernel: &Kernel, turn: Complex, cos: &[f64], sin: &[f64], targets: &Columns) -> TimedSums {
+fn timed_sums(
+    kernel: &Kernel,
+    turn: Complex,
+    cos: &[f64],
+    sin: &[f64],
+    targets: &Columns,
+    deviation: Option<f64>,
+) -> TimedSums {
     let kernel = *kernel;
     let mut sums = [F64x8::splat(0.0); 3];
+    let mut largest = [0.0_f64; 2];
     let mut block = [[0.0; BLOCK]; 3];
     for from in (0..cos.len()).step_by(BLOCK) {
         let to = (from + BLOCK).min(cos.len());
@@ -349,6 +367,14 @@ fn timed_sums(kernel: &Kernel, turn: Complex, cos: &[f64], sin: &[f64], targets:
                 *sum = *sum + F64x8::load(part, at);
             }
         }
+        if deviation.is_some() {
+            for (largest, part) in largest.iter_mut().zip(&block) {
+                *largest = part[..n].iter().copied().fold(*largest, f64::max);
+            }
+        }
+    }
+    if let Some(unit) = deviation {
+        return TimedSums { cost: largest.map(|sq| sq.sqrt() / unit), open: sums[2].sum() };
     }
     TimedSums { cost: [sums[0].sum(), sums[1].sum()], open: sums[2].sum() }
 }

@@ -16,7 +16,7 @@ use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::task::{AngleOffset, PathTask, TaskError, Timing};
 use design_space::DesignSpace;
 use requirements::Requirements;
-use spec::{DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec};
+use spec::{DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec};
 
 /// A problem that has been checked.
 #[derive(Clone, Debug)]
@@ -39,13 +39,36 @@ pub struct Setting {
     pub side: CouplerSide,
 }
 
+/// The task of the largest deviation: in place of the file's weights, which do not enter it, those with which
+/// least squares come nearest to it, (least tolerance / tol_j)^2.
+fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
+    let weights = match task.tolerances() {
+        None => vec![1.0; task.len()],
+        Some(tolerances) => {
+            if let Some((index, &value)) = tolerances.iter().enumerate().find(|(_, t)| **t <= 0.0) {
+                let must = "positive where deviations are measured by it";
+                return Err(TaskError::OutOfRange { what: "tolerance", index, value, must });
+            }
+            let least = tolerances.iter().copied().fold(f64::INFINITY, f64::min);
+            tolerances.iter().map(|t| (least / t).powi(2).max(LEAST_WEIGHT)).collect()
+        }
+    };
+    task.with_weights(weights)
+}
+
+/// No point's weight is less than this part of the largest, so that each stays a weight above zero.
+const LEAST_WEIGHT: f64 = 1e-12;
+
 impl Problem {
     /// A problem from its resolved data.
     ///
     /// # Errors
-    /// As [`PathTask::new`].
+    /// As [`PathTask::new`]; and where the largest deviation is minimised and a tolerance is zero.
     pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
-        let task = spec.task.path.to_task()?;
+        let mut task = spec.task.path.to_task()?;
+        if spec.solve.objective == Objective::MaxDeviation {
+            task = measured_by_tolerances(task)?;
+        }
         let mut types = spec.require.types.clone();
         types.sort();
         types.dedup();

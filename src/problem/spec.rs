@@ -331,6 +331,9 @@ pub enum Objective {
     /// The weighted sum of squared structural errors.
     #[default]
     SumOfSquares,
+    /// The largest structural error, each in parts of its point's tolerance where tolerances are given; weights
+    /// do not enter.
+    MaxDeviation,
 }
 
 /// How to search and when to stop.

@@ -4,6 +4,7 @@ use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
 use super::words;
 use crate::linkage::FourBar;
+use crate::problem::spec::Objective;
 use crate::record::{Candidate, Record, Unit};
 
 /// The width that everything is laid out for.
@@ -52,9 +53,10 @@ fn count(n: usize, noun: &str) -> String {
 
 fn rows(record: &Record, colour: Colour) -> String {
     use Align::{Left, Right};
+    let deviation = record.problem.resolved.solve.objective == Objective::MaxDeviation;
     let mut grid = Grid::new(&[
         ("#", Right),
-        ("sum of sq", Right),
+        (if deviation { "deviation" } else { "sum of sq" }, Right),
         ("rms", Right),
         ("max", Right),
         ("at", Right),
@@ -70,7 +72,7 @@ fn rows(record: &Record, colour: Colour) -> String {
         let plain = |text: String| (text, Ink::Plain);
         grid.row(vec![
             (candidate.rank.to_string(), Ink::Strong),
-            plain(significant(candidate.error.sum_sq, 6)),
+            plain(significant(if deviation { candidate.error.objective } else { candidate.error.sum_sq }, 6)),
             plain(significant(candidate.error.rms, 4)),
             plain(significant(candidate.error.max, 4)),
             plain(candidate.error.max_at.to_string()),
@@ -91,12 +93,24 @@ fn notes(record: &Record) -> String {
         format!(" Lengths in {}.", if unit == Unit::In { "inches" } else { unit.label() })
     });
     let mut out = String::from("\n");
+    let solve = &record.problem.resolved.solve;
+    let first = match (solve.objective, &record.problem.resolved.task.path.tolerance) {
+        (Objective::SumOfSquares, _) => "",
+        (Objective::MaxDeviation, None) => "deviation: the largest error, which was minimised. ",
+        (Objective::MaxDeviation, Some(_)) => {
+            "deviation: the largest error in parts of its point's tolerance, which was minimised; 1 is just met. "
+        }
+    };
     let key = format!(
-        "max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
+        "{first}max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
          transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
          (used). ratio: longest to shortest link.{unit}"
     );
     out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    if let Some(tolerances) = words::tolerances(record) {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", &tolerances, COLUMNS));
+    }
     // A hundred refusals for the same reason are one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
     for candidate in record.candidates.iter().filter(|c| !c.accepted) {

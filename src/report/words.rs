@@ -24,7 +24,10 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
         .requirements
         .iter()
         .filter(|r| !r.met && !forbidden.iter().any(|defect| defect.name() == r.name))
-        .map(of_requirement)
+        .map(|r| {
+            let pointed = if r.name == "tolerance" { of_tolerance(record, candidate) } else { None };
+            pointed.unwrap_or_else(|| of_requirement(r))
+        })
         .collect();
     list.extend(forbidden.iter().map(|d| Objection { key: d.name().to_owned(), sentence: of_defect(d) }));
     if !candidate.requirements.iter().any(|r| r.name == "tolerance") {
@@ -80,7 +83,8 @@ fn of_requirement(requirement: &Requirement) -> Objection {
         "pivots_in" => ("pivots", format!("fixed pivots span [{value}], outside of [{limit}]")),
         "footprint_in" => ("footprint", format!("the motion spans [{value}], outside of [{limit}]")),
         "direction" => ("direction", format!("turns {value}, {limit} asked")),
-        "tolerance" => ("tolerance", format!("largest error {value}, tolerance {limit}")),
+        // Where the record can be evaluated the sentence names the point.
+        "tolerance" => ("tolerance", format!("error {value}, tolerance {limit}")),
         other => {
             if let (Some(key), Figure::Numbers(_)) = (other.strip_prefix("design."), &requirement.limit) {
                 let key = clean(key);
@@ -111,23 +115,89 @@ fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
     }
 }
 
-/// The point at which the tolerance is exceeded most, where one was asked.
-fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
+/// An error at a point beside the tolerance there.
+struct Deviation {
+    point: usize,
+    error: f64,
+    tolerance: f64,
+}
+
+/// The errors of a candidate at its points, where tolerances were asked.
+fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
     let path = &record.problem.resolved.task.path;
-    let tolerance = path.tolerance.as_ref()?;
+    let Some(tolerance) = path.tolerance.as_ref() else { return Vec::new() };
     let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
-    let (excess, j, error, limit) = path
-        .points
-        .iter()
-        .zip(tolerance)
-        .zip(positions)
-        .enumerate()
-        .filter_map(|(j, ((target, limit), (angle, assembly)))| {
+    let points = path.points.iter().zip(tolerance).zip(positions).enumerate();
+    points
+        .filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
             let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
             let error = (crate::linkage::point(*target) - joints.coupler_point).norm();
-            Some((error - limit, j, error, *limit))
+            Some(Deviation { point, error, tolerance: *tolerance })
         })
-        .max_by(|x, y| x.0.total_cmp(&y.0))?;
+        .collect()
+}
+
+/// Whether a candidate keeps to the tolerances, and by how much and where the nearest does not: a sentence or two;
+/// `None` where no tolerance was asked.
+pub(super) fn tolerances(record: &Record) -> Option<String> {
+    let part = |d: &Deviation| if d.error == 0.0 { 0.0 } else { d.error / d.tolerance };
+    let band = |candidate: &Candidate| {
+        deviations(record, candidate).iter().map(part).fold(f64::NEG_INFINITY, f64::max)
+    };
+    // Among the candidates that keep to everything else, if there are any.
+    let otherwise_good = |c: &&Candidate| {
+        let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
+        !forbidden && c.requirements.iter().all(|r| r.met || r.name == "tolerance")
+    };
+    let nearest = |list: &mut dyn Iterator<Item = &Candidate>| {
+        let measured = list.map(|c| (band(c), c.rank, c.clone()));
+        measured.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))).map(|(_, _, c)| c)
+    };
+    let first = record.candidates.first()?;
+    let best = if first.accepted {
+        first.clone()
+    } else {
+        nearest(&mut record.candidates.iter().filter(otherwise_good))
+            .or_else(|| nearest(&mut record.candidates.iter()))?
+    };
+    let row = best.requirements.iter().find(|r| r.name == "tolerance")?;
+    let list = deviations(record, &best);
+    let unit = unit_suffix(record);
+    if row.met {
+        let worst = list.iter().max_by(|x, y| part(x).total_cmp(&part(y)))?;
+        return Some(format!(
+            "Tolerances met: #{} comes nearest to one at point {}, with an error of {}{unit} where {}{unit} is \
+             allowed.",
+            best.rank,
+            worst.point,
+            short(worst.error),
+            short(worst.tolerance)
+        ));
+    }
+    let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
+    let mut text = format!(
+        "Tolerances not met by {}{unit} at point {}: the nearest, #{}, has an error of {}{unit} there and {}{unit} is allowed.",
+        short(worst.error - worst.tolerance),
+        worst.point,
+        best.rank,
+        short(worst.error),
+        short(worst.tolerance)
+    );
+    let least = band(&best);
+    if least.is_finite() {
+        // Never rounded down to what was not found.
+        let shown = brief((least * 1e4).ceil() / 1e4, 6);
+        text.push_str(&format!(" The narrowest band found is {shown} times the tolerances."));
+    }
+    Some(text)
+}
+
+/// The point at which the tolerance is exceeded most, where one was asked.
+fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
+    let list = deviations(record, candidate);
+    let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
+    let (excess, j, error, limit) =
+        (worst.error - worst.tolerance, worst.point, worst.error, worst.tolerance);
     let (mut shown, mut allowed) = (short(error), short(limit));
     if shown == allowed {
         (shown, allowed) = (exact(error), exact(limit));

@@ -15,7 +15,8 @@ use super::atlas::Matches;
 use super::coarse::Coarse;
 use super::multistart::{fit_with, judged, promise};
 use super::plan::{Local, SAME_OPTIMUM};
-use super::rank::{distinct, exact_objective, exact_sum_sq};
+use super::polish::{basins_wanted, promising};
+use super::rank::{distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
 use crate::problem::Problem;
@@ -257,7 +258,7 @@ fn round(
         if setup.single && merit <= setup.exact {
             let verdict = judged(setup.problem, &end.start);
             spender.round.exact =
-                verdict.as_ref().is_some_and(|c| c.accepted && c.error.objective <= setup.exact);
+                verdict.as_ref().is_some_and(|c| c.accepted && searched(setup.problem, c) <= setup.exact);
             end.verdict = Some(verdict);
         }
         spender.round.ends.push(end);
@@ -278,12 +279,12 @@ pub(super) fn search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Local {
-    let wanted = problem.spec().solve.candidates;
+    let wanted = basins_wanted(problem);
     let coarse = Coarse::of(problem);
     let explored = coarse.as_ref().map_or(problem, |coarse| &coarse.problem);
     let starts = Starts::new(explored);
     let matches = (starts.loop_points().len() >= LEAST_MATCHED).then(|| Matches::of(&starts));
-    let exact = exact_objective(problem);
+    let exact = exact_cost(problem);
     let setup = Setup {
         problem,
         coarse: coarse.as_ref(),
@@ -348,15 +349,16 @@ pub(super) fn search(
             evaluations: local.evaluations.objective,
             budget: limit,
             best_sum_sq: best.as_ref().or(shown(&ends)).map(|c| c.error.sum_sq),
-            accepted: best.is_some(),
+            accepted: best.as_ref().is_some_and(|b| b.accepted),
         });
         if let Some(best) = &best {
-            let error = best.error.objective;
+            let error = searched(problem, best);
             let is_exact = error <= exact;
             let same = error + (SAME_OPTIMUM * error).max(exact);
             let hits = best_merits.iter().filter(|merit| **merit <= same).count();
             if hits >= HITS || (is_exact && wanted == 1) {
-                let now = if wanted == 1 { 1 } else { distinct(problem, accepted(&ends), wanted).len() };
+                let now =
+                    if wanted == 1 { 1 } else { distinct(problem, accepted(problem, &ends), wanted).len() };
                 quiet = if now > known { 0 } else { quiet + 1 };
                 known = now;
                 if now >= wanted || quiet >= QUIET_BATCHES {
@@ -392,10 +394,11 @@ fn judge_from_the_best(problem: &Problem, ends: &mut [End], wanted: usize, exact
             break;
         }
         let verdict = end.verdict.get_or_insert_with(|| judged(problem, &end.start));
-        let Some(candidate) = verdict.as_ref().filter(|c| c.accepted) else { continue };
+        let Some(candidate) = verdict.as_ref().filter(|c| promising(problem, c)) else { continue };
         count += 1;
-        let better =
-            best.as_ref().is_none_or(|b| candidate.error.objective.max(exact) < b.error.objective.max(exact));
+        let better = best
+            .as_ref()
+            .is_none_or(|b| searched(problem, candidate).max(exact) < searched(problem, b).max(exact));
         if better {
             best = Some(candidate.clone());
         }
@@ -403,8 +406,8 @@ fn judge_from_the_best(problem: &Problem, ends: &mut [End], wanted: usize, exact
     best
 }
 
-fn accepted(ends: &[End]) -> Vec<Candidate> {
-    ends.iter().filter_map(|end| end.verdict.clone().flatten()).filter(|c| c.accepted).collect()
+fn accepted(problem: &Problem, ends: &[End]) -> Vec<Candidate> {
+    ends.iter().filter_map(|end| end.verdict.clone().flatten()).filter(|c| promising(problem, c)).collect()
 }
 
 fn shown(ends: &[End]) -> Option<&Candidate> {

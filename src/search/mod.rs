@@ -1,12 +1,13 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
 pub mod atlas;
+pub mod belief;
 pub mod coarse;
 pub mod free;
-pub mod belief;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;
+pub mod polish;
 pub mod population;
 pub mod rank;
 pub mod starts;
@@ -55,7 +56,8 @@ pub struct Progress {
     pub evaluations: u64,
     /// The budget of evaluations.
     pub budget: u64,
-    /// The best sum of squares of an acceptable candidate so far, or else of any.
+    /// The best sum of squares of an acceptable candidate so far, or else of any; `None` where a search does not
+    /// know it.
     pub best_sum_sq: Option<f64>,
     /// Whether that one is acceptable.
     pub accepted: bool,

@@ -5,7 +5,7 @@
 //! fixed size and are read in their order, so the number of threads changes nothing but the time.
 
 use super::Budget;
-use super::rank::exact_objective;
+use super::rank::exact_cost;
 use super::starts::{Start, Starts};
 use crate::assess::assess;
 use crate::linkage::mobility::wrapped;
@@ -56,7 +56,7 @@ fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluatio
         max_rounds,
         max_evaluations,
         relative_reduction: 1e-12,
-        exact_cost: 1e-6 * exact_objective(problem),
+        exact_cost: 1e-6 * exact_cost(problem),
         feasibility: 1e-9 * task.size(),
         // A mean error above a fifth of the size after half of the steps leads nowhere.
         hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),

@@ -6,8 +6,9 @@
 //! design and polishes what that finds. The population searches alone run without a polish.
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
+use super::polish::{improve, promising, reserve};
 use super::population::{self, Population};
-use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
+use super::rank::{compare, distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::Starts;
 use super::timed;
 use super::{Budget, Observer, Progress, SearchOutcome};
@@ -84,7 +85,10 @@ fn search_here(
         Method::DifferentialEvolution => alone(problem, Population::DifferentialEvolution, budget, observer),
         Method::LeastSquares => {
             let limit = problem.spec().solve.evaluations;
-            Ok(local_search(problem, limit, limit, budget, observer).outcome(problem))
+            let share = limit - reserve(problem, limit);
+            let mut local = local_search(problem, share, share, budget, observer);
+            local.finish(problem, limit, budget);
+            Ok(local.outcome(problem))
         }
         Method::Auto => auto(problem, budget, observer),
     }
@@ -119,6 +123,14 @@ pub(super) struct Local {
 }
 
 impl Local {
+    /// The polish that the objective and the tolerances ask for.
+    fn finish(&mut self, problem: &Problem, limit: u64, budget: &Budget<'_>) {
+        improve(problem, &mut self.found, &mut self.evaluations, limit, budget);
+        if let Some(reason) = budget.stop_reason() {
+            self.reason = reason;
+        }
+    }
+
     fn outcome(self, problem: &Problem) -> SearchOutcome {
         SearchOutcome {
             candidates: distinct(problem, self.found, problem.spec().solve.candidates),
@@ -181,7 +193,7 @@ fn rounds(
         return super::free::search(problem, limit, patience, budget, observer);
     }
     let wanted = problem.spec().solve.candidates;
-    let exact = exact_objective(problem);
+    let exact = exact_cost(problem);
     let starts = Starts::new(problem);
     let mut local = Local {
         found: Vec::new(),
@@ -211,9 +223,9 @@ fn rounds(
             local.evaluations.positions += outcome.positions;
             let mut hit = false;
             for candidate in outcome.found {
-                if candidate.accepted {
-                    let error = candidate.error.objective;
-                    let bar = best.as_ref().map_or(f64::INFINITY, |b| b.error.objective);
+                if promising(problem, &candidate) {
+                    let error = searched(problem, &candidate);
+                    let bar = best.as_ref().map_or(f64::INFINITY, |b| searched(problem, b));
                     if error < bar - SAME_OPTIMUM * bar.max(exact) {
                         hits = 0;
                     }
@@ -241,7 +253,7 @@ fn rounds(
             evaluations: local.evaluations.objective,
             budget: limit,
             best_sum_sq: shown.map(|c| c.error.sum_sq),
-            accepted: best.is_some(),
+            accepted: best.as_ref().is_some_and(|b| b.accepted),
         });
         if hits >= HITS && batch >= LEAST_BATCHES {
             let distinct = distinct(problem, local.found.clone(), wanted).len();
@@ -270,8 +282,10 @@ fn auto(
 ) -> Result<SearchOutcome, PopulationError> {
     let limit = problem.spec().solve.evaluations;
     let patience = (limit as f64 * LOCAL_SHARE) as u64;
-    let mut local = local_search(problem, limit, patience, budget, observer);
-    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled);
+    let mut local = local_search(problem, limit - reserve(problem, limit), patience, budget, observer);
+    local.finish(problem, limit, budget);
+    // Converged without an accepted answer: a tolerance that no polish could meet.
+    let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged);
     let spent = local.evaluations.objective >= limit;
     if !gave_up || spent || local.found.iter().any(|c| c.accepted) {
         return Ok(local.outcome(problem));
@@ -279,7 +293,8 @@ fn auto(
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
     let for_polish = left / POLISH_SHARE;
     let which = Population::DifferentialEvolution;
-    let end = population::search(problem, which, left - for_polish, budget, observer)?;
+    let end =
+        population::search(problem, which, left - for_polish - reserve(problem, left), budget, observer)?;
     local.used.push(which.name().into());
     local.evaluations.objective += end.evaluations;
     local.evaluations.positions += end.positions;
@@ -299,6 +314,7 @@ fn auto(
         local.evaluations.positions += n * evaluations;
         local.found.extend(candidate);
     }
+    local.finish(problem, limit, budget);
     if let Some(reason) = budget.stop_reason() {
         local.reason = reason;
     } else {

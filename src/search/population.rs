@@ -6,6 +6,7 @@ use super::starts::Start;
 use super::{Budget, Observer, Progress};
 use crate::problem::Problem;
 use crate::problem::fitness::PathFitness;
+use crate::problem::spec::Objective;
 use crate::record::{Candidate, Reason};
 use crate::solve::argmin_bridge::{Limits, StopReason, run_restarts};
 use crate::solve::differential_evolution::DifferentialEvolution;
@@ -87,6 +88,7 @@ pub fn search(
         });
     }
     let limits = Limits { evaluations, target: Some(super::rank::exact_objective(problem)) };
+    let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(budget.stopped());
     let outcome = run_restarts(&fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
         if budget.stopped() {
@@ -96,7 +98,7 @@ pub fn search(
             phase: which.name(),
             evaluations: at.evaluations,
             budget: evaluations,
-            best_sum_sq: at.best.fitness.is_feasible().then_some(at.best.fitness.cost),
+            best_sum_sq: (sums && at.best.fitness.is_feasible()).then_some(at.best.fitness.cost),
             accepted: at.best.fitness.is_feasible(),
         });
     })?;

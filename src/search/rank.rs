@@ -2,12 +2,13 @@
 //!
 //! Two linkages count as one answer when they draw the same curve through the target (Roberts' cognates
 //! included): their coupler points at the target points and 48 points of their curves lie within a small part
-//! of the target's size of each other. Ranked by acceptance, then error (errors of exact answers are equal),
-//! then worst transmission angle, then size.
+//! of the target's size of each other. Ranked by acceptance, then (where tolerances are missed) by how far,
+//! then error (errors of exact answers are equal), then worst transmission angle, then size.
 
 use crate::linkage::{Complex, CouplerCurve};
 use crate::problem::Problem;
-use crate::record::Candidate;
+use crate::problem::spec::Objective;
+use crate::record::{Candidate, Figure};
 use std::cmp::Ordering;
 
 /// Curves nearer to each other than this part of the target's size are one answer.
@@ -20,9 +21,32 @@ pub fn exact_sum_sq(problem: &Problem) -> f64 {
     EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
-/// The objective (weighted) below which a fit is exact.
-pub fn exact_objective(problem: &Problem) -> f64 {
+/// The weighted sum of squares below which a fit is exact.
+pub fn exact_cost(problem: &Problem) -> f64 {
     EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+}
+
+/// The objective below which a fit is exact: a weighted sum of squares; a largest deviation, which is a length,
+/// or where tolerances are given that length in parts of the least of them.
+pub fn exact_objective(problem: &Problem) -> f64 {
+    match problem.spec().solve.objective {
+        Objective::SumOfSquares => exact_cost(problem),
+        Objective::MaxDeviation => {
+            let least =
+                problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
+            EXACT.sqrt() * problem.task().size() / least
+        }
+    }
+}
+
+/// What searches by least squares lessen: the weighted sum of squares, whatever the objective is.
+pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
+    if problem.spec().solve.objective == Objective::SumOfSquares {
+        return candidate.error.objective;
+    }
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.objective)
 }
 
 /// Better first.
@@ -32,10 +56,24 @@ pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Orderin
     let unmet = |c: &Candidate| {
         if c.accepted { 0 } else { 1 + c.requirements.iter().filter(|r| !r.met).count() }
     };
+    // Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
+    let missed = |c: &Candidate| {
+        let row = c.requirements.iter().find(|r| !c.accepted && r.name == "tolerance");
+        row.map_or((false, 0.0), |row| {
+            let otherwise = c.requirements.iter().all(|r| r.met || r.name == "tolerance");
+            let part = match (&row.value, &row.limit) {
+                (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
+                _ => 0.0,
+            };
+            (!otherwise, part)
+        })
+    };
     let size = |c: &Candidate| c.linkage.longest_link().max(c.linkage.crank_side());
     let accepted = |c: &Candidate| u8::from(!c.accepted);
     accepted(one)
         .cmp(&accepted(other))
+        .then_with(|| missed(one).0.cmp(&missed(other).0))
+        .then_with(|| missed(one).1.total_cmp(&missed(other).1))
         .then_with(|| error(one).total_cmp(&error(other)))
         .then_with(|| unmet(one).cmp(&unmet(other)))
         .then_with(|| other.transmission_deg.worst.total_cmp(&one.transmission_deg.worst))

@@ -86,7 +86,7 @@ impl<'a> Starts<'a> {
         positions: &[[Complex; 2]],
     ) -> Option<Start> {
         let (side, space) = &self.spaces[0];
-        let shape = self.fit(ratios, &self.known(), positions)?;
+        let shape = self.fit(ratios, &KnownPivots::of(self.problem), positions)?;
         let ground = shape.follower_pivot - shape.crank_pivot;
         let turn = ground / ground.norm();
         let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };

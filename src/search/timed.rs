@@ -18,7 +18,8 @@
 
 use super::belief::Belief;
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
-use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
+use super::polish::{basins_wanted, promising};
+use super::rank::{compare, distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts, draw_ratios, drawn_types};
 use super::{Budget, Observer, Progress};
 use crate::linkage::{AssemblyMode, CouplerSide, LinkageType};
@@ -130,7 +131,7 @@ pub fn search(
     observer: &Observer<'_>,
 ) -> Option<TimedOutcome> {
     let search = Search::new(problem, budget)?;
-    let wanted = problem.spec().solve.candidates;
+    let wanted = basins_wanted(problem);
     let mut out = TimedOutcome {
         found: Vec::new(),
         evaluations: Evaluations::default(),
@@ -164,9 +165,10 @@ pub fn search(
             out.evaluations.objective += batch.evaluations;
             out.evaluations.positions += n * batch.evaluations;
             let mut take = |candidate: Candidate, belief: &mut Belief| {
-                if candidate.accepted {
-                    belief.came_to(candidate.error.objective);
-                    if best.as_ref().is_none_or(|b| candidate.error.objective < b.error.objective) {
+                if promising(problem, &candidate) {
+                    let cost = searched(problem, &candidate);
+                    belief.came_to(cost);
+                    if best.as_ref().is_none_or(|b| cost < searched(problem, b)) {
                         best = Some(candidate.clone());
                     }
                 }
@@ -186,7 +188,7 @@ pub fn search(
                 }
                 let Some(candidate) = judged(problem, &end.start) else { continue };
                 let Start { setting, design, .. } = end.start;
-                seen.push(Judged { setting, design, accepted: candidate.accepted });
+                seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
                 take(candidate, &mut belief);
             }
             for candidate in batch.judged {
@@ -205,7 +207,7 @@ pub fn search(
             evaluations: out.evaluations.objective,
             budget: limit,
             best_sum_sq: best.as_ref().or(out.found.first()).map(|c| c.error.sum_sq),
-            accepted: best.is_some(),
+            accepted: best.as_ref().is_some_and(|b| b.accepted),
         });
         let explored = !binding || binding_waves >= BINDING_WAVES;
         let enough = wanted == 1 || wave >= LEAST_WAVES;
@@ -248,7 +250,7 @@ impl<'a> Search<'a> {
             forms,
             types: drawn_types(problem),
             span: (low, high),
-            exact: exact_objective(problem),
+            exact: exact_cost(problem),
             problem,
             budget,
         })

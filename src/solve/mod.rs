@@ -1,4 +1,5 @@
-//! Numbers only: population searches, bounded least squares with a block a point, random streams.
+//! Numbers only: population searches, bounded least squares with a block a point, convex programs in a row,
+//! random streams.
 //!
 //! This room imports nothing else of the crate. It owns the traits that problems implement:
 //! [`population::PopulationProblem`], [`levenberg_marquardt::BlockLeastSquares`] and
@@ -6,6 +7,8 @@
 
 pub mod argmin_bridge;
 pub mod compact_lm;
+pub mod conic;
+pub mod convex;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod levenberg_marquardt;

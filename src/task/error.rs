@@ -35,6 +35,16 @@ pub fn rms(sum_sq: f64, n: usize) -> f64 {
     (sum_sq / n as f64).sqrt()
 }
 
+impl PathError {
+    /// max_j |T_j - P_j| / tol_j, a number without a unit: 1 where the tolerances are just met; without
+    /// tolerances the largest error, a length.
+    pub fn deviation(&self, tolerances: Option<&[f64]>) -> f64 {
+        let Some(tolerances) = tolerances else { return self.max };
+        let parts = self.structural.iter().zip(tolerances).map(|(error, tolerance)| error.norm() / tolerance);
+        parts.fold(0.0, f64::max)
+    }
+}
+
 impl PathTask {
     /// The errors of a linkage at the given crank angles (radians) and assemblies, one a point; `None` where
     /// the loop is open at a point.

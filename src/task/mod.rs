@@ -188,6 +188,16 @@ impl PathTask {
         })
     }
 
+    /// The same task with other weights, positive and one a point.
+    ///
+    /// # Errors
+    /// [`TaskError`] where they are not.
+    pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, TaskError> {
+        let options =
+            PathOptions { weights: Some(weights), tolerances: self.tolerances, closed: self.closed };
+        PathTask::new(self.points.into_iter().map(crate::linkage::xy).collect(), self.timing, options)
+    }
+
     /// The target points.
     pub fn points(&self) -> &[Complex] {
         &self.points

@@ -1,0 +1,404 @@
+//! What follows a search by least squares: the least largest deviation, tolerances that are met, and the last
+//! digits of answers on which a limit binds.
+//!
+//! A start or a judged candidate goes in, a better one of the same basin comes out: convex programs in a row
+//! ([`crate::solve::convex`]), under all requirements.
+
+use super::Budget;
+use super::multistart::{Fitted, judged};
+use super::rank::{compare, distinct, exact_cost, exact_objective};
+use super::starts::Start;
+use crate::linkage::{AssemblyMode, Complex};
+use crate::problem::design_space::{DESIGN, Shape};
+use crate::problem::requirements::nearest_type;
+use crate::problem::spec::Objective;
+use crate::problem::timed::TimedFit;
+use crate::problem::torus::{Positions, TorusFit};
+use crate::problem::{Problem, Setting};
+use crate::record::{Candidate, Evaluations, Figure};
+use crate::solve::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
+use crate::solve::levenberg_marquardt::BlockLeastSquares;
+use crate::solve::streams::{Stream, stream, uniform};
+use crate::task::{AngleOffset, Timing};
+use rayon::prelude::*;
+
+/// Different optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
+/// them.
+const BASINS: usize = 24;
+/// Distinct optima that are looked for before they are polished.
+const LEAST_BASINS: usize = 8;
+/// Steps of a polish.
+const STEPS: usize = 150;
+/// Optima of the largest deviation around which is looked for better ones, starts around each, how far they go
+/// (in trust boxes; of a long link a tenth counts), rounds at most, and rounds without news that end it.
+const HOPPED: usize = 3;
+const HOPS: usize = 4;
+const HOP: f64 = 0.4;
+const MAX_HOPS: u64 = 4;
+const QUIET_HOPS: usize = 2;
+/// Starts whose largest deviation and link ratio differ by less than this part are the same.
+const SAME_START: f64 = 1e-2;
+/// Largest deviations that differ by less than this part are the same optimum.
+const SAME_DEVIATION: f64 = 1e-6;
+/// The random stream of the first round; those of a multistart count up from 0.
+const FIRST_HOP: u64 = 1 << 62;
+/// Evaluations of a polish at most.
+const EVALUATIONS: u64 = 400;
+/// The part of a budget that is kept for polishing where there is something to polish for.
+const SHARE: u64 = 5;
+/// Tolerances are aimed at from this part of themselves inside.
+const TOLERANCE_MARGIN: f64 = 1e-9;
+/// A largest deviation of this part of the tolerances is room enough for least squares between them.
+const INSIDE: f64 = 0.98;
+/// A tolerance of zero is aimed at within this part of the target's size.
+const LEAST_TOLERANCE: f64 = 1e-10;
+/// A value this near to its limit, in parts of max(1, |limit|), is held by it.
+const AT_LIMIT: f64 = 1e-4;
+
+/// The evaluations of a budget that a search by least squares leaves to [`improve`].
+pub fn reserve(problem: &Problem, evaluations: u64) -> u64 {
+    let wanted =
+        problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
+    if wanted { evaluations / SHARE } else { 0 }
+}
+
+/// How many distinct optima a search by least squares has to find: the answers that are wanted, and enough of
+/// them to polish where the largest deviation or tolerances decide.
+pub fn basins_wanted(problem: &Problem) -> usize {
+    let wanted = problem.spec().solve.candidates;
+    if reserve(problem, SHARE) > 0 { wanted.max(LEAST_BASINS) } else { wanted }
+}
+
+/// Whether a candidate is accepted, or would be if its polish brought it within the tolerances.
+pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
+    let forbidden = candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
+    !forbidden && candidate.requirements.iter().all(|r| r.met || r.name == "tolerance")
+}
+
+/// The start at which a judged candidate stands; `None` where it is open at a point.
+pub fn start_of_candidate(problem: &Problem, candidate: &Candidate) -> Option<Start> {
+    let linkage = &candidate.linkage;
+    let shape = Shape::from(linkage);
+    let side =
+        if problem.sides().contains(&linkage.side()) { linkage.side() } else { *problem.sides().first()? };
+    let space = problem.space(side);
+    let types = problem.types();
+    let aim = if types.is_empty() || types.contains(&candidate.linkage_type) {
+        (!types.is_empty()).then_some(candidate.linkage_type)
+    } else {
+        nearest_type(shape.links(), types)
+    };
+    let (first, last) = (*candidate.crank_deg.first()?, *candidate.crank_deg.last()?);
+    let assembly: AssemblyMode = *candidate.t1_at.first()?;
+    if let Timing::Prescribed { offset, .. } = problem.task().timing() {
+        let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+        // The sense in which the increments fit.
+        let misfit = |direction: f64| -> f64 {
+            let pairs = candidate.crank_deg.iter().zip(written);
+            pairs.map(|(has, wants)| ((has - first) - direction * (wants - written[0])).abs()).sum()
+        };
+        let directions = problem.directions().iter().copied();
+        let direction = directions.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)))?;
+        let turned = match offset {
+            AngleOffset::Free => (first - direction * written[0]).to_radians(),
+            AngleOffset::Fixed | AngleOffset::Ground => 0.0,
+        };
+        let setting = Setting { aim, assembly, direction, side };
+        return Some(Start { design: space.design(&shape, turned), setting, positions: Vec::new() });
+    }
+    let positions: Option<Positions> = candidate
+        .crank_deg
+        .iter()
+        .zip(&candidate.t1_at)
+        .map(|(deg, t1)| {
+            let angle = deg.to_radians();
+            let joints = linkage.position_with(angle, *t1).joints()?;
+            Some([Complex::from_polar(1.0, angle), (joints.follower_pin - joints.crank_pin) / shape.coupler])
+        })
+        .collect();
+    let setting = Setting { aim, assembly, direction: if last < first { -1.0 } else { 1.0 }, side };
+    Some(Start { design: space.design(&shape, 0.0), setting, positions: positions? })
+}
+
+/// The tolerances by which deviations are measured: 1 where none are given.
+fn measures(problem: &Problem) -> Vec<f64> {
+    match problem.task().tolerances() {
+        None => vec![1.0; problem.task().len()],
+        Some(tolerances) => {
+            let least = LEAST_TOLERANCE * problem.task().size();
+            tolerances.iter().map(|t| (t * (1.0 - TOLERANCE_MARGIN)).max(least)).collect()
+        }
+    }
+}
+
+/// Lessens the largest deviation, in parts of the tolerances where there are any, until it can be no less or,
+/// within tolerances, is below `enough`.
+///
+/// The merit is that deviation, plus what the requirements lack in sizes of the target.
+pub fn deviation_polish(
+    problem: &Problem,
+    start: &Start,
+    enough: f64,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    let tolerances = measures(problem);
+    convex(problem, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations, budget).0
+}
+
+/// Brings a start to the best of its basin under everything that is asked: the least largest deviation, or the
+/// least sum of squares within the tolerances; where these cannot be met, the least largest deviation.
+pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budget<'_>) -> Fitted {
+    let floor = 1e-3 * exact_objective(problem);
+    match (problem.spec().solve.objective, problem.task().tolerances()) {
+        (Objective::MaxDeviation, _) => deviation_polish(problem, start, floor, evaluations, budget),
+        (Objective::SumOfSquares, None) => {
+            let exact = 1e-6 * exact_cost(problem);
+            convex(problem, start, &Goal::SumOfSquares, exact, evaluations, budget).0
+        }
+        (Objective::SumOfSquares, Some(_)) => {
+            let tolerances = measures(problem);
+            let nearest = deviation_polish(problem, start, INSIDE, evaluations, budget);
+            let left = evaluations.saturating_sub(nearest.evaluations);
+            let Some(inside) = &nearest.end else { return nearest };
+            if nearest.merit > 1.0 || left == 0 {
+                return nearest;
+            }
+            let goal = Goal::SumOfSquaresWithin { tolerances: &tolerances };
+            let exact = 1e-6 * exact_cost(problem);
+            let (within, deviation) = convex(problem, inside, &goal, exact, left, budget);
+            let spent = nearest.evaluations + within.evaluations;
+            if within.end.is_none() || deviation > 1.0 + TOLERANCE_MARGIN {
+                return Fitted { evaluations: spent, ..nearest };
+            }
+            Fitted { evaluations: spent, ..within }
+        }
+    }
+}
+
+/// A fit by convex programs, and its largest deviation.
+fn convex(
+    problem: &Problem,
+    start: &Start,
+    goal: &Goal<'_>,
+    good_enough: f64,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> (Fitted, f64) {
+    let size = problem.task().size();
+    let trust = problem.space(start.setting.side).trust(size);
+    let options = ConvexOptions {
+        max_steps: STEPS,
+        max_evaluations: evaluations,
+        trust,
+        length: size,
+        relative_reduction: 1e-11,
+        feasibility: 1e-9 * size,
+        good_enough,
+    };
+    let stop = || budget.stopped();
+    if start.positions.is_empty() {
+        match TimedFit::new(problem, start.setting) {
+            None => (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY),
+            Some(fit) => {
+                let result = run(&fit, goal, start, (), &options, &stop);
+                ended(size, start.setting, result, |()| Vec::new())
+            }
+        }
+    } else {
+        let fit = TorusFit::new(problem, start.setting);
+        let mut positions = start.positions.clone();
+        if !fit.settle(&start.design, &mut positions) {
+            return (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY);
+        }
+        ended(size, start.setting, run(&fit, goal, start, positions, &options, &stop), |positions| positions)
+    }
+}
+
+fn run<P: BlockLeastSquares<DESIGN>>(
+    fit: &P,
+    goal: &Goal<'_>,
+    start: &Start,
+    state: P::State,
+    options: &ConvexOptions<DESIGN>,
+    stop: &dyn Fn() -> bool,
+) -> ConvexResult<DESIGN, P::State> {
+    solve(fit, goal, start.design, state, options, stop)
+}
+
+fn ended<S>(
+    size: f64,
+    setting: Setting,
+    result: ConvexResult<DESIGN, S>,
+    positions: impl Fn(S) -> Positions,
+) -> (Fitted, f64) {
+    let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
+    let fitted = Fitted {
+        merit: result.objective + result.violation / size,
+        evaluations: result.evaluations,
+        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+    };
+    (fitted, result.deviation)
+}
+
+/// Whether a limit holds a candidate: then the last digits are worth a polish.
+fn held(candidate: &Candidate) -> bool {
+    let at = |value: f64, limit: f64| (value - limit).abs() <= AT_LIMIT * limit.abs().max(1.0);
+    candidate.requirements.iter().any(|r| match (&r.value, &r.limit) {
+        (Figure::Number(value), Figure::Number(limit)) => at(*value, *limit),
+        (Figure::Number(value), Figure::Numbers(limits)) => {
+            let fixed = limits.iter().all(|limit| Some(limit) == limits.first());
+            !fixed && limits.iter().any(|limit| at(*value, *limit))
+        }
+        (Figure::Numbers(values), Figure::Numbers(limits)) => {
+            values.iter().zip(limits).any(|(value, limit)| at(*value, *limit))
+        }
+        _ => false,
+    })
+}
+
+/// Polishes what a search has found as the objective and the tolerances ask, and adds what comes of it.
+///
+/// `limit` is the budget of evaluations of which `evaluations` tells what is used; it is kept. The best
+/// [`BASINS`] distinct candidates are polished side by side, and so are starts around the best of what comes of
+/// them until that is no news, or until the tolerances are met; where neither tolerances nor the largest deviation
+/// ask for it, only accepted ones that a limit holds.
+pub fn improve(
+    problem: &Problem,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+    budget: &Budget<'_>,
+) {
+    let left = limit.saturating_sub(evaluations.objective);
+    if left == 0 || found.is_empty() {
+        return;
+    }
+    let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
+    let toleranced = problem.task().tolerances().is_some();
+    let worth: Vec<Candidate> = if deviation || toleranced {
+        // Without the largest deviation as objective, what is accepted has no more to gain.
+        let open = |c: &&Candidate| promising(problem, c) && (deviation || !c.accepted);
+        let promising: Vec<&Candidate> = found.iter().filter(open).collect();
+        if !deviation && found.iter().any(|c| c.accepted) {
+            let wanted = problem.spec().solve.candidates;
+            if promising.is_empty() || distinct(problem, found.clone(), wanted).len() == wanted {
+                return;
+            }
+        }
+        let all = if promising.is_empty() { found.iter().collect() } else { promising };
+        optima(problem, &all).into_iter().take(BASINS).cloned().collect()
+    } else {
+        let mut held: Vec<Candidate> = found.iter().filter(|c| c.accepted && held(c)).cloned().collect();
+        held.sort_by(|one, other| compare(problem, one, other));
+        distinct(problem, held, problem.spec().solve.candidates)
+    };
+    let starts = worth.iter().filter_map(|candidate| start_of_candidate(problem, candidate)).collect();
+    polish_all(problem, starts, found, evaluations, limit, budget);
+    if !(deviation || toleranced) {
+        return;
+    }
+    // The largest deviation has many optima in one basin of least squares: look around the best.
+    let mut best = f64::INFINITY;
+    let mut quiet = 0;
+    for hop in 0..MAX_HOPS {
+        let mut near: Vec<(f64, &Candidate)> = Vec::new();
+        for candidate in found.iter().filter(|c| promising(problem, c)) {
+            near.push((deviation_of(problem, candidate), candidate));
+        }
+        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
+        let Some(&(least, _)) = near.first() else { return };
+        let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
+        if done || least <= exact_objective(problem) || budget.stopped() {
+            return;
+        }
+        quiet = if least < best * (1.0 - SAME_DEVIATION) { 0 } else { quiet + 1 };
+        best = best.min(least);
+        if quiet >= QUIET_HOPS {
+            return;
+        }
+        let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
+        let mut starts = Vec::new();
+        for (_, candidate) in near.into_iter().take(HOPPED) {
+            let Some(start) = start_of_candidate(problem, candidate) else { continue };
+            // The last goes on from where it is, without what its curvature was thought to be.
+            for _ in 1..HOPS {
+                starts.push(moved(problem, &start, &mut draws));
+            }
+            starts.push(start);
+        }
+        let before = evaluations.objective;
+        polish_all(problem, starts, found, evaluations, limit, budget);
+        if evaluations.objective == before {
+            return;
+        }
+    }
+}
+
+/// The candidates that differ in more than digits, least deviation first. One curve may stand here several times:
+/// cognates and points along a valley of least squares lead to different largest deviations.
+fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
+    let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
+    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut kept: Vec<(f64, &Candidate)> = Vec::new();
+    for (deviation, candidate) in measured {
+        let near = |one: f64, other: f64| (one - other).abs() <= SAME_START * other.abs();
+        let same = kept.iter().any(|(other, c)| {
+            near(deviation, *other)
+                && near(candidate.link_ratio, c.link_ratio)
+                && candidate.linkage.assembly() == c.linkage.assembly()
+                && candidate.linkage.side() == c.linkage.side()
+        });
+        if !same {
+            kept.push((deviation, candidate));
+        }
+    }
+    kept.into_iter().map(|(_, candidate)| candidate).collect()
+}
+
+/// The largest error of a candidate, in parts of the tolerances where there are any.
+fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
+    let task = problem.task();
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+}
+
+/// A start near another, in its bounds.
+fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
+    let space = problem.space(start.setting.side);
+    let trust = space.trust(problem.task().size());
+    let mut near = start.clone();
+    for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
+        let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
+        *value = (*value + by).max(low).min(high);
+    }
+    near
+}
+
+/// Polishes starts side by side, each with its share of what is left of `limit`, and adds what comes of them.
+fn polish_all(
+    problem: &Problem,
+    mut starts: Vec<Start>,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+    budget: &Budget<'_>,
+) {
+    let left = limit.saturating_sub(evaluations.objective);
+    starts.truncate(usize::try_from(left).unwrap_or(usize::MAX));
+    let each = (left / starts.len().max(1) as u64).min(EVALUATIONS);
+    let polished: Vec<(Option<Candidate>, u64)> = starts
+        .par_iter()
+        .map(|start| {
+            let fit = finish(problem, start, each, budget);
+            (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
+        })
+        .collect();
+    for (candidate, used) in polished {
+        evaluations.objective += used;
+        evaluations.positions += used * problem.task().len() as u64;
+        found.extend(candidate);
+    }
+}
