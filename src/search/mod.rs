@@ -1,11 +1,15 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
+pub mod conflicts;
+pub mod costs;
+pub mod loosen;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;
 pub mod population;
 pub mod rank;
 pub mod starts;
+pub mod warm;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -7,6 +7,7 @@ pub mod argmin_bridge;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod levenberg_marquardt;
+pub mod nonnegative;
 pub mod population;
 pub mod random_search;
 pub mod streams;
