@@ -3,8 +3,8 @@
 //! A demand helps when a search without it ends with something acceptable. Every set of demands that cannot be
 //! met together (a conflict) holds all that help; a minimal one is what is left when whatever can be left out
 //! without ending the conflict is left out, one after the other. For each demand that helps the smallest
-//! loosening is looked for between its limits and what was attained without it: the way there is halved while
-//! fits from what is known, or else a short search, still end acceptable. The limits are then rounded outward
+//! loosening is looked for between its limits and what was attained without it: steps inward, each taken when
+//! a fit from what is known, or else a short search, ends acceptable there. The limits are then rounded outward
 //! to what reads well, and proposed only if the search itself, run with them as it would be when they are
 //! typed, ends with an accepted candidate. Where no single demand helps, pairs are tried.
 //!
@@ -24,14 +24,21 @@ use crate::task::error::rms;
 const TRIAL: u64 = 20_000;
 /// .. and at most one part in this many of the problem's own budget.
 const TRIAL_SHARE: u64 = 4;
-/// No new trial begins once this many times the problem's own budget is spent. A proof is the whole search.
-const ALLOWANCE: u64 = 4;
+/// No new trial begins once as much as this many trials is spent. (A proof is the whole search, and apart.)
+const ALLOWANCE: u64 = 40;
+/// A fit from what is known gets one part in this many of a trial: what succeeds does so soon.
+const FIT_SHARE: u64 = 16;
 /// Answers of a trial that further fits start from.
 const WARM: usize = 4;
-/// Fits and searches at limits between asked and attained.
-const HALVINGS: usize = 12;
-/// The way to the attained limits is not divided further than this.
-const NARROW: f64 = 0.98;
+/// Limits between asked and attained that are tried.
+const STEPS: usize = 30;
+/// The way inward is given up when a step of this part of it leads to nothing.
+const SHORTEST_STEP: f64 = 0.02;
+/// A short search is worth its price where the step is at least this part of the way.
+const SEARCHED_STEP: f64 = 0.2;
+/// How much longer the next step is after one that succeeded, and shorter after one that did not.
+const LONGER: f64 = 1.5;
+const SHORTER: f64 = 0.5;
 /// Proposals at most.
 const PROPOSALS: usize = 5;
 /// A bound that is this near, in parts of what it is measured against, is stood on.
@@ -64,13 +71,14 @@ pub fn explain(
     if budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
     }
+    let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
     let mut inquiry = Inquiry {
         problem,
         budget,
         observer,
-        trial: (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL),
+        trial,
         spent: 0,
-        allowance: problem.spec().solve.evaluations.saturating_mul(ALLOWANCE),
+        allowance: ALLOWANCE * trial,
         tried: Vec::new(),
     };
     let explained = inquiry.explain(&outcome.candidates)?;
@@ -108,11 +116,11 @@ impl Inquiry<'_> {
                 helping.push(demand);
             }
         }
-        let among = self.conflict(&demands, &helping)?;
         let mut found = Vec::new();
         for &demand in &helping {
             found.extend(self.relaxation(&[demand])?);
         }
+        let among = self.conflict(&demands, &helping)?;
         if helping.is_empty() {
             for (i, &one) in among.iter().enumerate() {
                 for &other in demands.iter().filter(|other| !among[..=i].contains(other)) {
@@ -175,12 +183,14 @@ impl Inquiry<'_> {
     ) -> Result<Vec<Candidate>, PopulationError> {
         spec.solve.evaluations = evaluations.max(1);
         spec.solve.method = Method::Auto;
-        self.search(spec)
+        let (accepted, spent) = self.outcome(spec)?;
+        self.spent += spent;
+        Ok(accepted)
     }
 
-    /// What the search accepts of a problem.
-    fn search(&mut self, spec: ProblemSpec) -> Result<Vec<Candidate>, PopulationError> {
-        let Ok(problem) = Problem::new(spec) else { return Ok(Vec::new()) };
+    /// What the search accepts of a problem, and what it cost.
+    fn outcome(&self, spec: ProblemSpec) -> Result<(Vec<Candidate>, u64), PopulationError> {
+        let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
         (self.observer)(&Progress {
             phase: "what would help",
             evaluations: self.spent,
@@ -189,8 +199,8 @@ impl Inquiry<'_> {
             accepted: false,
         });
         let outcome = plan::search(&problem, self.budget, &|_| {})?;
-        self.spent += outcome.evaluations.objective;
-        Ok(outcome.candidates.into_iter().filter(|c| c.accepted).collect())
+        let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
+        Ok((accepted, outcome.evaluations.objective))
     }
 
     /// A minimal set of demands that cannot be met together; `helping` are in every such set.
@@ -284,20 +294,21 @@ impl Inquiry<'_> {
         let mut outer = outermost.clone();
         // The error is judged by the tolerance, but no fit is led by it: what was found is what there is.
         if measured != [Demand::Tolerance] && !measured.is_empty() {
-            let mut share = 0.5;
-            for _ in 0..HALVINGS {
-                if share > NARROW || self.exhausted() {
+            let mut step: f64 = 0.5;
+            for _ in 0..STEPS {
+                if step < SHORTEST_STEP || self.exhausted() {
                     break;
                 }
-                let between = ladder.between(share, &outer);
-                match self.accepted_at(ladder.spec(base, &between), &warm)? {
+                let between = ladder.between(1.0 - step, &outer);
+                match self.accepted_at(ladder.spec(base, &between), &warm, step >= SEARCHED_STEP)? {
                     Some(candidate) => {
                         let limits = ladder.reached(self.problem, &candidate);
                         outer = limits.map_or(between.clone(), |limits| ladder.inner(&between, &limits));
                         warm.insert(0, candidate);
                         warm.truncate(WARM);
+                        step = (LONGER * step).min(0.5);
                     }
-                    None => share = 0.5 * (1.0 + share),
+                    None => step *= SHORTER,
                 }
             }
         }
@@ -315,7 +326,8 @@ impl Inquiry<'_> {
             let spec = ladder.spec(base, &limits);
             before = Some(limits.clone());
             let Some(set) = changes(self.problem, &spec, demands) else { return Ok(None) };
-            let accepted = self.search(spec)?;
+            // With the settings of the problem: what comes out is what comes out when it is typed.
+            let (accepted, _) = self.outcome(spec)?;
             if let Some(best) = accepted.first() {
                 let without_measure = (demands.len() - measured.len()) as f64 * WHOLE;
                 let sum_sq = best.error.sum_sq;
@@ -326,21 +338,27 @@ impl Inquiry<'_> {
         Ok(None)
     }
 
-    /// A candidate that is acceptable under other limits: by fits from what is known, else by a short search.
+    /// A candidate that is acceptable under other limits: by fits from what is known, else (`search`) by a
+    /// short search.
     fn accepted_at(
         &mut self,
         spec: ProblemSpec,
         warm: &[Candidate],
+        search: bool,
     ) -> Result<Option<Candidate>, PopulationError> {
         let Ok(problem) = Problem::new(spec) else { return Ok(None) };
+        let each = (self.trial / FIT_SHARE).max(1);
         for candidate in warm {
             let Some(start) = start_at(&problem, candidate) else { continue };
-            let fit = polish(&problem, start, LONG_STEPS, LONG_ROUNDS, self.trial, self.budget);
+            let fit = polish(&problem, start, LONG_STEPS, LONG_ROUNDS, each, self.budget);
             self.spent += fit.evaluations;
             let end = fit.end.and_then(|end| judged(&problem, &end)).filter(|c| c.accepted);
             if end.is_some() {
                 return Ok(end);
             }
+        }
+        if !search {
+            return Ok(None);
         }
         let mut spec = problem.spec().clone();
         spec.solve.candidates = 1;
