@@ -88,6 +88,60 @@ fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
     println!("{proposed} proposals typed in");
 }
 
+/// A key that is typed is no longer filled in by a default, and may take the default of another with it: what is
+/// proposed has to say enough for the problem that was proved.
+#[test]
+fn changes_that_are_typed_give_the_very_problem_that_was_proved() {
+    use linkwright::problem::Problem;
+    use linkwright::search::loosen::{Demand, changes};
+    let designs = [
+        "",
+        "A = [[-20, 20], [-20, 20]]",
+        "B = [[-20, 20], [0, 20]]",
+        "A = [1, 2]",
+        "A = [0, 0]\nB = [[3, 9], 0]",
+        "A = [[-9, 9], [-9, 9]]\nB = [[-9, 9], [-9, 9]]\nground = [1, 8]\nground_angle_deg = [-90, 90]",
+        "ground = [3, 8]",
+        "ground_angle_deg = 10",
+        "d = [1, 4]\na = 2",
+        "coupler_x = 3\ne = [1, 5]",
+    ];
+    let mut typed = 0;
+    for (design, timed) in designs.iter().flat_map(|design| [(design, false), (design, true)]) {
+        let timing =
+            if timed { "[task.path.timing]\ncrank_deg = [0, 40, 80]\noffset = \"fixed\"\n" } else { "" };
+        let text = format!(
+            "format = 1\n[task.path]\npoints = [[0, 0], [3, 1], [5, 4]]\ntolerance = 0.5\n{timing}[design]\n{design}\n\
+             [require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 40\npivots_in = [-30, -30, 30, 30]\n"
+        );
+        let parse = |set: &[(String, String)]| {
+            let file = linkwright::problem_file::parse("test.toml", &text, None, set);
+            file.unwrap_or_else(|e| panic!("{design} {set:?}: {e}")).spec
+        };
+        let problem = Problem::new(parse(&[])).expect("it is one");
+        for demand in Demand::of(&problem) {
+            let Some(limits) = demand.limits(problem.spec()) else { continue };
+            let values: Vec<f64> =
+                limits.iter().map(|l| (l.value + 0.125 * l.outward * l.value.abs()).max(-25.0)).collect();
+            let loosened = demand.with_limits(problem.spec().clone(), &values);
+            let set: Vec<(String, String)> = changes(&problem, &loosened, &[demand])
+                .expect("it can be typed")
+                .into_iter()
+                .map(|c| (c.key, c.to.to_string()))
+                .collect();
+            assert_eq!(parse(&set), loosened, "{design} {set:?}");
+            typed += 1;
+        }
+    }
+    assert!(typed > 150, "{typed}");
+}
+
+#[test]
+fn a_tolerance_that_is_set_by_hand_takes_the_place_of_a_column() {
+    let file = load(&example("csv-tolerances"), &[("task.path.tolerance", "0.75")]);
+    assert!(file.spec.task.path.tolerance.expect("it has one").iter().all(|t| *t == 0.75));
+}
+
 /// A limit that is typed a little back towards what was asked is no longer enough, as far as the same search sees:
 /// the proposal is near the least.
 #[test]

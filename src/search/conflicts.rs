@@ -205,7 +205,8 @@ impl Inquiry<'_> {
 
     /// A minimal set of demands that cannot be met together; `helping` are in every such set.
     fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
-        let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).collect();
+        // Left out first: bounds and policies, which often are defaults that nobody has asked for.
+        let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
         if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
             return Ok(helping.to_vec());
         }
