@@ -2,7 +2,7 @@
 
 use super::text::{clean, significant, wrapped};
 use super::words;
-use crate::record::{Candidate, Change, Cost, LimitUnit, Record, TypedValue, Unit};
+use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue, Unit};
 
 /// The rates are told for a step that changes the error by this part at most.
 const SMALL_STEP: f64 = 0.5;
@@ -96,7 +96,8 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
             parts.push("No single change that helps was found.".into());
         }
     } else {
-        parts.push("It works with".into());
+        let single = record.relaxations.iter().any(|relaxation| changed(relaxation) == 1);
+        parts.push(if single { "It works with" } else { "No single change helps; it works with" }.into());
     }
     if !parts.is_empty() {
         out.push('\n');
@@ -114,6 +115,11 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
     out
 }
 
+/// How many keys change; those that are only written out are none.
+fn changed(relaxation: &Relaxation) -> usize {
+    relaxation.set.iter().filter(|change| change.from != change.to).count()
+}
+
 /// `--set require.transmission_deg_min=32.1`, in quotes where a shell would take it apart.
 fn option(change: &Change) -> String {
     let typed = clean(&format!("{}={}", change.key, change.to));
@@ -124,7 +130,7 @@ fn option(change: &Change) -> String {
 /// `transmission_deg_min = 40`; the bare key where its value would be long.
 fn demand(record: &Record, key: &str) -> String {
     let short = clean(key.rsplit_once("require.").map_or(key, |(_, name)| name));
-    let from = |relaxation: &crate::record::Relaxation| {
+    let from = |relaxation: &Relaxation| {
         relaxation.set.iter().find(|change| change.key == key).map(|change| change.from.clone())
     };
     let require = &record.problem.resolved.require;

@@ -293,14 +293,15 @@ impl Inquiry<'_> {
         let outermost = reached.swap_remove(first);
         warm.swap(0, first);
         let mut outer = outermost.clone();
-        // The error is judged by the tolerance, but no fit is led by it: what was found is what there is.
+        // The error is judged by the tolerance, but no fit is led by it: what was found is what there is. Beside
+        // other limits it follows: it becomes what the last fit leaves.
         if measured != [Demand::Tolerance] && !measured.is_empty() {
             let mut step: f64 = 0.5;
             for _ in 0..STEPS {
                 if step < SHORTEST_STEP || self.exhausted() {
                     break;
                 }
-                let between = ladder.between(1.0 - step, &outer);
+                let between = ladder.without_tolerance(ladder.between(1.0 - step, &outer));
                 match self.accepted_at(ladder.spec(base, &between), &warm, step >= SEARCHED_STEP)? {
                     Some(candidate) => {
                         let limits = ladder.reached(self.problem, &candidate);
@@ -389,6 +390,7 @@ struct Ladder {
     outward: Vec<f64>,
     scale: Vec<f64>,
     lengths: Vec<bool>,
+    tolerances: Vec<bool>,
 }
 
 impl Ladder {
@@ -400,6 +402,7 @@ impl Ladder {
             outward: Vec::new(),
             scale: Vec::new(),
             lengths: Vec::new(),
+            tolerances: Vec::new(),
         };
         for demand in demands {
             let measure = scale(*demand, problem.spec());
@@ -408,6 +411,7 @@ impl Ladder {
                 ladder.outward.push(limit.outward);
                 ladder.scale.push(if measure > 0.0 { measure } else { problem.task().size() });
                 ladder.lengths.push(matches!(demand, Demand::Design(key) if key.is_length()));
+                ladder.tolerances.push(*demand == Demand::Tolerance);
             }
         }
         Some(ladder)
@@ -439,6 +443,14 @@ impl Ladder {
             if self.lengths[i] { limit.max(0.0) } else { limit }
         };
         (0..outer.len()).map(at).collect()
+    }
+
+    /// The same limits with a tolerance that everything meets.
+    fn without_tolerance(&self, mut limits: Vec<f64>) -> Vec<f64> {
+        for (limit, _) in limits.iter_mut().zip(&self.tolerances).filter(|(_, is)| **is) {
+            *limit = f64::MAX;
+        }
+        limits
     }
 
     /// The stricter of two in each place.

@@ -1,4 +1,5 @@
-//! What to try: starts, rounds, populations, and which answers to give.
+//! What to try: starts, rounds, populations, and which answers to give; what the requirements cost, and what would
+//! help where nothing is acceptable.
 
 pub mod conflicts;
 pub mod costs;

@@ -1,4 +1,5 @@
-//! Numbers only: population searches, bounded least squares with a block a point, random streams.
+//! Numbers only: population searches, bounded least squares with a block a point, non-negative
+//! least squares, random streams.
 //!
 //! This room imports nothing else of the crate. It owns the traits that problems implement:
 //! [`population::PopulationProblem`] and [`levenberg_marquardt::BlockLeastSquares`].
