@@ -94,6 +94,9 @@ fn rates_of_the_examples_agree_with_solving_again_at_moved_limits() {
     let held = [("require.footprint_in", "[-300, -30, 200, 450]"), ("task.path.tolerance", "40")];
     let held = example("walking-stride", &held);
     assert!(held.iter().any(|name| name.starts_with("footprint_in")), "{held:?}");
+    // Between the ends of an open path: told where it can be told, and then right.
+    let used = [("require.transmission_over", "used"), ("require.transmission_deg_min", "75")];
+    example("pivot-box", &used);
     example("csv-tolerances", &[]);
     example("straight-line", &[]);
 }

@@ -89,6 +89,9 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
             [most @ .., last] => format!("Nothing acceptable: {} and {last} conflict.", most.join(", ")),
         });
     }
+    if record.conflict.is_none() && !record.relaxations.is_empty() {
+        parts.push("Nothing acceptable.".into());
+    }
     let unit = words::unit_suffix(record);
     let mut out = String::new();
     if record.relaxations.is_empty() {

@@ -223,7 +223,8 @@ impl Inquiry<'_> {
             }
         }
         if self.exhausted() {
-            return Ok(helping.to_vec());
+            // Those that help belong to every conflict; whether they are one by themselves was not found out.
+            return Ok(Vec::new());
         }
         Ok(demands.iter().copied().filter(|d| !left_out.contains(d)).collect())
     }
