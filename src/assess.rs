@@ -87,6 +87,7 @@ pub fn assess(
         requirements: Vec::new(),
         accepted: false,
         defects: verdict.defects.clone(),
+        costs: Vec::new(),
     };
     candidate.requirements = requirements(problem, &candidate, &verdict);
     if let Some(tolerances) = task.tolerances() {

@@ -20,10 +20,10 @@
 //! |---|---|---|
 //! | [`linkage`] | what a four-bar is and where it is: position, gradient, mobility, transmission, curve | |
 //! | [`task`] | what is wanted: paths, timing, errors, the referee | linkage |
-//! | [`solve`] | numbers only: populations, Levenberg-Marquardt, random streams | |
+//! | [`solve`] | numbers only: populations, Levenberg-Marquardt, convex programs, non-negative least squares, random streams | |
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
+//! | [`search`] | what to try: starts, rounds, plan, distinct answers; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |

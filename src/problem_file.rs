@@ -111,8 +111,9 @@ pub fn parse(
         given => checked_name(&toml, given, "problem")?,
     };
     let mut warnings = Vec::new();
-    let (path, task) =
-        path::path_of(&toml, raw.task.take().and_then(|t| t.0.path).map(|p| p.0), folder, &mut warnings)?;
+    let tolerance_is_set = overrides.iter().any(|(key, _)| key == "task.path.tolerance");
+    let path = raw.task.take().and_then(|t| t.0.path).map(|p| p.0);
+    let (path, task) = path::path_of(&toml, path, folder, tolerance_is_set, &mut warnings)?;
     let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;

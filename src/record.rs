@@ -30,6 +30,13 @@ pub struct Record {
     pub evaluations: Evaluations,
     /// The answers, best first.
     pub candidates: Vec<Candidate>,
+    /// Where nothing is acceptable: requirements that cannot be met together, as far as was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conflict: Option<Conflict>,
+    /// Where nothing is acceptable: the least changes that were found to help, nearest first. Each was tried
+    /// with the settings of this run and ended with an accepted candidate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub relaxations: Vec<Relaxation>,
 }
 
 /// Name and version of the program.
@@ -157,6 +164,9 @@ pub struct Candidate {
     pub requirements: Vec<Requirement>,
     /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.
     pub accepted: bool,
+    /// What the limits that it stands on cost.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<Cost>,
 }
 
 /// The errors of a candidate, in the file's unit.
@@ -240,4 +250,101 @@ pub struct Requirement {
     pub limit: Figure,
     /// Whether it is met.
     pub met: bool,
+}
+
+/// What a limit costs that a candidate stands on.
+///
+/// Errors here are sqrt(objective / sum of weights), which is the rms error where no point has a weight.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// The requirement: its key in `[require]`, or `design.` with the parameter.
+    pub name: String,
+    /// Which of its sides: xmin, ymin, xmax, ymax of a box, min or max of bounds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// Where that side stands; 0 for the Grashof margin of a type.
+    pub limit: f64,
+    /// The change of the rms error for one unit more of room (a box side or an upper bound moved out, a lower
+    /// bound or a least angle lowered), as a rate at the limit: never positive. Absent where it cannot be told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rms_per_unit: Option<f64>,
+    /// What one unit is.
+    pub unit_of_limit: LimitUnit,
+    /// The least rms error that was found without the requirement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rms_without: Option<f64>,
+}
+
+/// What the unit of a limit is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitUnit {
+    /// The file's unit of length.
+    Length,
+    /// A degree.
+    Degree,
+    /// One more of longest over shortest.
+    Ratio,
+}
+
+/// Requirements that cannot be met together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Conflict {
+    /// Their keys in the problem file. Without any one of them the others could be met; a single one cannot be
+    /// met by itself.
+    pub among: Vec<String>,
+}
+
+/// A change of the problem after which something acceptable is found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Relaxation {
+    /// The keys to set.
+    pub set: Vec<Change>,
+    /// The best sum of squares then.
+    pub sum_sq: f64,
+    /// Its rms error.
+    pub rms: f64,
+}
+
+/// A key of the problem file with another value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Change {
+    /// The key, as in `--set KEY=VALUE`.
+    pub key: String,
+    /// What it is in the problem.
+    pub from: TypedValue,
+    /// What to set it to.
+    pub to: TypedValue,
+}
+
+/// A value of a problem file's key. It is displayed as it is typed in `--set KEY=VALUE`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum TypedValue {
+    /// A number.
+    Number(f64),
+    /// Several, such as a box or bounds.
+    Numbers(Vec<f64>),
+    /// The bounds of a point.
+    Pairs(Vec<[f64; 2]>),
+    /// A word.
+    Word(String),
+    /// Several words, such as types.
+    Words(Vec<String>),
+}
+
+impl std::fmt::Display for TypedValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        let numbers = |numbers: &[f64]| list(numbers.iter().map(f64::to_string).collect());
+        match self {
+            TypedValue::Number(number) => write!(f, "{number}"),
+            TypedValue::Numbers(values) => f.write_str(&numbers(values)),
+            TypedValue::Pairs(pairs) => f.write_str(&list(pairs.iter().map(|p| numbers(p)).collect())),
+            TypedValue::Word(word) => f.write_str(word),
+            TypedValue::Words(words) => {
+                f.write_str(&list(words.iter().map(|w| format!("\"{w}\"")).collect()))
+            }
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::problem::Problem;
 use crate::problem::spec::ProblemSpec;
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
-use crate::search::{Budget, Observer, plan};
+use crate::search::{Budget, Observer, conflicts, costs, plan};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
 use serde::Serialize;
@@ -65,8 +65,10 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     let start = Instant::now();
     let problem = Problem::new(job.spec.clone())?;
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
-    let outcome = plan::search(&problem, &budget, context.observer)?;
+    let mut outcome = plan::search(&problem, &budget, context.observer)?;
     let search_s = start.elapsed().as_secs_f64();
+    costs::attach(&problem, &mut outcome, &budget);
+    let explained = conflicts::explain(&problem, &mut outcome, &budget, context.observer)?;
     let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
     let record = Record {
         format: FORMAT,
@@ -83,6 +85,8 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
         termination: Termination { reason: outcome.reason, reproducible },
         evaluations: outcome.evaluations,
         candidates: outcome.candidates,
+        conflict: explained.conflict,
+        relaxations: explained.relaxations,
     };
     Ok(Finished { record, search_s })
 }

@@ -4,8 +4,10 @@ use crate::assess::{MET_TOLERANCE, assess};
 use crate::linkage::mobility::wrapped;
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Objective};
-use crate::record::{Candidate, FORMAT, Figure, Reason, Record, Requirement};
+use crate::record::{Candidate, Cost, FORMAT, Figure, Reason, Record, Requirement};
 use crate::run::{RunError, digest};
+use crate::search::costs::{marginal, weighted_rms};
+use crate::search::loosen::Demand;
 use crate::search::rank::{compare, exact_objective, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
@@ -15,6 +17,8 @@ pub const RELATIVE: f64 = 1e-9;
 pub const ABSOLUTE: f64 = 1e-12;
 /// Crank angles of prescribed timing may differ by this from the prescribed ones, degrees.
 const TIMING_DEG: f64 = 1e-9;
+/// Rates of costs may differ by this part of themselves: they are solutions of small systems of equations.
+const RATE: f64 = 1e-6;
 
 /// Something in a record that is not so.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,11 +78,41 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
             "not that: no accepted candidate is exact".into(),
         );
     }
+    explanation(record, &problem, &mut whole);
     for candidate in &record.candidates {
         let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
         against.candidate(&problem, candidate);
     }
     Ok(mismatches)
+}
+
+/// A conflict and its relaxations stand only where nothing is acceptable and speak of the problem as it is. (That
+/// each relaxation helps is a search of its own: type it in.)
+fn explanation(record: &Record, problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
+    let explains = record.conflict.is_some() || !record.relaxations.is_empty();
+    if explains && record.candidates.iter().any(|c| c.accepted) {
+        let recorded = "something that conflicts".into();
+        differ("conflict", recorded, "nothing: there is an accepted candidate".into());
+    }
+    let of = |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key() == key);
+    for key in record.conflict.iter().flat_map(|conflict| &conflict.among) {
+        if of(key).is_none() {
+            differ("conflict.among", key.clone(), "no demand of the problem".into());
+        }
+    }
+    for relaxation in &record.relaxations {
+        let found = (relaxation.sum_sq / problem.task().len() as f64).sqrt();
+        if (relaxation.rms - found).abs() > RELATIVE * found {
+            differ("relaxations.rms", format!("{:e}", relaxation.rms), format!("{found:e}"));
+        }
+        for change in &relaxation.set {
+            let from = of(&change.key).and_then(|demand| demand.typed(problem.spec()));
+            if from.as_ref() != Some(&change.from) {
+                let found = from.map_or("no demand of the problem".into(), |from| from.to_string());
+                differ(&format!("relaxations.{}.from", change.key), change.from.to_string(), found);
+            }
+        }
+    }
 }
 
 struct Against<'a> {
@@ -169,6 +203,7 @@ impl Against<'_> {
             let sign = |t: crate::linkage::AssemblyMode| format!("{:+}", t.sign());
             self.differ("linkage.t1", sign(recorded.linkage.assembly()), sign(recorded.t1_at[0]));
         }
+        self.costs(problem, recorded, &found);
         self.timing(problem, recorded);
         self.requirements(recorded, &found, size);
     }
@@ -228,6 +263,44 @@ impl Against<'_> {
         };
         if recorded.accepted != expected {
             self.differ("accepted", recorded.accepted.to_string(), found.accepted.to_string());
+        }
+    }
+
+    /// The rates are those of the recorded linkage; the error without a requirement is below the error with it.
+    fn costs(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {
+        // Where a verdict is rounding's, the recorded one decides whether there is anything to price.
+        let priced = Candidate { accepted: recorded.accepted, ..found.clone() };
+        let costs = marginal(problem, &priced);
+        let names = |costs: &[Cost]| {
+            let name = |c: &Cost| format!("{} {}", c.name, c.side.as_deref().unwrap_or_default());
+            costs.iter().map(|c| name(c).trim().to_owned()).collect::<Vec<_>>().join(", ")
+        };
+        if names(&recorded.costs) != names(&costs) {
+            self.differ("the list of costs", names(&recorded.costs), names(&costs));
+            return;
+        }
+        let rms = weighted_rms(problem, found.error.objective);
+        for (r, f) in recorded.costs.iter().zip(&costs) {
+            if r.limit != f.limit {
+                self.differ(&format!("costs.{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
+            }
+            let rates = (r.rms_per_unit, f.rms_per_unit);
+            let near = match rates {
+                (Some(r), Some(f)) => (r - f).abs() <= RATE * f.abs(),
+                (r, f) => r == f,
+            };
+            if !near {
+                let word = |rate: Option<f64>| rate.map_or("absent".into(), |rate| format!("{rate:e}"));
+                self.differ(&format!("costs.{}.rms_per_unit", r.name), word(rates.0), word(rates.1));
+            }
+            if r.rms_without.is_some_and(|least| !(least >= 0.0 && least <= rms * (1.0 + RATE))) {
+                let least = r.rms_without.unwrap_or_default();
+                self.differ(
+                    &format!("costs.{}.rms_without", r.name),
+                    format!("{least:e}"),
+                    format!("at most {rms:e}, the error with it"),
+                );
+            }
         }
     }
 

@@ -227,6 +227,30 @@ impl DesignSpace {
         [ground, of(4), of(5), of(6)]
     }
 
+    /// What number `i` of a design is called in the file (a pivot's by its coordinate, such as Ax), and whether
+    /// it is an angle; `None` for the crank angle's offset.
+    pub fn coordinate(&self, i: usize) -> Option<(&'static str, bool)> {
+        let polar = self.ground == GroundChart::Polar;
+        let distances = self.coupler != CouplerChart::Offset;
+        let name = match i {
+            0 => "Ax",
+            1 => "Ay",
+            2 if polar => "ground",
+            2 => "Bx",
+            3 if polar => "ground_angle_deg",
+            3 => "By",
+            4 => "a",
+            5 => "b",
+            6 => "c",
+            7 if distances => "d",
+            7 => "coupler_x",
+            8 if distances => "e",
+            8 => "coupler_y",
+            _ => return None,
+        };
+        Some((name, self.is_angle(i)))
+    }
+
     /// The box of the numbers that are not fixed, for a population search: angles within half a turn.
     pub fn free_box(&self) -> Vec<(f64, f64)> {
         self.free.iter().map(|&i| self.finite(i)).collect()

@@ -26,9 +26,63 @@ const TYPE_MARGIN: f64 = 1e-7;
 /// The margin aimed at inside angle limits, radians.
 const ANGLE_MARGIN: f64 = 1e-9;
 
+/// A side of a box [xmin, ymin, xmax, ymax].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The least x.
+    XMin,
+    /// The least y.
+    YMin,
+    /// The greatest x.
+    XMax,
+    /// The greatest y.
+    YMax,
+}
+
+impl Side {
+    /// The side of a box at which a coordinate (0: x, 1: y) has its lower or its upper limit.
+    fn of(axis: usize, lower: bool) -> Side {
+        match (axis, lower) {
+            (0, true) => Side::XMin,
+            (0, false) => Side::XMax,
+            (_, true) => Side::YMin,
+            (_, false) => Side::YMax,
+        }
+    }
+
+    /// Its place in [xmin, ymin, xmax, ymax].
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// xmin, ymin, xmax or ymax.
+    pub fn name(self) -> &'static str {
+        ["xmin", "ymin", "xmax", "ymax"][self.index()]
+    }
+}
+
+/// What a row asks for: which requirement and which side of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RowKind {
+    /// The type aimed at: g is a Grashof margin.
+    Type,
+    /// The longest over the shortest link: g = l_i - l_j / R. Carries l_j, the longer one.
+    LinkRatio(f64),
+    /// A derived bound's lower (`true`) or upper limit.
+    Derived(Derived, bool),
+    /// A side of the pivots' box.
+    Pivots(Side),
+    /// The transmission angle.
+    Transmission,
+    /// A side of the footprint.
+    Footprint(Side),
+}
+
 /// One requirement's value with its derivatives by the shape and by a turn of all crank angles.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
+    /// What it asks for.
+    pub kind: RowKind,
     /// g, a length.
     pub value: f64,
     /// dg/d(Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
@@ -80,8 +134,8 @@ impl Requirements {
             [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
         ];
         let links = shape.links();
-        let combine = |factors: [f64; 4], constant: f64| {
-            let mut row = Row { value: constant, shape: [0.0; SHAPE], crank: 0.0 };
+        let combine = |kind: RowKind, factors: [f64; 4], constant: f64| {
+            let mut row = Row { kind, value: constant, shape: [0.0; SHAPE], crank: 0.0 };
             for (link, factor) in factors.into_iter().enumerate() {
                 row.value += factor * links[link];
                 for (out, by) in row.shape.iter_mut().zip(&link_rows[link]) {
@@ -98,7 +152,7 @@ impl Requirements {
                     let mut factors = [0.0; 4];
                     factors[i] = 1.0;
                     factors[j] = -1.0 / (ratio * (1.0 - LENGTH_MARGIN));
-                    each(&combine(factors, 0.0));
+                    each(&combine(RowKind::LinkRatio(links[j]), factors, 0.0));
                 }
             }
         }
@@ -108,6 +162,7 @@ impl Requirements {
                 self.box_rows(
                     b,
                     p,
+                    RowKind::Pivots,
                     &|axis, sign| {
                         let mut row = [0.0; SHAPE];
                         row[at + axis] = sign;
@@ -148,6 +203,7 @@ impl Requirements {
         let margin = LENGTH_MARGIN * self.size;
         for bound in &self.derived {
             let (low, high) = (bound.limits.0, bound.limits.1);
+            let kind = |lower| RowKind::Derived(bound.quantity, lower);
             let mut row = [0.0; SHAPE];
             let value = match bound.quantity {
                 Derived::Ground => {
@@ -165,6 +221,7 @@ impl Requirements {
                     let half = 0.5 * (high - low) * self.size;
                     for sign in [1.0, -1.0] {
                         each(&Row {
+                            kind: kind(sign < 0.0),
                             value: half - sign * value,
                             shape: row.map(|by| -sign * by),
                             crank: 0.0,
@@ -185,8 +242,13 @@ impl Requirements {
                 }
             };
             let margin = if low == high { 0.0 } else { margin };
-            each(&Row { value: value - low - margin, shape: row, crank: 0.0 });
-            each(&Row { value: high - value - margin, shape: row.map(|by| -by), crank: 0.0 });
+            each(&Row { kind: kind(true), value: value - low - margin, shape: row, crank: 0.0 });
+            each(&Row {
+                kind: kind(false),
+                value: high - value - margin,
+                shape: row.map(|by| -by),
+                crank: 0.0,
+            });
         }
     }
 
@@ -194,6 +256,7 @@ impl Requirements {
         &self,
         b: [f64; 4],
         p: Complex,
+        kind: fn(Side) -> RowKind,
         derivative: &dyn Fn(usize, f64) -> ([f64; SHAPE], f64),
         each: &mut dyn FnMut(&Row),
     ) {
@@ -201,7 +264,8 @@ impl Requirements {
         for (axis, at) in [(0, p.re), (1, p.im)] {
             for (limit, sign) in [(b[axis], 1.0), (b[axis + 2], -1.0)] {
                 let (shape, crank) = derivative(axis, sign);
-                each(&Row { value: sign * (at - limit) - margin, shape, crank });
+                let kind = kind(Side::of(axis, sign > 0.0));
+                each(&Row { kind, value: sign * (at - limit) - margin, shape, crank });
             }
         }
     }
@@ -273,6 +337,7 @@ impl Requirements {
             // least s: cos mu <= cos limit; greatest s: cos mu >= -cos limit
             let cos = (b * b + c * c - s * s) / (2.0 * b * c);
             let mut row = Row {
+                kind: RowKind::Transmission,
                 value: self.size * (limit.cos() - sign * cos),
                 shape: by.map(|d| self.size * sign * s / (b * c) * d),
                 crank: self.size * sign * s / (b * c) * by_crank,
@@ -288,6 +353,7 @@ impl Requirements {
             self.box_rows(
                 b,
                 p,
+                RowKind::Footprint,
                 &|axis, sign| {
                     let mut row = [0.0; SHAPE];
                     row[at + axis] = sign;
@@ -300,14 +366,15 @@ impl Requirements {
         let positions = Swept::of(shape, motion);
         for joint in 0..3 {
             for (axis, limit, sign) in [(0, b[0], 1.0), (1, b[1], 1.0), (0, b[2], -1.0), (1, b[3], -1.0)] {
+                let kind = RowKind::Footprint(Side::of(axis, sign > 0.0));
                 let row = positions.as_ref().and_then(|swept| {
                     let extreme = swept.extreme(joint, axis, sign)?;
                     let (shape_row, crank) = extreme.derivative(shape, joint, axis, sign);
                     let at = if axis == 0 { extreme.joints[joint].re } else { extreme.joints[joint].im };
-                    Some(Row { value: sign * (at - limit) - margin, shape: shape_row, crank })
+                    Some(Row { kind, value: sign * (at - limit) - margin, shape: shape_row, crank })
                 });
                 // A linkage that has no position at all has no footprint to judge: its size is lacking.
-                each(&row.unwrap_or(Row { value: -self.size, shape: [0.0; SHAPE], crank: 0.0 }));
+                each(&row.unwrap_or(Row { kind, value: -self.size, shape: [0.0; SHAPE], crank: 0.0 }));
             }
         }
     }
@@ -316,7 +383,7 @@ impl Requirements {
 fn type_rows(
     aim: Option<LinkageType>,
     links: [f64; 4],
-    combine: &dyn Fn([f64; 4], f64) -> Row,
+    combine: &dyn Fn(RowKind, [f64; 4], f64) -> Row,
     each: &mut dyn FnMut(&Row),
 ) {
     let margin = TYPE_MARGIN * links.iter().sum::<f64>();
@@ -333,10 +400,10 @@ fn type_rows(
             for (place, sign) in [(0, 1.0), (1, -1.0), (2, -1.0), (3, 1.0)] {
                 factors[order[place]] = sign;
             }
-            each(&combine(factors, -margin));
+            each(&combine(RowKind::Type, factors, -margin));
             let mut closes = [1.0; 4];
             closes[order[3]] = -1.0;
-            each(&combine(closes, -margin));
+            each(&combine(RowKind::Type, closes, -margin));
             return;
         }
         Some(LinkageType::ChangePoint) => {
@@ -347,8 +414,8 @@ fn type_rows(
             for (place, sign) in [(0, -1.0), (1, 1.0), (2, 1.0), (3, -1.0)] {
                 factors[order[place]] = sign;
             }
-            each(&combine(factors, 0.0));
-            each(&combine(factors.map(|f| -f), 0.0));
+            each(&combine(RowKind::Type, factors, 0.0));
+            each(&combine(RowKind::Type, factors.map(|f| -f), 0.0));
             return;
         }
         None => return,
@@ -357,7 +424,7 @@ fn type_rows(
         let mut factors = [1.0; 4];
         factors[shortest] = -1.0;
         factors[other] = -1.0;
-        each(&combine(factors, -margin));
+        each(&combine(RowKind::Type, factors, -margin));
     }
 }
 

@@ -38,11 +38,13 @@ impl Target {
     }
 }
 
-/// The path with what stands beside its points, and the task that it is.
+/// The path with what stands beside its points, and the task that it is. A tolerance that is set by hand takes the
+/// place of the column of a points file.
 pub(super) fn path_of(
     toml: &TomlText<'_>,
     path: Option<RawPath>,
     folder: Option<&Path>,
+    tolerance_is_set: bool,
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<(PathSpec, PathTask), Box<Diagnostic>> {
     let Some(path) = path else {
@@ -57,12 +59,14 @@ pub(super) fn path_of(
         target.csv.as_mut().map(|csv| (csv.crank_deg.take(), csv.weight.take(), csv.tolerance.take()));
     let (csv_crank, weight, csv_tolerance) = columns.unwrap_or_default();
     let tolerance = match (path.tolerance, csv_tolerance) {
-        (Some(_), Some(_)) => return Err(twice(toml, "task.path.tolerance", "tolerance", &path)),
-        (Some(t), None) if t.0 < 0.0 => {
+        (Some(_), Some(_)) if !tolerance_is_set => {
+            return Err(twice(toml, "task.path.tolerance", "tolerance", &path));
+        }
+        (Some(t), _) if t.0 < 0.0 => {
             let message = format!("tolerance = {}: a distance cannot be negative", t.0);
             return Err(Box::new(toml.at("task.path.tolerance", message).with_help("write 0 or more")));
         }
-        (Some(t), None) => Some(vec![t.0; n]),
+        (Some(t), _) => Some(vec![t.0; n]),
         (None, column) => column,
     };
     let offset = path.timing.as_ref().map_or(AngleOffset::default(), |t| t.0.offset);

@@ -30,6 +30,7 @@ mod grid;
 mod labels;
 mod parts;
 pub mod plot;
+pub mod price;
 mod scene;
 mod sheet;
 pub mod suite;

@@ -2,7 +2,7 @@
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
-use super::words;
+use super::{price, words};
 use crate::linkage::FourBar;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Record, Unit};
@@ -21,7 +21,9 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
         out.push_str(&rows(record, colour));
         out.push_str(&notes(record));
         out.push_str(&best(record));
+        out.push_str(&price::costs(record, COLUMNS));
     }
+    out.push_str(&price::relaxations(record, COLUMNS));
     out.push('\n');
     out.push_str(&ending(record));
     out

@@ -1,9 +1,13 @@
-//! What to try: starts, rounds, populations, and which answers to give.
+//! What to try: starts, rounds, populations, and which answers to give; what the requirements cost, and what would
+//! help where nothing is acceptable.
 
 pub mod atlas;
 pub mod belief;
 pub mod coarse;
+pub mod conflicts;
+pub mod costs;
 pub mod free;
+pub mod loosen;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;
@@ -12,6 +16,7 @@ pub mod population;
 pub mod rank;
 pub mod starts;
 pub mod timed;
+pub mod warm;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,5 +1,5 @@
 //! Numbers only: population searches, bounded least squares with a block a point, convex programs in a row,
-//! random streams.
+//! non-negative least squares, random streams.
 //!
 //! This room imports nothing else of the crate. It owns the traits that problems implement:
 //! [`population::PopulationProblem`], [`levenberg_marquardt::BlockLeastSquares`] and
@@ -12,6 +12,7 @@ pub mod convex;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod levenberg_marquardt;
+pub mod nonnegative;
 pub mod ordered;
 pub mod population;
 pub mod random_search;

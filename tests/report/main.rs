@@ -3,7 +3,9 @@
 mod records;
 
 use linkwright::linkage::AssemblyMode;
-use linkwright::record::{Figure, Reason, Record, Requirement, Unit};
+use linkwright::record::{
+    Change, Conflict, Cost, Figure, LimitUnit, Reason, Record, Relaxation, Requirement, TypedValue, Unit,
+};
 use linkwright::report::compare::{Entry, SortKey, compare};
 use linkwright::report::csv::{candidates_csv, curve_csv};
 use linkwright::report::plot::{Glyphs, terminal_plot};
@@ -135,6 +137,70 @@ fn a_missed_tolerance_is_named_with_its_point() {
     let text = candidates_table(&record, Colour::Never);
     assert!(text.contains("#1: error 0.036777 at point 12, tolerance 0.03"), "{text}");
     assert_eq!(table_of(&candidates_csv(&record)).1[0]["unmet"], "tolerance");
+}
+
+#[test]
+fn costs_are_told_for_a_step_that_the_error_can_bear() {
+    let mut record = k18();
+    record.problem.unit = Some(Unit::Mm);
+    let rms = record.candidates[0].error.rms;
+    let cost = |name: &str, side: Option<&str>, limit: f64, rate: f64, unit_of_limit| Cost {
+        name: name.into(),
+        side: side.map(str::to_owned),
+        limit,
+        rms_per_unit: Some(rate),
+        unit_of_limit,
+        rms_without: Some(rms - 0.0042),
+    };
+    record.candidates[0].costs = vec![
+        cost("pivots_in", Some("xmax"), 12.0, -0.002, LimitUnit::Length),
+        cost("pivots_in", Some("ymin"), -3.0, -0.2, LimitUnit::Length),
+        cost("transmission_deg_min", None, 40.0, -0.0013, LimitUnit::Degree),
+        cost("link_ratio_max", None, 4.0, -0.003, LimitUnit::Ratio),
+        Cost { rms_per_unit: None, ..cost("type", None, 0.0, 0.0, LimitUnit::Length) },
+    ];
+    let table = candidates_table(&record, Colour::Never).split_whitespace().collect::<Vec<_>>().join(" ");
+    for line in [
+        "pivots_in costs 0.0042 mm of rms; 1 mm more at xmax gives back 0.0020 mm, 0.01 mm more at ymin gives back 0.0020 mm",
+        "transmission_deg_min costs 0.0042 mm of rms; 1° less than 40.00° gives back 0.0013 mm",
+        "link_ratio_max costs 0.0042 mm of rms; 1 more than 4.000 gives back 0.0030 mm",
+        "type costs 0.0042 mm of rms",
+    ] {
+        assert!(table.contains(line), "{line}\n{table}");
+    }
+}
+
+#[test]
+fn what_would_help_can_be_copied_into_a_shell() {
+    let mut record = k18();
+    record.problem.unit = None;
+    let change = |key: &str, from: TypedValue, to: TypedValue| Change { key: key.into(), from, to };
+    let number = TypedValue::Number;
+    record.conflict = Some(Conflict { among: vec!["require.link_ratio_max".into(), "require.type".into()] });
+    record.relaxations = vec![
+        Relaxation {
+            set: vec![change("require.link_ratio_max", number(20.0), number(24.5))],
+            sum_sq: 0.18,
+            rms: 0.1,
+        },
+        Relaxation {
+            set: vec![change(
+                "require.type",
+                TypedValue::Words(vec!["crank-rocker".into()]),
+                TypedValue::Words(vec!["crank-rocker".into(), "double-crank".into()]),
+            )],
+            sum_sq: 0.72,
+            rms: 0.2,
+        },
+    ];
+    let table = candidates_table(&record, Colour::Never);
+    for line in [
+        "  Nothing acceptable: link_ratio_max = 20 and type = [\"crank-rocker\"] conflict. It works with\n",
+        "    --set require.link_ratio_max=24.5   (rms 0.100)\n",
+        "    --set 'require.type=[\"crank-rocker\", \"double-crank\"]'   (rms 0.200)\n",
+    ] {
+        assert!(table.contains(line), "{line}\n{table}");
+    }
 }
 
 #[test]

@@ -115,6 +115,7 @@ pub fn candidate(
             met: true,
         }],
         accepted,
+        costs: Vec::new(),
     }
 }
 
@@ -139,6 +140,8 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         termination: Termination { reason: Reason::Converged, reproducible: true },
         evaluations: Evaluations { objective: 12_345, positions: 222_210 },
         candidates: Vec::new(),
+        conflict: None,
+        relaxations: Vec::new(),
     }
 }
 

@@ -1,0 +1,151 @@
+//! What requirements cost and what would help, in words.
+
+use super::text::{clean, significant, wrapped};
+use super::words;
+use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue, Unit};
+
+/// The rates are told for a step that changes the error by this part at most.
+const SMALL_STEP: f64 = 0.5;
+
+/// What the limits of the best candidate cost, a line a requirement; empty where it stands on none.
+pub fn costs(record: &Record, columns: usize) -> String {
+    let Some(best) = record.candidates.first() else { return String::new() };
+    if best.costs.is_empty() {
+        return String::new();
+    }
+    let mut out = format!("\n  What the limits cost (#{})\n", best.rank);
+    let mut names: Vec<&str> = Vec::new();
+    for cost in &best.costs {
+        if !names.contains(&cost.name.as_str()) {
+            names.push(&cost.name);
+        }
+    }
+    for name in names {
+        let own: Vec<&Cost> = best.costs.iter().filter(|cost| cost.name == name).collect();
+        let text = sentence(record, best, &own);
+        out.push_str(&wrapped("    ", "      ", &text, columns));
+    }
+    out
+}
+
+/// The error that costs are told in: rms, weighted where the points are.
+fn rms(record: &Record, candidate: &Candidate) -> f64 {
+    let weights = record.problem.resolved.task.path.weight.as_ref();
+    weights.map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
+}
+
+/// `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
+fn sentence(record: &Record, candidate: &Candidate, own: &[&Cost]) -> String {
+    let unit = words::unit_suffix(record);
+    let with = rms(record, candidate);
+    let name = own.first().map_or(String::new(), |cost| clean(&cost.name));
+    let rates: Vec<String> = own.iter().filter_map(|cost| rate(record.problem.unit, with, cost)).collect();
+    let without = own.iter().find_map(|cost| cost.rms_without);
+    let total = without.map(|least| format!("costs {}{unit} of rms", significant(with - least, 2)));
+    match (total, rates.is_empty()) {
+        (Some(total), false) => format!("{name} {total}; {}", rates.join(", ")),
+        (Some(total), true) => format!("{name} {total}"),
+        (None, false) => format!("{name}: {} of rms", rates.join(", ")),
+        (None, true) => format!("{name} binds"),
+    }
+}
+
+/// `1 mm more at xmax gives back 0.10 mm`.
+fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
+    let rate = -cost.rms_per_unit?;
+    if !(rate > 0.0 && rate.is_finite() && rms > 0.0) {
+        return None;
+    }
+    let mut step = 1.0;
+    while rate * step > SMALL_STEP * rms && step > 1e-12 {
+        step /= 10.0;
+    }
+    let shown = significant(step, 1);
+    let length = match unit {
+        Some(unit) => format!("{shown} {}", unit.label()),
+        None if step == 1.0 => "one unit".to_owned(),
+        None => shown.clone(),
+    };
+    let room = match (cost.unit_of_limit, cost.side.as_deref()) {
+        (LimitUnit::Length, None) => format!("{length} of Grashof margin"),
+        (LimitUnit::Length, Some("min")) => format!("{length} less than {}", significant(cost.limit, 4)),
+        (LimitUnit::Length, Some("max")) => format!("{length} more than {}", significant(cost.limit, 4)),
+        (LimitUnit::Length, Some(side)) => format!("{length} more at {}", clean(side)),
+        (LimitUnit::Degree, Some("max")) => format!("{shown}° more than {}°", significant(cost.limit, 4)),
+        (LimitUnit::Degree, _) => format!("{shown}° less than {}°", significant(cost.limit, 4)),
+        (LimitUnit::Ratio, _) => format!("{shown} more than {}", significant(cost.limit, 4)),
+    };
+    Some(format!("{room} gives back {}{}", significant(rate * step, 2), words::length_suffix(unit)))
+}
+
+/// Which requirements conflict and what would help; empty where something is acceptable or nothing was found.
+pub fn relaxations(record: &Record, columns: usize) -> String {
+    let mut parts = Vec::new();
+    if let Some(conflict) = &record.conflict {
+        let named: Vec<String> = conflict.among.iter().map(|key| demand(record, key)).collect();
+        parts.push(match named.as_slice() {
+            [] => String::new(),
+            [only] => format!("Nothing acceptable: {only} asks for more than was found."),
+            [most @ .., last] => format!("Nothing acceptable: {} and {last} conflict.", most.join(", ")),
+        });
+    }
+    if record.conflict.is_none() && !record.relaxations.is_empty() {
+        parts.push("Nothing acceptable.".into());
+    }
+    let unit = words::unit_suffix(record);
+    let mut out = String::new();
+    if record.relaxations.is_empty() {
+        if !parts.is_empty() {
+            parts.push("No single change that helps was found.".into());
+        }
+    } else {
+        let single = record.relaxations.iter().any(|relaxation| changed(relaxation) == 1);
+        parts.push(if single { "It works with" } else { "No single change helps; it works with" }.into());
+    }
+    if !parts.is_empty() {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", &parts.join(" "), columns));
+    }
+    for relaxation in &record.relaxations {
+        let options: Vec<String> = relaxation.set.iter().map(option).collect();
+        // Not broken into lines: it is there to be copied.
+        out.push_str(&format!(
+            "    {}   (rms {}{unit})\n",
+            options.join(" "),
+            significant(relaxation.rms, 3)
+        ));
+    }
+    out
+}
+
+/// How many keys change; those that are only written out are none.
+fn changed(relaxation: &Relaxation) -> usize {
+    relaxation.set.iter().filter(|change| change.from != change.to).count()
+}
+
+/// `--set require.transmission_deg_min=32.1`, in quotes where a shell would take it apart.
+fn option(change: &Change) -> String {
+    let typed = clean(&format!("{}={}", change.key, change.to));
+    let plain = typed.chars().all(|c| c.is_ascii_alphanumeric() || "._=-".contains(c));
+    if plain { format!("--set {typed}") } else { format!("--set '{typed}'") }
+}
+
+/// `transmission_deg_min = 40`; the bare key where its value would be long.
+fn demand(record: &Record, key: &str) -> String {
+    let short = clean(key.rsplit_once("require.").map_or(key, |(_, name)| name));
+    let from = |relaxation: &Relaxation| {
+        relaxation.set.iter().find(|change| change.key == key).map(|change| change.from.clone())
+    };
+    let require = &record.problem.resolved.require;
+    let value = match key {
+        "require.transmission_deg_min" => require.transmission_deg_min.map(TypedValue::Number),
+        "require.link_ratio_max" => Some(TypedValue::Number(require.link_ratio_max)),
+        _ => record.relaxations.iter().find_map(from),
+    };
+    match value {
+        Some(value @ (TypedValue::Number(_) | TypedValue::Word(_) | TypedValue::Words(_))) => {
+            format!("{short} = {}", clean(&value.to_string()))
+        }
+        _ => short,
+    }
+}

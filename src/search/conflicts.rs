@@ -1,0 +1,482 @@
+//! Why nothing is acceptable: which requirements conflict, and the least change after which something is.
+//!
+//! A demand helps when a search without it ends with something acceptable. Every set of demands that cannot be
+//! met together (a conflict) holds all that help; a minimal one is what is left when whatever can be left out
+//! without ending the conflict is left out, one after the other. For each demand that helps the smallest
+//! loosening is looked for between its limits and what was attained without it: steps inward, each taken when
+//! a fit from what is known, or else a short search, ends acceptable there. The limits are then rounded outward
+//! to what reads well, and proposed only if the search itself, run with them as it would be when they are
+//! typed, ends with an accepted candidate. Where no single demand helps, pairs are tried.
+//!
+//! All of it says what was found, not what exists: a search that finds nothing is no proof that there is nothing.
+
+use super::loosen::{Demand, changes, judged_under, rounded_outward};
+use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::warm::start_at;
+use super::{Budget, Observer, Progress, SearchOutcome, plan};
+use crate::problem::Problem;
+use crate::problem::spec::{DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
+use crate::record::{Candidate, Conflict, Relaxation};
+use crate::solve::population::PopulationError;
+use crate::task::error::rms;
+
+/// Evaluations of a trial at most ..
+const TRIAL: u64 = 20_000;
+/// .. and at most one part in this many of the problem's own budget.
+const TRIAL_SHARE: u64 = 4;
+/// No new trial begins once as much as this many trials is spent. (A proof is the whole search, and apart.)
+const ALLOWANCE: u64 = 40;
+/// A fit from what is known gets one part in this many of a trial: what succeeds does so soon.
+const FIT_SHARE: u64 = 16;
+/// Answers of a trial that further fits start from.
+const WARM: usize = 4;
+/// Limits between asked and attained that are tried.
+const STEPS: usize = 30;
+/// The way inward is given up when a step of this part of it leads to nothing.
+const SHORTEST_STEP: f64 = 0.02;
+/// A short search is worth its price where the step is at least this part of the way.
+const SEARCHED_STEP: f64 = 0.2;
+/// How much longer the next step is after one that succeeded, and shorter after one that did not.
+const LONGER: f64 = 1.5;
+const SHORTER: f64 = 0.5;
+/// Proposals at most.
+const PROPOSALS: usize = 5;
+/// A bound that is this near, in parts of what it is measured against, is stood on.
+const STANDS_ON: f64 = 1e-6;
+/// A change that has no measure (another type, any order) counts as one of the whole.
+const WHOLE: f64 = 1.0;
+
+/// What was found out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Explained {
+    /// Requirements that cannot be met together.
+    pub conflict: Option<Conflict>,
+    /// Changes that help, nearest first.
+    pub relaxations: Vec<Relaxation>,
+}
+
+/// Explains a search that found nothing acceptable; nothing where it found something or the budget has stopped.
+///
+/// Where the clock or a cancellation ends it early there is no explanation, and that becomes the reason why the
+/// search ended: the record cannot be repeated then.
+///
+/// # Errors
+/// As [`plan::search`].
+pub fn explain(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<Explained, PopulationError> {
+    if budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
+        return Ok(Explained::default());
+    }
+    let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
+    let mut inquiry = Inquiry {
+        problem,
+        budget,
+        observer,
+        trial,
+        spent: 0,
+        allowance: ALLOWANCE * trial,
+        tried: Vec::new(),
+    };
+    let explained = inquiry.explain(&outcome.candidates)?;
+    match budget.stop_reason() {
+        Some(reason) => {
+            outcome.reason = reason;
+            Ok(Explained::default())
+        }
+        None => Ok(explained),
+    }
+}
+
+struct Inquiry<'a> {
+    problem: &'a Problem,
+    budget: &'a Budget<'a>,
+    observer: &'a Observer<'a>,
+    /// Evaluations of a trial.
+    trial: u64,
+    spent: u64,
+    allowance: u64,
+    /// What was acceptable without these demands.
+    tried: Vec<(Vec<Demand>, Vec<Candidate>)>,
+}
+
+impl Inquiry<'_> {
+    fn exhausted(&self) -> bool {
+        self.spent >= self.allowance || self.budget.stopped()
+    }
+
+    fn explain(&mut self, refused: &[Candidate]) -> Result<Explained, PopulationError> {
+        let demands = self.demands(refused);
+        let mut helping = Vec::new();
+        for &demand in &demands {
+            if !self.without(&[demand])?.is_empty() {
+                helping.push(demand);
+            }
+        }
+        let mut found = Vec::new();
+        for &demand in &helping {
+            found.extend(self.relaxation(&[demand])?);
+        }
+        let among = self.conflict(&demands, &helping)?;
+        if helping.is_empty() {
+            for (i, &one) in among.iter().enumerate() {
+                for &other in demands.iter().filter(|other| !among[..=i].contains(other)) {
+                    if found.len() < PROPOSALS && !self.exhausted() {
+                        found.extend(self.relaxation(&[one, other])?);
+                    }
+                }
+            }
+        }
+        // A stable sort: equally near ones in the order of the demands.
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        found.truncate(PROPOSALS);
+        let among: Vec<String> = among.into_iter().map(|demand| demand.key().into()).collect();
+        Ok(Explained {
+            conflict: (!among.is_empty()).then_some(Conflict { among }),
+            relaxations: found.into_iter().map(|(_, relaxation)| relaxation).collect(),
+        })
+    }
+
+    /// The demands of the problem; of the design's those that a refused candidate stands on or exceeds, since a
+    /// bound that nothing touches stands in no way.
+    fn demands(&self, refused: &[Candidate]) -> Vec<Demand> {
+        let spec = self.problem.spec();
+        let stands_on = |demand: &Demand, candidate: &Candidate| {
+            let (Some(limits), Some(values)) = (demand.limits(spec), demand.attained(candidate)) else {
+                return true;
+            };
+            let scale = scale(*demand, spec).max(STANDS_ON * self.problem.task().size());
+            limits.iter().zip(values).any(|(l, v)| l.outward * (v - l.value) >= -STANDS_ON * scale)
+        };
+        let keep = |demand: &Demand| {
+            !matches!(demand, Demand::Design(_))
+                || refused.is_empty()
+                || refused.iter().any(|candidate| stands_on(demand, candidate))
+        };
+        Demand::of(self.problem).into_iter().filter(keep).collect()
+    }
+
+    /// Acceptable candidates of the problem without some demands.
+    fn without(&mut self, demands: &[Demand]) -> Result<Vec<Candidate>, PopulationError> {
+        if let Some((_, found)) = self.tried.iter().find(|(tried, _)| tried == demands) {
+            return Ok(found.clone());
+        }
+        if self.exhausted() {
+            return Ok(Vec::new());
+        }
+        let all = demands.iter();
+        let mut spec = all.fold(self.problem.spec().clone(), |spec, d| d.dropped(self.problem, spec));
+        spec.solve.candidates = WARM;
+        let found = self.short_search(spec, self.trial)?;
+        self.tried.push((demands.to_vec(), found.clone()));
+        Ok(found)
+    }
+
+    /// A search of `auto` with a budget of its own: what it accepts.
+    fn short_search(
+        &mut self,
+        mut spec: ProblemSpec,
+        evaluations: u64,
+    ) -> Result<Vec<Candidate>, PopulationError> {
+        spec.solve.evaluations = evaluations.max(1);
+        spec.solve.method = Method::Auto;
+        let (accepted, spent) = self.outcome(spec)?;
+        self.spent += spent;
+        Ok(accepted)
+    }
+
+    /// What the search accepts of a problem, and what it cost.
+    fn outcome(&self, spec: ProblemSpec) -> Result<(Vec<Candidate>, u64), PopulationError> {
+        let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
+        (self.observer)(&Progress {
+            phase: "what would help",
+            evaluations: self.spent,
+            budget: self.allowance,
+            best_sum_sq: None,
+            accepted: false,
+        });
+        let outcome = plan::search(&problem, self.budget, &|_| {})?;
+        let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
+        Ok((accepted, outcome.evaluations.objective))
+    }
+
+    /// A minimal set of demands that cannot be met together; `helping` are in every such set.
+    fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
+        // Left out first: bounds and policies, which often are defaults that nobody has asked for.
+        let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
+        if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
+            return Ok(helping.to_vec());
+        }
+        if helping.is_empty() && self.without(&others)?.is_empty() {
+            // Nothing is acceptable even without all of them: it is not they that conflict.
+            return Ok(Vec::new());
+        }
+        let mut left_out: Vec<Demand> = Vec::new();
+        for &demand in &others {
+            let tried: Vec<Demand> =
+                others.iter().copied().filter(|d| *d == demand || left_out.contains(d)).collect();
+            if self.without(&tried)?.is_empty() && !self.exhausted() {
+                left_out.push(demand);
+            }
+        }
+        if self.exhausted() {
+            // Those that help belong to every conflict; whether they are one by themselves was not found out.
+            return Ok(Vec::new());
+        }
+        Ok(demands.iter().copied().filter(|d| !left_out.contains(d)).collect())
+    }
+
+    /// The least loosening of some demands together, with its distance.
+    fn relaxation(&mut self, demands: &[Demand]) -> Result<Option<(f64, Relaxation)>, PopulationError> {
+        let found = self.without(demands)?;
+        let mut types = Vec::new();
+        for candidate in &found {
+            if !types.contains(&candidate.linkage_type) {
+                types.push(candidate.linkage_type);
+            }
+        }
+        if !demands.contains(&Demand::Type) {
+            types.truncate(1);
+        }
+        for linkage_type in types {
+            let of_type = |c: &&Candidate| c.linkage_type == linkage_type || !demands.contains(&Demand::Type);
+            let warm: Vec<Candidate> = found.iter().filter(of_type).cloned().collect();
+            let mut base = self.problem.spec().clone();
+            for demand in demands {
+                match demand {
+                    Demand::Type => {
+                        base.require.types.push(linkage_type);
+                        base.require.types.sort_unstable();
+                        base.require.types.dedup();
+                    }
+                    Demand::Order => base.require.order = OrderPolicy::Any,
+                    Demand::Direction => base.require.direction = DirectionPolicy::Any,
+                    Demand::Circuit => base.require.circuit = OnePolicy::Any,
+                    Demand::Branch => base.require.branch = OnePolicy::Any,
+                    _ => {}
+                }
+            }
+            if let Some(relaxation) = self.least(demands, &base, warm)? {
+                return Ok(Some(relaxation));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The least loosening of the limits of `demands` from `base`, which has the others of them loosened.
+    fn least(
+        &mut self,
+        demands: &[Demand],
+        base: &ProblemSpec,
+        mut warm: Vec<Candidate>,
+    ) -> Result<Option<(f64, Relaxation)>, PopulationError> {
+        let has_measure = |d: &Demand| {
+            !matches!(d, Demand::Type | Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch)
+        };
+        let measured: Vec<Demand> = demands.iter().copied().filter(has_measure).collect();
+        let Some(ladder) = Ladder::new(self.problem, &measured) else { return Ok(None) };
+        let mut reached: Vec<Vec<f64>> = Vec::new();
+        warm.retain(|candidate| match ladder.reached(self.problem, candidate) {
+            Some(limits) => {
+                reached.push(limits);
+                true
+            }
+            None => false,
+        });
+        let Some(first) = (0..warm.len())
+            .min_by(|&i, &k| ladder.distance(&reached[i]).total_cmp(&ladder.distance(&reached[k])))
+        else {
+            return Ok(None);
+        };
+        let outermost = reached.swap_remove(first);
+        warm.swap(0, first);
+        let mut outer = outermost.clone();
+        // The error is judged by the tolerance, but no fit is led by it: what was found is what there is. Beside
+        // other limits it follows: it becomes what the last fit leaves.
+        if measured != [Demand::Tolerance] && !measured.is_empty() {
+            let mut step: f64 = 0.5;
+            for _ in 0..STEPS {
+                if step < SHORTEST_STEP || self.exhausted() {
+                    break;
+                }
+                let between = ladder.without_tolerance(ladder.between(1.0 - step, &outer));
+                match self.accepted_at(ladder.spec(base, &between), &warm, step >= SEARCHED_STEP)? {
+                    Some(candidate) => {
+                        let limits = ladder.reached(self.problem, &candidate);
+                        outer = limits.map_or(between.clone(), |limits| ladder.inner(&between, &limits));
+                        warm.insert(0, candidate);
+                        warm.truncate(WARM);
+                        step = (LONGER * step).min(0.5);
+                    }
+                    None => step *= SHORTER,
+                }
+            }
+        }
+        // What a fit from nearby attains a search from anywhere need not: a little more room, then all of it.
+        let tries = [outer.clone(), ladder.between(1.1, &outer), outermost];
+        let mut before: Option<Vec<f64>> = None;
+        for limits in tries {
+            if self.budget.stopped() {
+                break;
+            }
+            let limits = ladder.rounded(&limits);
+            if before.as_ref() == Some(&limits) {
+                continue;
+            }
+            let spec = ladder.spec(base, &limits);
+            before = Some(limits.clone());
+            let Some(set) = changes(self.problem, &spec, demands) else { return Ok(None) };
+            // With the settings of the problem: what comes out is what comes out when it is typed.
+            let (accepted, _) = self.outcome(spec)?;
+            if let Some(best) = accepted.first() {
+                let without_measure = (demands.len() - measured.len()) as f64 * WHOLE;
+                let sum_sq = best.error.sum_sq;
+                let relaxation = Relaxation { set, sum_sq, rms: rms(sum_sq, self.problem.task().len()) };
+                return Ok(Some((ladder.distance(&limits) + without_measure, relaxation)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A candidate that is acceptable under other limits: by fits from what is known, else (`search`) by a
+    /// short search.
+    fn accepted_at(
+        &mut self,
+        spec: ProblemSpec,
+        warm: &[Candidate],
+        search: bool,
+    ) -> Result<Option<Candidate>, PopulationError> {
+        let Ok(problem) = Problem::new(spec) else { return Ok(None) };
+        let each = (self.trial / FIT_SHARE).max(1);
+        for candidate in warm {
+            let Some(start) = start_at(&problem, candidate) else { continue };
+            let fit = polish(&problem, start, LONG_STEPS, LONG_ROUNDS, each, self.budget);
+            self.spent += fit.evaluations;
+            let end = fit.end.and_then(|end| judged(&problem, &end)).filter(|c| c.accepted);
+            if end.is_some() {
+                return Ok(end);
+            }
+        }
+        if !search {
+            return Ok(None);
+        }
+        let mut spec = problem.spec().clone();
+        spec.solve.candidates = 1;
+        Ok(self.short_search(spec, self.trial / TRIAL_SHARE)?.into_iter().next())
+    }
+}
+
+/// What the change of a demand's limits is measured against: the limit itself, or the extent of its bounds.
+fn scale(demand: Demand, spec: &ProblemSpec) -> f64 {
+    let limits = demand.limits(spec).unwrap_or_default();
+    let largest = limits.iter().map(|l| l.value.abs()).fold(0.0, f64::max);
+    match limits.as_slice() {
+        [_] => largest,
+        [x0, y0, x1, y1] if !matches!(demand, Demand::Design(_)) => {
+            (x1.value - x0.value).max(y1.value - y0.value)
+        }
+        several => {
+            several.chunks(2).map(|pair| pair[pair.len() - 1].value - pair[0].value).fold(largest, f64::max)
+        }
+    }
+}
+
+/// The limits of several demands side by side, with their outward sides.
+struct Ladder {
+    demands: Vec<Demand>,
+    asked: Vec<f64>,
+    outward: Vec<f64>,
+    scale: Vec<f64>,
+    lengths: Vec<bool>,
+    tolerances: Vec<bool>,
+}
+
+impl Ladder {
+    /// `None` where one of the demands has no limits as numbers.
+    fn new(problem: &Problem, demands: &[Demand]) -> Option<Ladder> {
+        let mut ladder = Ladder {
+            demands: demands.to_vec(),
+            asked: Vec::new(),
+            outward: Vec::new(),
+            scale: Vec::new(),
+            lengths: Vec::new(),
+            tolerances: Vec::new(),
+        };
+        for demand in demands {
+            let measure = scale(*demand, problem.spec());
+            for limit in demand.limits(problem.spec())? {
+                ladder.asked.push(limit.value);
+                ladder.outward.push(limit.outward);
+                ladder.scale.push(if measure > 0.0 { measure } else { problem.task().size() });
+                ladder.lengths.push(matches!(demand, Demand::Design(key) if key.is_length()));
+                ladder.tolerances.push(*demand == Demand::Tolerance);
+            }
+        }
+        Some(ladder)
+    }
+
+    /// The limits that a candidate just meets, none inside of what is asked.
+    fn reached(&self, problem: &Problem, candidate: &Candidate) -> Option<Vec<f64>> {
+        let judged = judged_under(problem, candidate)?;
+        let mut limits = Vec::new();
+        for demand in &self.demands {
+            limits.extend(demand.attained(&judged)?);
+        }
+        let outer = |i: usize| {
+            if self.outward[i] * (limits[i] - self.asked[i]) > 0.0 { limits[i] } else { self.asked[i] }
+        };
+        (limits.len() == self.asked.len()).then(|| (0..limits.len()).map(outer).collect())
+    }
+
+    /// The greatest relative change.
+    fn distance(&self, limits: &[f64]) -> f64 {
+        let each = limits.iter().zip(&self.asked).zip(&self.scale);
+        each.map(|((limit, asked), scale)| (limit - asked).abs() / scale).fold(0.0, f64::max)
+    }
+
+    /// A share of the way out; lengths never below 0.
+    fn between(&self, share: f64, outer: &[f64]) -> Vec<f64> {
+        let at = |i: usize| {
+            let limit = self.asked[i] + share * (outer[i] - self.asked[i]);
+            if self.lengths[i] { limit.max(0.0) } else { limit }
+        };
+        (0..outer.len()).map(at).collect()
+    }
+
+    /// The same limits with a tolerance that everything meets.
+    fn without_tolerance(&self, mut limits: Vec<f64>) -> Vec<f64> {
+        for (limit, _) in limits.iter_mut().zip(&self.tolerances).filter(|(_, is)| **is) {
+            *limit = f64::MAX;
+        }
+        limits
+    }
+
+    /// The stricter of two in each place.
+    fn inner(&self, one: &[f64], other: &[f64]) -> Vec<f64> {
+        let at = |i: usize| if self.outward[i] * (one[i] - other[i]) > 0.0 { other[i] } else { one[i] };
+        (0..one.len()).map(at).collect()
+    }
+
+    fn rounded(&self, limits: &[f64]) -> Vec<f64> {
+        let at = |i: usize| {
+            let limit = rounded_outward(limits[i], self.asked[i], self.outward[i]);
+            if self.lengths[i] { limit.max(0.0) } else { limit }
+        };
+        (0..limits.len()).map(at).collect()
+    }
+
+    fn spec(&self, base: &ProblemSpec, limits: &[f64]) -> ProblemSpec {
+        let mut spec = base.clone();
+        let mut rest = limits;
+        for demand in &self.demands {
+            let count = demand.limits(&spec).map_or(0, |l| l.len());
+            let (own, others) = rest.split_at(count);
+            spec = demand.with_limits(spec, own);
+            rest = others;
+        }
+        spec
+    }
+}

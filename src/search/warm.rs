@@ -1,0 +1,66 @@
+//! A candidate as the start of another fit: of the same problem, or of one whose limits have moved.
+
+use super::starts::Start;
+use crate::problem::design_space::Shape;
+use crate::problem::requirements::nearest_type;
+use crate::problem::torus::{Positions, TorusFit};
+use crate::problem::{Problem, Setting};
+use crate::record::Candidate;
+use crate::task::Timing;
+
+/// The start at a candidate; `None` where the loop is open at a point or there are fewer positions than points.
+///
+/// The design is brought into the problem's bounds. The type aimed at is the candidate's own where that is
+/// allowed, else the nearest.
+pub fn start_at(problem: &Problem, candidate: &Candidate) -> Option<Start> {
+    let n = problem.task().len();
+    if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
+        return None;
+    }
+    let shape = Shape::from(&candidate.linkage);
+    let types = problem.types();
+    let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
+    let (direction, offset) = direction_and_offset(problem, &candidate.crank_deg);
+    let side = candidate.linkage.side();
+    let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
+    let design = problem.space(side).design(&shape, offset);
+    let positions = match problem.task().timing() {
+        Timing::Prescribed { .. } => Vec::new(),
+        Timing::Free => {
+            // A design that was brought into its bounds has other curves.
+            let mut positions = positions(candidate, &shape)?;
+            TorusFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
+        }
+    };
+    Some(Start { design, setting, positions })
+}
+
+/// The direction of the prescribed increments and the angle that is added to them, radians.
+fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
+    let Some(timing) = &problem.spec().task.path.timing else { return (problem.directions()[0], 0.0) };
+    let written = &timing.crank_deg;
+    let off = |direction: f64| {
+        let steps = crank_deg.iter().zip(written);
+        steps
+            .map(|(has, asks)| ((has - crank_deg[0]) - direction * (asks - written[0])).abs())
+            .fold(0.0, f64::max)
+    };
+    let mut direction = 1.0;
+    for &other in problem.directions() {
+        if off(other) < off(direction) || !problem.directions().contains(&direction) {
+            direction = other;
+        }
+    }
+    let offset = (crank_deg[0] - direction * written[0]).to_radians();
+    (direction, if problem.offset_is_free() { offset } else { 0.0 })
+}
+
+fn positions(candidate: &Candidate, shape: &Shape) -> Option<Positions> {
+    let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    at.map(|(deg, assembly)| {
+        let joints = candidate.linkage.position_with(deg.to_radians(), *assembly).joints()?;
+        let (c, d) = (joints.crank_pin, joints.follower_pin);
+        Some([(c - shape.crank_pivot) / shape.crank, (d - c) / shape.coupler])
+    })
+    .collect()
+}

@@ -1,0 +1,217 @@
+//! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
+
+mod common;
+
+use common::{bytes, job, literature, load, root, run_on};
+use linkwright::problem_file::ProblemFile;
+use linkwright::record::{Reason, Record};
+use linkwright::run::{Context, run};
+use linkwright::verify::verify;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+type Set<'a> = Vec<(&'a str, &'a str)>;
+
+fn example(name: &str) -> PathBuf {
+    root().join(format!("problems/examples/{name}.toml"))
+}
+
+fn literature_path(name: &str) -> PathBuf {
+    root().join(format!("problems/literature/{name}.toml"))
+}
+
+/// Problems of this project made impossible, with a key that has to be among what conflicts.
+fn impossible() -> Vec<(PathBuf, Set<'static>, &'static str)> {
+    vec![
+        (
+            example("pivot-box"),
+            vec![("require.pivots_in", "[-20, -40, 40, -10]"), ("require.transmission_deg_min", "50")],
+            "require.pivots_in",
+        ),
+        (example("pivot-box"), vec![("require.link_ratio_max", "1.3")], "require.link_ratio_max"),
+        (example("walking-stride"), vec![("task.path.tolerance", "1")], "task.path.tolerance"),
+        (literature_path("k18"), vec![("task.path.tolerance", "0.001")], "task.path.tolerance"),
+        (
+            literature_path("k18"),
+            vec![("require.link_ratio_max", "1.5"), ("require.transmission_deg_min", "50")],
+            "require.transmission_deg_min",
+        ),
+        (
+            literature_path("a6"),
+            vec![("design.ground", "[5, 20]"), ("task.path.tolerance", "1.0")],
+            "design.ground",
+        ),
+        (
+            literature_path("k18"),
+            vec![
+                ("require.type", "[\"double-crank\"]"),
+                ("require.link_ratio_max", "2"),
+                ("task.path.tolerance", "0.1"),
+            ],
+            "require.type",
+        ),
+        // No single change helps: one for the tolerance and one for the rest.
+        (
+            literature_path("k18"),
+            vec![
+                ("require.link_ratio_max", "1.5"),
+                ("require.transmission_deg_min", "50"),
+                ("task.path.tolerance", "0.02"),
+            ],
+            "require.link_ratio_max",
+        ),
+        (literature_path("e5"), vec![("design.a", "10"), ("task.path.tolerance", "0.01")], "design.a"),
+    ]
+}
+
+fn with(path: &std::path::Path, set: &[(&str, &str)]) -> ProblemFile {
+    let mut set = set.to_vec();
+    set.push(("solve.evaluations", "40000"));
+    load(path, &set)
+}
+
+#[test]
+fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
+    let mut proposed = 0;
+    for (path, set, among) in impossible() {
+        let name = path.display();
+        let record = run_on(2, with(&path, &set));
+        assert!(record.candidates.iter().all(|c| !c.accepted), "{name} {set:?} is possible");
+        assert_eq!(verify(&record).expect("the problem is one"), Vec::new(), "{name}");
+        let conflict = record.conflict.as_ref().unwrap_or_else(|| panic!("{name} {set:?}: a conflict"));
+        assert!(conflict.among.iter().any(|key| key == among), "{name} {set:?}: {conflict:?}");
+        assert!(!record.relaxations.is_empty(), "{name} {set:?}: nothing is proposed");
+        assert!(record.relaxations.len() <= 5);
+        for relaxation in &record.relaxations {
+            let typed: Vec<(String, String)> =
+                relaxation.set.iter().map(|c| (c.key.clone(), c.to.to_string())).collect();
+            let mut all = set.clone();
+            all.extend(typed.iter().map(|(key, value)| (key.as_str(), value.as_str())));
+            let again = run_on(1, with(&path, &all));
+            let best = &again.candidates[0];
+            assert!(best.accepted, "{name} {all:?}");
+            assert_eq!(best.error.sum_sq, relaxation.sum_sq, "{name} {all:?}");
+            assert_eq!(verify(&again).expect("the problem is one"), Vec::new(), "{name} {all:?}");
+            proposed += 1;
+        }
+    }
+    assert!(proposed >= 12, "{proposed} proposals");
+}
+
+/// A key that is typed is no longer filled in by a default, and may take the default of another with it: what is
+/// proposed has to say enough for the problem that was proved.
+#[test]
+fn changes_that_are_typed_give_the_very_problem_that_was_proved() {
+    use linkwright::problem::Problem;
+    use linkwright::search::loosen::{Demand, changes};
+    let designs = [
+        "",
+        "A = [[-20, 20], [-20, 20]]",
+        "B = [[-20, 20], [0, 20]]",
+        "A = [1, 2]",
+        "A = [0, 0]\nB = [[3, 9], 0]",
+        "A = [[-9, 9], [-9, 9]]\nB = [[-9, 9], [-9, 9]]\nground = [1, 8]\nground_angle_deg = [-90, 90]",
+        "ground = [3, 8]",
+        "ground_angle_deg = 10",
+        "d = [1, 4]\na = 2",
+        "coupler_x = 3\ne = [1, 5]",
+    ];
+    let mut typed = 0;
+    for (design, timed) in designs.iter().flat_map(|design| [(design, false), (design, true)]) {
+        let timing =
+            if timed { "[task.path.timing]\ncrank_deg = [0, 40, 80]\noffset = \"fixed\"\n" } else { "" };
+        let text = format!(
+            "format = 1\n[task.path]\npoints = [[0, 0], [3, 1], [5, 4]]\ntolerance = 0.5\n{timing}[design]\n{design}\n\
+             [require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 40\npivots_in = [-30, -30, 30, 30]\n"
+        );
+        let parse = |set: &[(String, String)]| {
+            let file = linkwright::problem_file::parse("test.toml", &text, None, set);
+            file.unwrap_or_else(|e| panic!("{design} {set:?}: {e}")).spec
+        };
+        let problem = Problem::new(parse(&[])).expect("it is one");
+        for demand in Demand::of(&problem) {
+            let Some(limits) = demand.limits(problem.spec()) else { continue };
+            let values: Vec<f64> =
+                limits.iter().map(|l| (l.value + 0.125 * l.outward * l.value.abs()).max(-25.0)).collect();
+            let loosened = demand.with_limits(problem.spec().clone(), &values);
+            let set: Vec<(String, String)> = changes(&problem, &loosened, &[demand])
+                .expect("it can be typed")
+                .into_iter()
+                .map(|c| (c.key, c.to.to_string()))
+                .collect();
+            assert_eq!(parse(&set), loosened, "{design} {set:?}");
+            typed += 1;
+        }
+    }
+    assert!(typed > 150, "{typed}");
+}
+
+#[test]
+fn a_tolerance_that_is_set_by_hand_takes_the_place_of_a_column() {
+    let file = load(&example("csv-tolerances"), &[("task.path.tolerance", "0.75")]);
+    assert!(file.spec.task.path.tolerance.expect("it has one").iter().all(|t| *t == 0.75));
+}
+
+/// A limit that is typed a little back towards what was asked is no longer enough, as far as the same search sees:
+/// the proposal is near the least.
+#[test]
+fn a_proposal_is_not_much_more_than_is_needed() {
+    let set = [("require.link_ratio_max", "1.5"), ("require.transmission_deg_min", "50")];
+    let record = run_on(2, with(&literature_path("k18"), &set));
+    let of = |key: &str| {
+        let found = record.relaxations.iter().find(|r| r.set.len() == 1 && r.set[0].key == key);
+        found.unwrap_or_else(|| panic!("{key} is proposed: {:?}", record.relaxations)).set[0].to.to_string()
+    };
+    let angle: f64 = of("require.transmission_deg_min").parse().expect("a number");
+    let ratio: f64 = of("require.link_ratio_max").parse().expect("a number");
+    let back = [
+        ("1.5".to_string(), (angle + 0.15 * (50.0 - angle)).to_string()),
+        ((ratio - 0.15 * (ratio - 1.5)).to_string(), "50".to_string()),
+    ];
+    for (ratio, angle) in back {
+        let set =
+            [("require.link_ratio_max", ratio.as_str()), ("require.transmission_deg_min", angle.as_str())];
+        let record = run_on(2, with(&literature_path("k18"), &set));
+        assert!(record.candidates.iter().all(|c| !c.accepted), "{set:?} is enough");
+    }
+}
+
+#[test]
+fn one_and_two_threads_propose_the_same() {
+    let (path, set, _) = impossible().swap_remove(4);
+    let [one, two] = [1, 2].map(|threads| bytes(&run_on(threads, with(&path, &set))));
+    assert_eq!(one, two);
+}
+
+#[test]
+fn what_is_acceptable_needs_no_explanation() {
+    let record = run_on(2, literature("k18", &[]));
+    assert!(record.conflict.is_none() && record.relaxations.is_empty());
+}
+
+#[test]
+fn a_cancelled_run_is_not_explained() {
+    let file = literature("k18", &[("task.path.tolerance", "0.001")]);
+    let cancel = AtomicBool::new(true);
+    let context = Context { cancel: &cancel, observer: &|_| {} };
+    let record: Record = run(&job(file), &context).expect("it runs").record;
+    assert_eq!(record.termination.reason, Reason::Cancelled);
+    assert!(record.conflict.is_none() && record.relaxations.is_empty());
+}
+
+#[test]
+fn a_clock_that_ends_the_explanation_ends_the_run() {
+    // The search is over at once; what follows is cut.
+    let file = literature("k18", &[("task.path.tolerance", "0.001"), ("solve.evaluations", "30000")]);
+    let cancel = AtomicBool::new(false);
+    let observer = |progress: &linkwright::search::Progress| {
+        if progress.phase == "what would help" {
+            cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    };
+    let record = run(&job(file), &Context { cancel: &cancel, observer: &observer }).expect("it runs").record;
+    assert_eq!(record.termination.reason, Reason::Cancelled);
+    assert!(!record.termination.reproducible);
+    assert!(record.conflict.is_none() && record.relaxations.is_empty());
+    assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
+}
