@@ -81,6 +81,8 @@ pub fn assess(
             over,
         },
         link_ratio: linkage.link_ratio(),
+        warnings: Vec::new(),
+        alternatives: Vec::new(),
         requirements: Vec::new(),
         accepted: false,
         defects: verdict.defects.clone(),

@@ -9,6 +9,8 @@ use crate::run::{RunError, digest};
 use crate::search::rank::{compare, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
+mod extras;
+
 /// Figures may differ by this part of themselves ..
 pub const RELATIVE: f64 = 1e-9;
 /// .. plus this part of the target's size (squared sums: of its square).
@@ -78,6 +80,7 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
         let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
         against.candidate(&problem, candidate);
     }
+    extras::extras(&problem, record, &mut mismatches);
     Ok(mismatches)
 }
 

@@ -244,7 +244,8 @@ impl DesignSpace {
             .collect()
     }
 
-    fn is_angle(&self, i: usize) -> bool {
+    /// Whether a number is an angle, radians; the others are lengths.
+    pub fn is_angle(&self, i: usize) -> bool {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }
 

@@ -1,11 +1,17 @@
 //! What to try: starts, rounds, populations, and which answers to give.
 
+pub mod answers;
+pub mod buildable;
+pub mod cognates;
+pub mod family;
 pub mod multistart;
 pub mod nearest;
 pub mod plan;
 pub mod population;
 pub mod rank;
 pub mod starts;
+pub mod warm;
+pub mod warnings;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,6 +70,8 @@ pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
 pub struct SearchOutcome {
     /// Distinct candidates, ranked.
     pub candidates: Vec<Candidate>,
+    /// What else was found: the same answers again, worse ones, and ones that are not acceptable.
+    pub others: Vec<Candidate>,
     /// What ran, in order.
     pub used: Vec<String>,
     /// Why it ended.

@@ -7,7 +7,7 @@
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::population::{self, Population};
-use super::rank::{compare, distinct, exact_objective, exact_sum_sq};
+use super::rank::{count_distinct, distinct, divided, exact_objective, exact_sum_sq, sort};
 use super::starts::Starts;
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::assess::assess;
@@ -37,6 +37,8 @@ const KEPT: usize = 400;
 /// A target further than this many of its sizes from the origin is searched around its own centre: at 1e6 sizes
 /// differences of coordinates have lost six digits.
 const FAR: f64 = 100.0;
+/// Of what else was found there, this many are brought back.
+const FAR_OTHERS: usize = 32;
 
 /// Searches as the problem's `[solve]` table says.
 ///
@@ -60,6 +62,7 @@ pub fn search(
         assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
     };
     let found = outcome.candidates.iter().filter_map(back).collect();
+    outcome.others = outcome.others.iter().take(FAR_OTHERS).filter_map(back).collect();
     outcome.candidates = distinct(problem, found, problem.spec().solve.candidates);
     let exact = exact_sum_sq(problem);
     let is_exact = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
@@ -94,8 +97,10 @@ fn alone(
 ) -> Result<SearchOutcome, PopulationError> {
     let spec = &problem.spec().solve;
     let end = population::search(problem, which, spec.evaluations, budget, observer)?;
+    let (candidates, others) = divided(problem, end.found, spec.candidates);
     Ok(SearchOutcome {
-        candidates: distinct(problem, end.found, spec.candidates),
+        candidates,
+        others,
         used: vec![which.name().into()],
         reason: budget.stop_reason().unwrap_or(end.reason),
         evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
@@ -112,8 +117,10 @@ struct Local {
 
 impl Local {
     fn outcome(self, problem: &Problem) -> SearchOutcome {
+        let (candidates, others) = divided(problem, self.found, problem.spec().solve.candidates);
         SearchOutcome {
-            candidates: distinct(problem, self.found, problem.spec().solve.candidates),
+            candidates,
+            others,
             used: self.used,
             reason: self.reason,
             evaluations: self.evaluations,
@@ -178,7 +185,7 @@ fn local_search(
             }
             hits += usize::from(hit);
         }
-        local.found.sort_by(|one, other| compare(problem, one, other));
+        sort(problem, &mut local.found);
         local.found.truncate(KEPT);
         // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
         if let Some(reason) = budget.stop_reason() {
@@ -194,7 +201,7 @@ fn local_search(
             accepted: best.is_some(),
         });
         if hits >= HITS && batch >= LEAST_BATCHES {
-            let distinct = distinct(problem, local.found.clone(), wanted).len();
+            let distinct = count_distinct(problem, &local.found, wanted);
             quiet = if distinct > known { 0 } else { quiet + 1 };
             known = distinct;
             if distinct >= wanted || quiet >= QUIET_BATCHES {
