@@ -70,7 +70,7 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     let mut outcome = plan::search(&problem, &budget, context.observer)?;
     cognates::offer(&problem, &mut outcome.candidates);
     let search_s = start.elapsed().as_secs_f64();
-    let beside = answers::beside(&problem, &mut outcome, &budget);
+    let beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
     let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
     let record = Record {

@@ -21,7 +21,7 @@ const TIMING_DEG: f64 = 1e-9;
 /// Something in a record that is not so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The candidate's rank; `None`: the record as a whole.
+    /// The candidate's rank, 0: the buildable one; `None`: the record as a whole.
     pub rank: Option<usize>,
     /// Which figure or verdict.
     pub what: String,
@@ -33,8 +33,10 @@ pub struct Mismatch {
 
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if let Some(rank) = self.rank {
-            write!(f, "candidate {rank}: ")?;
+        match self.rank {
+            None => {}
+            Some(0) => write!(f, "buildable: ")?,
+            Some(rank) => write!(f, "candidate {rank}: ")?,
         }
         write!(f, "{} is recorded as {}, but it is {}", self.what, self.recorded, self.found)
     }

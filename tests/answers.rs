@@ -79,6 +79,17 @@ fn the_dimension_of_a_family_counts_unknowns_that_the_points_do_not_fix() {
 }
 
 #[test]
+fn few_points_at_prescribed_angles_leave_a_family_too() {
+    let text = "format = 1\n[task.path]\npoints = [[0, 0], [2, 1], [4, 0]]\n[task.path.timing]\n\
+                crank_deg = [0, 30, 60]\n[solve]\ncandidates = 3\n";
+    let record = run_on(1, parse(text));
+    is_true(&record);
+    // Nine parameters and the offset, six equations.
+    assert_eq!(record.family.as_ref().expect("it says so").dimension, 4);
+    assert_eq!(record.candidates.len(), 3);
+}
+
+#[test]
 fn an_exact_answer_to_many_points_stands_alone_and_a_poor_one_has_no_family() {
     // Twenty points of a known linkage: nothing is left to choose.
     let linkage = FourBar::new(NaturalCoordinates {
@@ -276,7 +287,7 @@ fn what_is_offered_beside_a_linkage_that_jams_does_not_jam() {
     let first = Candidate { rank: 1, warnings: warnings(&problem, jams), ..jams.clone() };
     let flag = AtomicBool::new(false);
     let budget = Budget { cancel: &flag, deadline: None };
-    let outcome = buildable(&problem, std::slice::from_ref(&first), &[], 20_000, &budget);
+    let outcome = buildable(&problem, std::slice::from_ref(&first), &[], 20_000, &budget, &|_| {});
     assert!(outcome.evaluations.objective > 0 && outcome.evaluations.objective <= 20_000);
     let built = outcome.candidate.expect("there is one");
     assert!(built.accepted && built.rank == 0);
@@ -285,7 +296,7 @@ fn what_is_offered_beside_a_linkage_that_jams_does_not_jam() {
     // The best known one that can be built.
     assert!(built.error.sum_sq < 0.0030709, "{}", built.error.sum_sq);
     // Where all that was found is at hand it is never worse than the best of these.
-    let known = buildable(&problem, std::slice::from_ref(&first), &all, 0, &budget);
+    let known = buildable(&problem, std::slice::from_ref(&first), &all, 0, &budget, &|_| {});
     assert_eq!(known.evaluations.objective, 0);
     let free = |c: &&Candidate| c.accepted && !warnings(&problem, c).iter().any(is_serious);
     let least = all.iter().filter(free).map(|c| c.error.objective).fold(f64::INFINITY, f64::min);
@@ -298,7 +309,7 @@ fn without_warnings_nothing_is_searched() {
     let best = distinct(&problem, found(&problem), 1);
     let flag = AtomicBool::new(false);
     let budget = Budget { cancel: &flag, deadline: None };
-    let outcome = buildable(&problem, &best, &[], 100_000, &budget);
+    let outcome = buildable(&problem, &best, &[], 100_000, &budget, &|_| {});
     assert!(outcome.candidate.is_none());
     assert_eq!(outcome.evaluations.objective, 0);
 }
@@ -322,4 +333,34 @@ fn the_record_offers_what_can_be_built_beside_a_change_point() {
     assert!(record.evaluations.objective <= record.problem.resolved.solve.evaluations);
     let plain = literature("a6b", &[("solve.candidates", "2"), ("solve.method", "least-squares")]);
     assert!(run_on(1, plain).buildable.is_none());
+}
+
+/// The same far from the origin, where the search runs around the target's own centre.
+#[test]
+fn a_far_target_is_offered_the_same_linkage() {
+    let by = [3e5, -2e5];
+    let mut near = literature("a6b", &[("solve.candidates", "1")]);
+    let one = run_on(2, near.clone());
+    near.spec = near.spec.shifted(by);
+    let far = run_on(2, near);
+    is_true(&far);
+    let sums = [one, far].map(|r| r.buildable.expect("there is one").error.sum_sq);
+    assert!((sums[0] - sums[1]).abs() < 1e-3 * sums[0], "{sums:?}");
+}
+
+#[test]
+fn the_table_says_what_stands_beside_the_candidates() {
+    use linkwright::report::Colour;
+    use linkwright::report::svg::candidate_svg;
+    use linkwright::report::table::candidates_table;
+    let record = run_on(2, literature("a6b", &[("solve.candidates", "1")]));
+    let text = candidates_table(&record, Colour::Never);
+    for line in ["#1: worst transmission angle", "it will jam", "buildable (beside the table): sum of sq"] {
+        assert!(text.contains(line), "{line}\n{text}");
+    }
+    assert!(candidate_svg(&record, 0).contains("it will jam"));
+    let record = run_on(2, literature("v6", &[("solve.candidates", "1")]));
+    let text = candidates_table(&record, Colour::Never);
+    assert!(text.contains("a 3-parameter family of exact answers: ranked by transmission angle, then size"));
+    assert!(text.contains("#1: same curve: 2 cognates"), "{text}");
 }

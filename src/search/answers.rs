@@ -3,7 +3,7 @@
 use super::buildable::buildable;
 use super::family::family;
 use super::warnings::warnings;
-use super::{Budget, SearchOutcome};
+use super::{Budget, Observer, SearchOutcome};
 use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Candidate, Family};
@@ -22,7 +22,12 @@ pub struct Beside {
 /// Where the first has warnings and the method is `auto` a second search looks for something to build, with at
 /// most as many evaluations as the first one took and the budget still has; they are added to the outcome's,
 /// and where the clock or a cancellation cuts it short that becomes the outcome's reason.
-pub fn beside(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_>) -> Beside {
+pub fn beside(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Beside {
     for candidate in &mut outcome.candidates {
         candidate.warnings = warnings(problem, candidate);
     }
@@ -33,10 +38,10 @@ pub fn beside(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     }
     let used = outcome.evaluations.objective;
     let allowance = used.min(solve.evaluations.saturating_sub(used));
-    let found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget);
+    let found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
     outcome.evaluations.objective += found.evaluations.objective;
     outcome.evaluations.positions += found.evaluations.positions;
-    if let Some(reason) = budget.stop_reason() {
+    if let Some(reason) = budget.stop_reason().filter(|_| found.searched) {
         outcome.reason = reason;
     }
     Beside { family, buildable: found.candidate }

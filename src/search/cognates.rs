@@ -14,7 +14,7 @@
 
 use super::multistart::unwrapped;
 use super::rank::{exact_sum_sq, size, sort};
-use crate::assess::assess;
+use crate::assess::{assess, assess_on_curve};
 use crate::linkage::cognate::{Cognate, OriginalLink};
 use crate::linkage::mobility::wrapped;
 use crate::linkage::{AssemblyMode, FourBar};
@@ -35,7 +35,14 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
         forms.insert(0, candidate.clone());
         // Equal ones keep their order: the candidate that was found comes first.
         forms.sort_by_cached_key(Merit::of);
-        *candidate = forms.remove(0);
+        let first = forms.remove(0);
+        if first.linkage != candidate.linkage {
+            // It takes the place with figures of its own.
+            match assess(problem, &first.linkage, &first.crank_deg, &first.t1_at) {
+                Some(judged) => *candidate = judged,
+                None => continue,
+            }
+        }
         candidate.alternatives = forms.iter().map(alternative).collect();
     }
     if candidates.iter().any(|candidate| candidate.accepted) {
@@ -88,7 +95,8 @@ pub fn not_met(candidate: &Candidate) -> Vec<String> {
     candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone()).collect()
 }
 
-/// The cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem.
+/// The cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem; its
+/// distances to the whole curve are theirs, for the curve is the same.
 pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
         return Vec::new();
@@ -101,7 +109,9 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
         };
         let same = candidate.error.sum_sq * (1.0 + SAME_ERROR);
         let bar = same.max(exact_sum_sq(problem));
-        assess(problem, &linkage, &crank_deg, &t1_at).filter(|form| form.error.sum_sq <= bar)
+        let to_curve = Some(candidate.error.to_curve);
+        assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
+            .filter(|form| form.error.sum_sq <= bar)
     };
     found.into_iter().flatten().filter_map(judged).collect()
 }

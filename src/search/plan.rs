@@ -7,7 +7,7 @@
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::population::{self, Population};
-use super::rank::{count_distinct, distinct, divided, exact_objective, exact_sum_sq, sort};
+use super::rank::{count_distinct, divided, exact_objective, exact_sum_sq, sort};
 use super::starts::Starts;
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::assess::assess;
@@ -36,7 +36,7 @@ const KEPT: usize = 400;
 
 /// A target further than this many of its sizes from the origin is searched around its own centre: at 1e6 sizes
 /// differences of coordinates have lost six digits.
-const FAR: f64 = 100.0;
+pub const FAR: f64 = 100.0;
 /// Of what else was found there, this many are brought back.
 const FAR_OTHERS: usize = 32;
 
@@ -61,9 +61,10 @@ pub fn search(
         let linkage = candidate.linkage.shifted(centre).ok()?;
         assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
     };
-    let found = outcome.candidates.iter().filter_map(back).collect();
-    outcome.others = outcome.others.iter().take(FAR_OTHERS).filter_map(back).collect();
-    outcome.candidates = distinct(problem, found, problem.spec().solve.candidates);
+    // Also the next best: one that only just closes there may be open here.
+    let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
+    let found = found.collect();
+    (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
     let exact = exact_sum_sq(problem);
     let is_exact = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
     if outcome.reason == Reason::TargetReached && !is_exact {

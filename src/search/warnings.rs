@@ -78,10 +78,8 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
                 }
             }
         }
-        (Figure::Number(value), Figure::Number(limit)) if name != "tolerance" => {
-            if on(*value, *limit) {
-                each(name, *value, *limit);
-            }
+        (Figure::Number(value), Figure::Number(limit)) if name != "tolerance" && on(*value, *limit) => {
+            each(name, *value, *limit);
         }
         (Figure::Numbers(values), Figure::Numbers(limits)) if values.len() == 4 && limits.len() == 4 => {
             for (i, (value, limit)) in values.iter().zip(limits).enumerate() {
