@@ -23,7 +23,7 @@
 //! | [`solve`] | numbers only: populations, Levenberg-Marquardt, random streams | |
 //! | [`problem`] | the task as mathematics: design space, residuals, requirements, fitness | linkage, task, solve |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`search`] | what to try: starts, rounds, plan, distinct answers | all above |
+//! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |

@@ -267,6 +267,12 @@ fn a_limit_that_decides_the_answer_is_named() {
         assert_eq!(warning.kind, WarningKind::OnBound);
         assert!((warning.value - warning.limit).abs() < 1e-4);
     }
+    // The side of a box is named.
+    let file = common::load(&common::root().join("problems/examples/pivot-box.toml"), &[]);
+    let record = run_on(1, file);
+    let first = &record.candidates[0].warnings[0];
+    assert_eq!(first.key, "pivots_in");
+    assert!(first.text.starts_with("pivots_in y"), "{}", first.text);
     // A fixed value is no bound.
     let a = literature("a6", &[("design.a", "5"), ("solve.candidates", "1")]);
     let keys: Vec<String> = run_on(1, a).candidates[0].warnings.iter().map(|w| w.key.clone()).collect();

@@ -2,7 +2,7 @@
 
 use super::text::{clean, significant, wrapped};
 use super::words;
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, Record, WarningKind};
 
 /// The text is no longer than this many lines of warnings and cognates each.
 const MOST_LINES: usize = 20;
@@ -36,8 +36,12 @@ pub(super) fn warnings(candidate: &Candidate) -> String {
 
 fn buildable(record: &Record, candidate: &Candidate) -> String {
     let place = if candidate.rank > 0 { format!("#{}", candidate.rank) } else { "beside the table".into() };
+    // Where the first is warned of nothing but limits it may well be built: this one is free of them.
+    let first = record.candidates.first();
+    let limits_only = first.is_some_and(|c| c.warnings.iter().all(|w| w.kind == WarningKind::OnBound));
+    let label = if limits_only { "buildable, on no limit" } else { "buildable" };
     let mut text = format!(
-        "buildable ({place}): sum of sq {}, rms {}{}, {}, worst transmission angle {} deg, ratio {}",
+        "{label} ({place}): sum of sq {}, rms {}{}, {}, worst transmission angle {} deg, ratio {}",
         significant(candidate.error.sum_sq, 6),
         significant(candidate.error.rms, 4),
         words::unit_suffix(record),

@@ -1,4 +1,5 @@
-//! What to try: starts, rounds, populations, and which answers to give.
+//! What to try: starts, rounds, populations, and which answers to give: distinct ones, cognates of their curves,
+//! families, warnings and what can be built.
 
 pub mod answers;
 pub mod buildable;

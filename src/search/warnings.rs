@@ -46,8 +46,9 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         push(WarningKind::ChangePoint, "grashof_margin", margin, least, text);
     }
     for requirement in &candidate.requirements {
-        on_bound(problem, requirement, &mut |key, value, limit| {
-            let text = format!("{key} = {} is on its limit: the problem's bounds decide it", shown(limit));
+        on_bound(problem, requirement, &mut |key, side, value, limit| {
+            let text =
+                format!("{key}{side} = {} is on its limit: the problem's bounds decide it", shown(limit));
             push(WarningKind::OnBound, key, value, limit, text);
         });
     }
@@ -59,9 +60,12 @@ pub fn is_serious(warning: &Warning) -> bool {
     warning.kind != WarningKind::OnBound
 }
 
-/// Calls `each` with key, value and limit for every limit of a requirement that the value lies on. Fixed values
+/// The sides of a box.
+const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
+
+/// Calls `each` with key, side of a box, value and limit for every limit of a requirement that the value lies on. Fixed values
 /// and coordinates that a box leaves no choice have none.
-fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, f64, f64)) {
+fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
     let name = requirement.name.as_str();
     let unit = match name {
         "link_ratio_max" => 1.0,
@@ -74,18 +78,18 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
             let [low, high] = limits[..] else { return };
             if low < high {
                 for limit in [low, high].into_iter().filter(|limit| on(*value, *limit)) {
-                    each(name, *value, limit);
+                    each(name, "", *value, limit);
                 }
             }
         }
         (Figure::Number(value), Figure::Number(limit)) if name != "tolerance" && on(*value, *limit) => {
-            each(name, *value, *limit);
+            each(name, "", *value, *limit);
         }
         (Figure::Numbers(values), Figure::Numbers(limits)) if values.len() == 4 && limits.len() == 4 => {
             for (i, (value, limit)) in values.iter().zip(limits).enumerate() {
                 let open = limits[i % 2] < limits[i % 2 + 2];
                 if open && on(*value, *limit) {
-                    each(name, *value, *limit);
+                    each(name, SIDES[i], *value, *limit);
                 }
             }
         }
