@@ -34,6 +34,21 @@ pub fn assess(
     crank_deg: &[f64],
     assemblies: &[AssemblyMode],
 ) -> Option<Candidate> {
+    assess_on_curve(problem, linkage, crank_deg, assemblies, None)
+}
+
+/// As [`assess`], of a linkage whose distances to its whole curve are known: a cognate has those of the linkage
+/// that it is a cognate of. They are most of the cost.
+///
+/// # Panics
+/// When there are fewer angles or assemblies than points.
+pub fn assess_on_curve(
+    problem: &Problem,
+    linkage: &FourBar,
+    crank_deg: &[f64],
+    assemblies: &[AssemblyMode],
+    to_curve: Option<CurveErrorRecord>,
+) -> Option<Candidate> {
     let task = problem.task();
     let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
     let linkage_type = linkage.linkage_type()?;
@@ -42,9 +57,15 @@ pub fn assess(
         return None;
     }
     let error = task.errors(linkage, &crank_angles, assemblies)?;
-    let to_curve = task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?;
-    let verdict = judge(task, linkage, &crank_angles, assemblies);
     let n = task.len();
+    let to_curve = match to_curve {
+        Some(known) => known,
+        None => {
+            let found = task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?;
+            CurveErrorRecord { sum_sq: found.sum_sq, rms: rms(found.sum_sq, n), max: found.max }
+        }
+    };
+    let verdict = judge(task, linkage, &crank_angles, assemblies);
     let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {
         TransmissionOver::Cycle
     } else {
@@ -69,11 +90,7 @@ pub fn assess(
             max: error.max,
             max_at: error.max_at,
             rms_over_size: rms(error.sum_sq, n) / task.size(),
-            to_curve: CurveErrorRecord {
-                sum_sq: to_curve.sum_sq,
-                rms: rms(to_curve.sum_sq, n),
-                max: to_curve.max,
-            },
+            to_curve,
         },
         linkage_type,
         grashof_margin: linkage.grashof_margin(),
@@ -84,6 +101,8 @@ pub fn assess(
             over,
         },
         link_ratio: linkage.link_ratio(),
+        warnings: Vec::new(),
+        alternatives: Vec::new(),
         requirements: Vec::new(),
         accepted: false,
         defects: verdict.defects.clone(),

@@ -23,7 +23,7 @@
 //! | [`solve`] | numbers only: populations, Levenberg-Marquardt, convex programs, non-negative least squares, random streams | |
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`search`] | what to try: starts, rounds, plan, distinct answers; what requirements cost, which conflict | all above |
+//! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |

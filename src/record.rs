@@ -8,6 +8,10 @@ use crate::problem::spec::{Method, ProblemSpec, TransmissionOver};
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
 
+mod extras;
+
+pub use extras::{Alternative, Family, Warning, WarningKind};
+
 /// The format that this program writes and reads.
 pub const FORMAT: u32 = 1;
 
@@ -28,6 +32,13 @@ pub struct Record {
     pub termination: Termination,
     /// What it cost.
     pub evaluations: Evaluations,
+    /// Said where the answers are members of a whole family of exact answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub family: Option<Family>,
+    /// Where the first candidate has warnings: the best one found without that. Its rank is the one that it has
+    /// among the candidates, 0 where it is none of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buildable: Option<Candidate>,
     /// The answers, best first.
     pub candidates: Vec<Candidate>,
     /// Where nothing is acceptable: requirements that cannot be met together, as far as was searched.
@@ -160,6 +171,12 @@ pub struct Candidate {
     pub link_ratio: f64,
     /// Every defect found, whether it is allowed or not.
     pub defects: Vec<Defect>,
+    /// Why it may be a poor one to build although its error is good.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+    /// Other linkages of the same curve (its cognates), the better first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<Alternative>,
     /// Each requirement with its value and limit.
     pub requirements: Vec<Requirement>,
     /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.

@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 const LOCK: &str = ".lock";
 const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
+/// What stands in the place of a rank in the names of the buildable answer's files.
+pub const BUILDABLE: &str = "buildable";
 /// The largest record that is read.
 pub const MAX_RECORD_BYTES: u64 = 256 << 20;
 
@@ -87,7 +89,7 @@ fn is_ours(name: &str) -> bool {
     let numbered = |prefix: &str, suffix: &str| {
         name.strip_prefix(prefix)
             .and_then(|rest| rest.strip_suffix(suffix))
-            .is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+            .is_some_and(|n| n == BUILDABLE || (!n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
     };
     matches!(name, LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "report.html")
         || name == "checkpoint.json"

@@ -3,7 +3,7 @@
 use crate::problem::Problem;
 use crate::problem::spec::ProblemSpec;
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
-use crate::search::{Budget, Observer, conflicts, costs, plan};
+use crate::search::{Budget, Observer, answers, cognates, conflicts, costs, plan};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
 use serde::Serialize;
@@ -54,6 +54,8 @@ pub struct Finished {
     pub record: Record,
     /// Seconds from the checked problem to ranked, refereed candidates.
     pub search_s: f64,
+    /// Seconds more for what stands beside them: warnings, a family, and the search for something to build.
+    pub beside_s: f64,
 }
 
 /// Runs a job on the current rayon thread pool.
@@ -66,9 +68,12 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     let problem = Problem::new(job.spec.clone())?;
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
     let mut outcome = plan::search(&problem, &budget, context.observer)?;
+    cognates::offer(&problem, &mut outcome.candidates);
     let search_s = start.elapsed().as_secs_f64();
     costs::attach(&problem, &mut outcome, &budget);
     let explained = conflicts::explain(&problem, &mut outcome, &budget, context.observer)?;
+    let beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    let beside_s = start.elapsed().as_secs_f64() - search_s;
     let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
     let record = Record {
         format: FORMAT,
@@ -84,11 +89,13 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
         method: MethodRecord { asked: job.spec.solve.method, used: outcome.used },
         termination: Termination { reason: outcome.reason, reproducible },
         evaluations: outcome.evaluations,
+        family: beside.family,
+        buildable: beside.buildable,
         candidates: outcome.candidates,
         conflict: explained.conflict,
         relaxations: explained.relaxations,
     };
-    Ok(Finished { record, search_s })
+    Ok(Finished { record, search_s, beside_s })
 }
 
 /// SHA-256 of what decides a search: task, design, require, objective, method with its parameters, seed.

@@ -11,6 +11,8 @@ use crate::search::loosen::Demand;
 use crate::search::rank::{compare, exact_objective, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
+mod extras;
+
 /// Figures may differ by this part of themselves ..
 pub const RELATIVE: f64 = 1e-9;
 /// .. plus this part of the target's size (squared sums: of its square).
@@ -23,7 +25,7 @@ const RATE: f64 = 1e-6;
 /// Something in a record that is not so.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The candidate's rank; `None`: the record as a whole.
+    /// The candidate's rank, 0: the buildable one; `None`: the record as a whole.
     pub rank: Option<usize>,
     /// Which figure or verdict.
     pub what: String,
@@ -35,8 +37,10 @@ pub struct Mismatch {
 
 impl std::fmt::Display for Mismatch {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if let Some(rank) = self.rank {
-            write!(f, "candidate {rank}: ")?;
+        match self.rank {
+            None => {}
+            Some(0) => write!(f, "buildable: ")?,
+            Some(rank) => write!(f, "candidate {rank}: ")?,
         }
         write!(f, "{} is recorded as {}, but it is {}", self.what, self.recorded, self.found)
     }
@@ -83,6 +87,7 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
         let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
         against.candidate(&problem, candidate);
     }
+    extras::extras(&problem, record, &mut mismatches);
     Ok(mismatches)
 }
 

@@ -41,6 +41,29 @@ fn record(folder: &Path) -> Record {
 }
 
 #[test]
+fn what_can_be_built_has_files_of_its_own_that_go_with_the_next_result() {
+    let folder = TempDir::new().expect("a folder");
+    let job = |extra: &[&str]| {
+        let problem = shipped("literature/a6b.toml");
+        let mut arguments = vec!["synth", problem.as_str(), "--out", "r"];
+        arguments.extend(extra);
+        answer(linkwright(folder.path()).args(arguments))
+    };
+    let run = job(&[]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("buildable"), "{}", run.stdout);
+    let files =
+        ["linkage-buildable.toml", "curve-buildable.csv"].map(|name| folder.path().join("r").join(name));
+    assert!(files.iter().all(|file| file.is_file()));
+    let checked = answer(linkwright(folder.path()).args(["check", "r/linkage-buildable.toml"]));
+    assert_eq!(checked.code, 0, "{}", checked.stderr);
+    assert_eq!(answer(linkwright(folder.path()).args(["verify", "r"])).code, 0);
+    let plain = job(&["--method", "least-squares"]);
+    assert_eq!(plain.code, 0, "{}", plain.stderr);
+    assert!(files.iter().all(|file| !file.exists()), "they belong to the earlier result");
+}
+
+#[test]
 fn the_main_job_writes_a_result_that_verifies() {
     let folder = TempDir::new().expect("a folder");
     let run = answer(linkwright(folder.path()).args(["synth", &shipped("literature/k18.toml")]));

@@ -12,7 +12,8 @@ use linkwright::report::Colour;
 use linkwright::report::table::candidates_table;
 use linkwright::search::Budget;
 use linkwright::search::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
-use linkwright::search::polish::{finish, start_of_candidate};
+use linkwright::search::polish::finish;
+use linkwright::search::warm::start_at;
 use linkwright::verify::verify;
 use std::sync::atomic::AtomicBool;
 
@@ -84,7 +85,7 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
     assert!(best.error.max < squares.candidates[0].error.max);
     // Derivative-free: random small changes, each point at its nearest on the changed curve.
     let problem = Problem::new(parse(&text).spec).expect("it is one");
-    let start = start_of_candidate(&problem, best).expect("it closes");
+    let start = start_at(&problem, best).expect("it closes");
     let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
     let mut stream = linkwright::solve::streams::stream(3, 0);
     for _ in 0..200 {
@@ -192,7 +193,7 @@ fn population_searches_lessen_the_largest_deviation_too() {
         // What the search compared is what the referee found.
         let problem = Problem::new(literature("k18", &set).spec).expect("it is one");
         let fitness = PathFitness::new(&problem);
-        let start = start_of_candidate(&problem, best).expect("it closes");
+        let start = start_at(&problem, best).expect("it closes");
         let read = fitness.read(&fitness.space(start.setting.side).to_free(&start.design)).fitness;
         assert!((read.cost - best.error.objective).abs() <= 1e-9 * read.cost, "{read:?}");
     }
@@ -214,7 +215,7 @@ fn a_candidate_starts_where_it_stands() {
         let record = run_on(2, parse(&text));
         let problem = Problem::new(parse(&text).spec).expect("it is one");
         for candidate in &record.candidates {
-            let start = start_of_candidate(&problem, candidate).expect("it closes");
+            let start = start_at(&problem, candidate).expect("it closes");
             let again = judged(&problem, &start).expect("it closes");
             assert_eq!(again.accepted, candidate.accepted);
             let (one, other) = (again.error.sum_sq, candidate.error.sum_sq);
@@ -240,7 +241,7 @@ fn convex_programs_and_the_augmented_lagrangian_end_at_the_same_optimum() {
             let best = &record.candidates[0];
             let problem = Problem::new(parse(&text).spec).expect("it is one");
             let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
-            let mut start = start_of_candidate(&problem, best).expect("it closes");
+            let mut start = start_at(&problem, best).expect("it closes");
             for (i, value) in start.design.iter_mut().enumerate().take(9) {
                 *value *= 1.0 + 0.004 * ((i % 3) as f64 - 1.0);
             }

@@ -9,7 +9,7 @@ use crate::record::{Reason, Record};
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use crate::report::{contact_sheet, csv, svg};
-use crate::results_folder::ResultsFolder;
+use crate::results_folder::{BUILDABLE, ResultsFolder};
 use crate::run::{Context, Finished, Job, run as run_job};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
@@ -53,21 +53,26 @@ pub fn run(options: &Synth) -> Ended {
         let observer = |progress: &_| shown.update(progress);
         let outcome = pool.install(|| run_job(&job, &Context { cancel, observer: &observer }));
         shown.finish();
-        let Finished { record, search_s } = match outcome {
+        let Finished { record, search_s, beside_s } = match outcome {
             Ok(finished) => finished,
             Err(e) => {
                 terminal::complain(&format!("{}: {e}", job.name));
                 return Ended::Refused;
             }
         };
-        let timing =
-            Timing { search_s, total_s: begun.elapsed().as_secs_f64(), threads: pool.current_num_threads() };
+        let timing = Timing {
+            search_s,
+            beside_s,
+            total_s: begun.elapsed().as_secs_f64(),
+            threads: pool.current_num_threads(),
+        };
         if let Err(e) = files(&record, &timing).and_then(|f| folder.replace(&f).map_err(|e| e.to_string())) {
             terminal::complain(&e);
             return Ended::Refused;
         }
         if !options.json {
-            terminal::answer(&page(&record, folder.path(), search_s, several || options.quiet));
+            let seconds = (search_s, beside_s);
+            terminal::answer(&page(&record, folder.path(), seconds, several || options.quiet));
         }
         let interrupted = record.termination.reason == Reason::Cancelled;
         if !record.candidates.iter().any(|c| c.accepted) && ended == Ended::Good {
@@ -149,6 +154,7 @@ fn places(options: &Synth, problems: &[ProblemFile]) -> Option<Vec<PathBuf>> {
 #[derive(serde::Serialize)]
 struct Timing {
     search_s: f64,
+    beside_s: f64,
     total_s: f64,
     threads: usize,
 }
@@ -166,11 +172,17 @@ fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, Str
     ];
     for (i, candidate) in record.candidates.iter().enumerate() {
         let n = i + 1;
-        let name = numbered(&record.problem.name, n);
+        let name = numbered(&record.problem.name, &n.to_string());
         let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
         files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
         files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
         files.push((format!("candidate-{n}.svg"), svg::candidate_svg(record, i).into_bytes()));
+    }
+    if let Some(candidate) = &record.buildable {
+        let name = numbered(&record.problem.name, BUILDABLE);
+        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
+        files.push((format!("linkage-{BUILDABLE}.toml"), toml.into_bytes()));
+        files.push((format!("curve-{BUILDABLE}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
     }
     if record.candidates.len() > 1 {
         let sheet = contact_sheet::contact_sheet_svg(record);
@@ -179,22 +191,26 @@ fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, Str
     Ok(files)
 }
 
-/// The problem's name with a candidate's rank, within the length of a name.
-fn numbered(name: &str, n: usize) -> String {
+/// The problem's name with a candidate's rank (or `buildable`), within the length of a name.
+fn numbered(name: &str, n: &str) -> String {
     let suffix = format!("-{n}");
     let stem: String = name.chars().take(crate::name::MAX_NAME - suffix.len()).collect();
     format!("{}{suffix}", stem.trim_end())
 }
 
 /// What is printed for one problem.
-fn page(record: &Record, folder: &Path, search_s: f64, brief: bool) -> String {
+fn page(record: &Record, folder: &Path, (search_s, beside_s): (f64, f64), brief: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));
     }
     let shown = crate::diagnostic::escaped(&folder.display().to_string());
-    text.push_str(&format!("\n  {search_s:.3} s of search. Written to {shown}\n"));
+    let more = match &record.buildable {
+        Some(_) => format!(", {beside_s:.3} s more for the buildable one"),
+        None => String::new(),
+    };
+    text.push_str(&format!("\n  {search_s:.3} s of search{more}. Written to {shown}\n"));
     if !record.candidates.is_empty() && !brief {
         let quoted = if shown.contains(' ') { format!("\"{shown}\"") } else { shown };
         text.push_str(&format!("  Look at {quoted}/candidate-1.svg, then: linkwright verify {quoted}\n"));

@@ -295,7 +295,8 @@ impl DesignSpace {
         std::array::from_fn(|i| if self.is_angle(i) { 0.1 } else { 0.1 * size })
     }
 
-    fn is_angle(&self, i: usize) -> bool {
+    /// Whether a number is an angle, radians; the others are lengths.
+    pub fn is_angle(&self, i: usize) -> bool {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }
 

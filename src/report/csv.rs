@@ -116,6 +116,11 @@ pub fn curve_csv(record: &Record, index: usize) -> String {
     written(&CURVE_COLUMNS, record.candidates.get(index).map_or(Vec::new(), curve))
 }
 
+/// As [`curve_csv`], of a candidate that need not be among the record's.
+pub fn candidate_curve_csv(candidate: &Candidate) -> String {
+    written(&CURVE_COLUMNS, curve(candidate))
+}
+
 fn curve(candidate: &Candidate) -> Vec<Vec<String>> {
     let linkage = &candidate.linkage;
     let (angle, assembly) = first_position(candidate);

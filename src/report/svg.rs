@@ -1,6 +1,7 @@
 //! One candidate as a drawing: a self-contained SVG with the linkage, its coupler curve, the target and the
 //! figures. A target that is small beside its linkage gets an enlarged view of its own.
 
+use super::beside;
 use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
 use super::figure::{Detail, draw};
 use super::scene::{SAMPLES, Scene, circuits, round_length};
@@ -225,6 +226,7 @@ fn caption(
     } else {
         lines.push("no linkage to draw".to_owned());
     }
+    lines.extend(candidate.map(beside::warnings).filter(|text| !text.is_empty()));
     let ink = format!(r#"font-size="13" fill="{}""#, palette::INK);
     let room = ((WIDTH - 2.0 * MARGIN) / text_width("x", 13.0)) as usize;
     let mut y = top;

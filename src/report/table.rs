@@ -1,5 +1,6 @@
 //! What `synth` prints: the candidates of a run, or one line a file for a batch.
 
+use super::beside;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
 use super::{price, words};
@@ -20,6 +21,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     } else {
         out.push_str(&rows(record, colour));
         out.push_str(&notes(record));
+        out.push_str(&beside::lines(record, COLUMNS));
         out.push_str(&best(record));
         out.push_str(&price::costs(record, COLUMNS));
     }

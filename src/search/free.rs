@@ -16,7 +16,7 @@ use super::coarse::Coarse;
 use super::multistart::{fit_with, judged, promise};
 use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
-use super::rank::{distinct, exact_cost, exact_sum_sq, searched};
+use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
 use crate::problem::Problem;
@@ -358,7 +358,7 @@ pub(super) fn search(
             let hits = best_merits.iter().filter(|merit| **merit <= same).count();
             if hits >= HITS || (is_exact && wanted == 1) {
                 let now =
-                    if wanted == 1 { 1 } else { distinct(problem, accepted(problem, &ends), wanted).len() };
+                    if wanted == 1 { 1 } else { count_distinct(problem, &accepted(problem, &ends), wanted) };
                 quiet = if now > known { 0 } else { quiet + 1 };
                 known = now;
                 if now >= wanted || quiet >= QUIET_BATCHES {

@@ -1,11 +1,16 @@
-//! What to try: starts, rounds, populations, and which answers to give; what the requirements cost, and what would
-//! help where nothing is acceptable.
+//! What to try: starts, rounds, populations; which answers to give: distinct ones, cognates of their curves,
+//! families, warnings and what can be built; what the requirements cost, and what would help where nothing is
+//! acceptable.
 
+pub mod answers;
 pub mod atlas;
 pub mod belief;
+pub mod buildable;
 pub mod coarse;
+pub mod cognates;
 pub mod conflicts;
 pub mod costs;
+pub mod family;
 pub mod free;
 pub mod loosen;
 pub mod multistart;
@@ -17,6 +22,7 @@ pub mod rank;
 pub mod starts;
 pub mod timed;
 pub mod warm;
+pub mod warnings;
 
 use crate::record::{Candidate, Evaluations, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -76,6 +82,8 @@ pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
 pub struct SearchOutcome {
     /// Distinct candidates, ranked.
     pub candidates: Vec<Candidate>,
+    /// What else was found: the same answers again, worse ones, and ones that are not acceptable.
+    pub others: Vec<Candidate>,
     /// What ran, in order.
     pub used: Vec<String>,
     /// Why it ended.

@@ -8,7 +8,7 @@
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::polish::{improve, promising, reserve};
 use super::population::{self, Population};
-use super::rank::{compare, distinct, exact_cost, exact_sum_sq, searched};
+use super::rank::{count_distinct, divided, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::Starts;
 use super::timed;
 use super::{Budget, Observer, Progress, SearchOutcome};
@@ -41,7 +41,9 @@ const KEPT: usize = 400;
 
 /// A target further than this many of its sizes from the origin is searched around its own centre: at 1e6 sizes
 /// differences of coordinates have lost six digits.
-const FAR: f64 = 100.0;
+pub const FAR: f64 = 100.0;
+/// Of what else was found there, this many are brought back.
+const FAR_OTHERS: usize = 32;
 
 /// Searches as the problem's `[solve]` table says.
 ///
@@ -64,8 +66,10 @@ pub fn search(
         let linkage = candidate.linkage.shifted(centre).ok()?;
         assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
     };
-    let found = outcome.candidates.iter().filter_map(back).collect();
-    outcome.candidates = distinct(problem, found, problem.spec().solve.candidates);
+    // Also the next best: one that only just closes there may be open here.
+    let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
+    let found = found.collect();
+    (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
     let exact = exact_sum_sq(problem);
     let is_exact = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
     if outcome.reason == Reason::TargetReached && !is_exact {
@@ -102,8 +106,10 @@ fn alone(
 ) -> Result<SearchOutcome, PopulationError> {
     let spec = &problem.spec().solve;
     let end = population::search(problem, which, spec.evaluations, budget, observer)?;
+    let (candidates, others) = divided(problem, end.found, spec.candidates);
     Ok(SearchOutcome {
-        candidates: distinct(problem, end.found, spec.candidates),
+        candidates,
+        others,
         used: vec![which.name().into()],
         reason: budget.stop_reason().unwrap_or(end.reason),
         evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
@@ -132,8 +138,10 @@ impl Local {
     }
 
     fn outcome(self, problem: &Problem) -> SearchOutcome {
+        let (candidates, others) = divided(problem, self.found, problem.spec().solve.candidates);
         SearchOutcome {
-            candidates: distinct(problem, self.found, problem.spec().solve.candidates),
+            candidates,
+            others,
             used: self.used,
             reason: self.reason,
             evaluations: self.evaluations,
@@ -240,7 +248,7 @@ fn rounds(
             }
             hits += usize::from(hit);
         }
-        local.found.sort_by(|one, other| compare(problem, one, other));
+        sort(problem, &mut local.found);
         local.found.truncate(KEPT);
         // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
         if let Some(reason) = budget.stop_reason() {
@@ -256,7 +264,7 @@ fn rounds(
             accepted: best.as_ref().is_some_and(|b| b.accepted),
         });
         if hits >= HITS && batch >= LEAST_BATCHES {
-            let distinct = distinct(problem, local.found.clone(), wanted).len();
+            let distinct = count_distinct(problem, &local.found, wanted);
             quiet = if distinct > known { 0 } else { quiet + 1 };
             known = distinct;
             if distinct >= wanted || quiet >= QUIET_BATCHES {

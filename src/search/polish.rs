@@ -8,9 +8,8 @@ use super::Budget;
 use super::multistart::{Fitted, judged};
 use super::rank::{compare, distinct, exact_cost, exact_objective};
 use super::starts::Start;
-use crate::linkage::{AssemblyMode, Complex};
-use crate::problem::design_space::{DESIGN, Shape};
-use crate::problem::requirements::nearest_type;
+use super::warm::start_at;
+use crate::problem::design_space::DESIGN;
 use crate::problem::spec::Objective;
 use crate::problem::timed::TimedFit;
 use crate::problem::torus::{Positions, TorusFit};
@@ -19,7 +18,6 @@ use crate::record::{Candidate, Evaluations, Figure};
 use crate::solve::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
 use crate::solve::levenberg_marquardt::BlockLeastSquares;
 use crate::solve::streams::{Stream, stream, uniform};
-use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 
 /// Different optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
@@ -73,51 +71,6 @@ pub fn basins_wanted(problem: &Problem) -> usize {
 pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
     let forbidden = candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     !forbidden && candidate.requirements.iter().all(|r| r.met || r.name == "tolerance")
-}
-
-/// The start at which a judged candidate stands; `None` where it is open at a point.
-pub fn start_of_candidate(problem: &Problem, candidate: &Candidate) -> Option<Start> {
-    let linkage = &candidate.linkage;
-    let shape = Shape::from(linkage);
-    let side =
-        if problem.sides().contains(&linkage.side()) { linkage.side() } else { *problem.sides().first()? };
-    let space = problem.space(side);
-    let types = problem.types();
-    let aim = if types.is_empty() || types.contains(&candidate.linkage_type) {
-        (!types.is_empty()).then_some(candidate.linkage_type)
-    } else {
-        nearest_type(shape.links(), types)
-    };
-    let (first, last) = (*candidate.crank_deg.first()?, *candidate.crank_deg.last()?);
-    let assembly: AssemblyMode = *candidate.t1_at.first()?;
-    if let Timing::Prescribed { offset, .. } = problem.task().timing() {
-        let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
-        // The sense in which the increments fit.
-        let misfit = |direction: f64| -> f64 {
-            let pairs = candidate.crank_deg.iter().zip(written);
-            pairs.map(|(has, wants)| ((has - first) - direction * (wants - written[0])).abs()).sum()
-        };
-        let directions = problem.directions().iter().copied();
-        let direction = directions.min_by(|one, other| misfit(*one).total_cmp(&misfit(*other)))?;
-        let turned = match offset {
-            AngleOffset::Free => (first - direction * written[0]).to_radians(),
-            AngleOffset::Fixed | AngleOffset::Ground => 0.0,
-        };
-        let setting = Setting { aim, assembly, direction, side };
-        return Some(Start { design: space.design(&shape, turned), setting, positions: Vec::new() });
-    }
-    let positions: Option<Positions> = candidate
-        .crank_deg
-        .iter()
-        .zip(&candidate.t1_at)
-        .map(|(deg, t1)| {
-            let angle = deg.to_radians();
-            let joints = linkage.position_with(angle, *t1).joints()?;
-            Some([Complex::from_polar(1.0, angle), (joints.follower_pin - joints.crank_pin) / shape.coupler])
-        })
-        .collect();
-    let setting = Setting { aim, assembly, direction: if last < first { -1.0 } else { 1.0 }, side };
-    Some(Start { design: space.design(&shape, 0.0), setting, positions: positions? })
 }
 
 /// The tolerances by which deviations are measured: 1 where none are given.
@@ -293,7 +246,7 @@ pub fn improve(
         held.sort_by(|one, other| compare(problem, one, other));
         distinct(problem, held, problem.spec().solve.candidates)
     };
-    let starts = worth.iter().filter_map(|candidate| start_of_candidate(problem, candidate)).collect();
+    let starts = worth.iter().filter_map(|candidate| start_at(problem, candidate)).collect();
     polish_all(problem, starts, found, evaluations, limit, budget);
     if !(deviation || toleranced) {
         return;
@@ -321,7 +274,7 @@ pub fn improve(
         let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
         let mut starts = Vec::new();
         for (_, candidate) in near.into_iter().take(HOPPED) {
-            let Some(start) = start_of_candidate(problem, candidate) else { continue };
+            let Some(start) = start_at(problem, candidate) else { continue };
             // The last goes on from where it is, without what its curvature was thought to be.
             for _ in 1..HOPS {
                 starts.push(moved(problem, &start, &mut draws));

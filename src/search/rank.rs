@@ -1,18 +1,31 @@
 //! Which answers are really different, and which is the best.
 //!
-//! Two linkages count as one answer when they draw the same curve through the target (Roberts' cognates
-//! included): their coupler points at the target points and 48 points of their curves lie within a small part
-//! of the target's size of each other. Ranked by acceptance, then (where tolerances are missed) by how far,
-//! then error (errors of exact answers are equal), then worst transmission angle, then size.
+//! Ranked by acceptance, then (where tolerances are missed) by how far, then error (errors of exact answers are
+//! equal), then worst transmission angle, then size. Two candidates are one answer when
+//!
+//! - they are nearly the same linkage: at the first point their joints A, B, C, D and P lie within [`NEAR`] of
+//!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
+//!   other side do; or
+//! - they draw the same curve: their coupler points at the target points, and their whole curves, lie within
+//!   [`SAME_CURVE`] of the target's size of each other.
+//!
+//! Of many exact answers (a family of them) the best is taken, and of the others, in their order, those that
+//! look different: first at least half a span apart from all that are taken, and where that gives too few a
+//! quarter, and so on down to [`NEAR`].
 
 use crate::linkage::{Complex, CouplerCurve};
 use crate::problem::Problem;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Figure};
+use std::cell::OnceCell;
 use std::cmp::Ordering;
 
 /// Curves nearer to each other than this part of the target's size are one answer.
 pub const SAME_CURVE: f64 = 1e-2;
+/// Linkages whose joints are nearer to each other than this part of their span are one answer.
+pub const NEAR: f64 = 0.05;
+/// How far apart members of a family of exact answers should be, in spans: as far as gives enough of them.
+const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
 /// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
 pub const EXACT: f64 = 1e-24;
 
@@ -49,98 +62,286 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     error.map_or(f64::INFINITY, |error| error.objective)
 }
 
-/// Better first.
+/// What a candidate is ranked by; the less, the better.
+#[derive(Clone, Copy, Debug)]
+struct Key {
+    refused: bool,
+    /// Whether more than the tolerances is missed, and how far the tolerances are, in parts of themselves.
+    missed: (bool, f64),
+    error: f64,
+    unmet: usize,
+    worst: f64,
+    size: f64,
+}
+
+impl Key {
+    fn of(candidate: &Candidate, floor: f64) -> Key {
+        let unmet = |c: &Candidate| 1 + c.requirements.iter().filter(|r| !r.met).count();
+        Key {
+            refused: !candidate.accepted,
+            missed: missed(candidate),
+            error: candidate.error.objective.max(floor),
+            unmet: if candidate.accepted { 0 } else { unmet(candidate) },
+            worst: candidate.transmission_deg.worst,
+            size: size(candidate),
+        }
+    }
+}
+
+/// Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
+fn missed(candidate: &Candidate) -> (bool, f64) {
+    let row = candidate.requirements.iter().find(|r| !candidate.accepted && r.name == "tolerance");
+    row.map_or((false, 0.0), |row| {
+        let otherwise = candidate.requirements.iter().all(|r| r.met || r.name == "tolerance");
+        let part = match (&row.value, &row.limit) {
+            (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
+            _ => 0.0,
+        };
+        (!otherwise, part)
+    })
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.refused
+            .cmp(&other.refused)
+            .then_with(|| self.missed.0.cmp(&other.missed.0))
+            .then_with(|| self.missed.1.total_cmp(&other.missed.1))
+            .then_with(|| self.error.total_cmp(&other.error))
+            .then_with(|| self.unmet.cmp(&other.unmet))
+            .then_with(|| other.worst.total_cmp(&self.worst))
+            .then_with(|| self.size.total_cmp(&other.size))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Key {}
+
+/// The longest of the links and the coupler's side.
+pub(super) fn size(candidate: &Candidate) -> f64 {
+    candidate.linkage.longest_link().max(candidate.linkage.crank_side())
+}
+
+/// Better first. For many candidates: [`sort`].
 pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Ordering {
     let floor = exact_objective(problem);
-    let error = |c: &Candidate| c.error.objective.max(floor);
-    let unmet = |c: &Candidate| {
-        if c.accepted { 0 } else { 1 + c.requirements.iter().filter(|r| !r.met).count() }
-    };
-    // Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
-    let missed = |c: &Candidate| {
-        let row = c.requirements.iter().find(|r| !c.accepted && r.name == "tolerance");
-        row.map_or((false, 0.0), |row| {
-            let otherwise = c.requirements.iter().all(|r| r.met || r.name == "tolerance");
-            let part = match (&row.value, &row.limit) {
-                (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
-                _ => 0.0,
+    Key::of(one, floor).cmp(&Key::of(other, floor))
+}
+
+/// Better first; equals keep their order.
+pub fn sort(problem: &Problem, candidates: &mut [Candidate]) {
+    let floor = exact_objective(problem);
+    candidates.sort_by_cached_key(|candidate| Key::of(candidate, floor));
+}
+
+/// Points of the target at which two candidates are compared, at most.
+const COMPARED: usize = 64;
+/// Samples of a coupler curve, and of them one in this many is held against the other curve.
+const OUTLINE: usize = 240;
+const PROBE_EVERY: usize = 5;
+
+/// A, B, C, D, P.
+type Joints = [Complex; 5];
+
+/// A candidate as it looks.
+struct Look<'a> {
+    candidate: &'a Candidate,
+    /// Its joints at the first point, then those of its cognates there, each also with its sides exchanged.
+    forms: OnceCell<Option<[Joints; 6]>>,
+    at_points: OnceCell<Vec<Complex>>,
+    outline: OnceCell<Vec<Complex>>,
+}
+
+impl<'a> Look<'a> {
+    fn of(candidate: &'a Candidate) -> Look<'a> {
+        let (forms, at_points, outline) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Look { candidate, forms, at_points, outline }
+    }
+
+    /// Joints of the cognates from the table of [`crate::linkage::cognate`].
+    fn forms(&self) -> Option<&[Joints; 6]> {
+        let made = || {
+            let linkage = &self.candidate.linkage;
+            let (angle, t1) = self.candidate.crank_deg.first().zip(self.candidate.t1_at.first())?;
+            let joints = linkage.position_with(angle.to_radians(), *t1).joints()?;
+            let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+            let (c, d, p) = (joints.crank_pin, joints.follower_pin, joints.coupler_point);
+            let z = linkage.coupler_ratio();
+            let g = linkage.cognate_pivot();
+            let rest = 1.0 - z;
+            let (w2, w3, w4) = (c - a, d - c, d - b);
+            Some([
+                [a, b, c, d, p],
+                [b, a, d, c, p],
+                [a, g, a + z * w3, g + z * w4, p],
+                [g, a, g + z * w4, a + z * w3, p],
+                [b, g, b - rest * w3, g + rest * w2, p],
+                [g, b, g + rest * w2, b - rest * w3, p],
+            ])
+        };
+        self.forms.get_or_init(made).as_ref()
+    }
+
+    /// How different this candidate looks from another and its cognates: the largest distance of a joint from
+    /// its counterpart over the larger span. Infinite where there is nothing to look at.
+    fn difference(&self, other: &Look<'_>) -> f64 {
+        let (Some(own), Some(theirs)) = (self.forms(), other.forms()) else { return f64::INFINITY };
+        let own = &own[0];
+        let apart = |form: &Joints| {
+            let moved = own.iter().zip(form).map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
+            moved / span(own).max(span(form)).max(f64::MIN_POSITIVE)
+        };
+        theirs.iter().map(apart).fold(f64::INFINITY, f64::min)
+    }
+
+    fn at_points(&self) -> &[Complex] {
+        self.at_points.get_or_init(|| {
+            let candidate = self.candidate;
+            let every = candidate.crank_deg.len().div_ceil(COMPARED).max(1);
+            candidate
+                .crank_deg
+                .iter()
+                .zip(&candidate.t1_at)
+                .step_by(every)
+                .filter_map(|(deg, t1)| candidate.linkage.position_with(deg.to_radians(), *t1).joints())
+                .map(|joints| joints.coupler_point)
+                .collect()
+        })
+    }
+
+    fn outline(&self) -> &[Complex] {
+        self.outline.get_or_init(|| {
+            let start = self.candidate.crank_deg.first().zip(self.candidate.t1_at.first());
+            start.map_or(Vec::new(), |(deg, t1)| {
+                let linkage = &self.candidate.linkage;
+                CouplerCurve::through(linkage, deg.to_radians(), *t1, OUTLINE).points().collect()
+            })
+        })
+    }
+
+    fn draws_the_curve_of(&self, other: &Look<'_>, reach: f64) -> bool {
+        let (own, theirs) = (self.at_points(), other.at_points());
+        own.len() == theirs.len()
+            && own.iter().zip(theirs).all(|(p, q)| (p - q).norm() <= reach)
+            && lies_on(self.outline(), other.outline(), reach)
+            && lies_on(other.outline(), self.outline(), reach)
+    }
+}
+
+/// The largest distance between two joints.
+fn span(joints: &Joints) -> f64 {
+    let from = |i: usize| joints[..i].iter().map(move |q| (joints[i] - q).norm());
+    (1..joints.len()).flat_map(from).fold(0.0, f64::max)
+}
+
+/// Whether a curve lies within `reach` of a closed polygon.
+fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
+    let near = |p: &Complex| {
+        (0..polygon.len()).any(|i| {
+            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+            let (along, v) = (to - from, p - from);
+            let length_sq = along.norm_sqr();
+            let part = if length_sq > 0.0 {
+                ((v.re * along.re + v.im * along.im) / length_sq).clamp(0.0, 1.0)
+            } else {
+                0.0
             };
-            (!otherwise, part)
+            (v - along * part).norm_sqr() <= reach * reach
         })
     };
-    let size = |c: &Candidate| c.linkage.longest_link().max(c.linkage.crank_side());
-    let accepted = |c: &Candidate| u8::from(!c.accepted);
-    accepted(one)
-        .cmp(&accepted(other))
-        .then_with(|| missed(one).0.cmp(&missed(other).0))
-        .then_with(|| missed(one).1.total_cmp(&missed(other).1))
-        .then_with(|| error(one).total_cmp(&error(other)))
-        .then_with(|| unmet(one).cmp(&unmet(other)))
-        .then_with(|| other.transmission_deg.worst.total_cmp(&one.transmission_deg.worst))
-        .then_with(|| size(one).total_cmp(&size(other)))
+    curve.iter().step_by(PROBE_EVERY).all(near)
 }
 
-/// Linkages whose numbers agree within this part of the target's size are the same; their curves need not be
-/// compared.
-const SAME_NUMBERS: f64 = 1e-6;
-
-/// A candidate's curve for comparisons.
-struct Trace {
-    numbers: [f64; 9],
-    at_points: Vec<Complex>,
-    curve: CouplerCurve,
-    probes: Vec<Complex>,
-}
-
-impl Trace {
-    fn of(candidate: &Candidate) -> Trace {
-        let (angles, assemblies) = (&candidate.crank_deg, &candidate.t1_at);
-        let at_points = angles
-            .iter()
-            .zip(assemblies)
-            .filter_map(|(deg, t1)| candidate.linkage.position_with(deg.to_radians(), *t1).joints())
-            .map(|joints| joints.coupler_point)
-            .collect();
-        let through = |samples| {
-            CouplerCurve::through(&candidate.linkage, angles[0].to_radians(), assemblies[0], samples)
-        };
-        let n = candidate.linkage.natural_coordinates();
-        let offset = candidate.linkage.coupler_offset();
-        let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
-        let numbers = [ax, ay, bx, by, n.crank, n.coupler, n.follower, offset.re, offset.im];
-        Trace { numbers, at_points, curve: through(240), probes: through(48).points().collect() }
+/// The places of the best distinct candidates, at most `wanted`, better first.
+///
+/// Where at least one is accepted only accepted ones are given. Of one answer that is wanted nothing is drawn
+/// and nothing compared but the ranks.
+pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
+    let floor = exact_objective(problem);
+    let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
+    let by_key = |i: &usize, j: &usize| keys[*i].cmp(&keys[*j]).then(i.cmp(j));
+    if wanted <= 1 {
+        return (0..found.len()).min_by(by_key).into_iter().take(wanted).collect();
     }
-
-    fn is_same(&self, other: &Trace, reach: f64) -> bool {
-        let near = |p: &Complex, q: &Complex| (p - q).norm() <= reach;
-        let drawn_alike = self.at_points.len() == other.at_points.len()
-            && self.at_points.iter().zip(&other.at_points).all(|(p, q)| near(p, q));
-        let close = SAME_NUMBERS / SAME_CURVE * reach;
-        let same_numbers = self.numbers.iter().zip(&other.numbers).all(|(x, y)| (x - y).abs() <= close);
-        drawn_alike
-            && (same_numbers
-                || self.probes.iter().all(|p| other.curve.nearest(*p).is_some_and(|n| n.distance <= reach)))
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    order.sort_by(by_key);
+    let accepted = order.iter().take_while(|&&i| !keys[i].refused).count();
+    if accepted > 0 {
+        order.truncate(accepted);
     }
+    let looks: Vec<Look<'_>> = found.iter().map(Look::of).collect();
+    let reach = SAME_CURVE * problem.task().size();
+    let mut taken: Vec<usize> = Vec::new();
+    // Once one answer with a taken one, always so: nothing that is taken is given back.
+    let mut dropped = vec![false; found.len()];
+    let mut take = |among: &[usize], apart: f64| {
+        for &i in among {
+            if taken.len() == wanted {
+                return;
+            }
+            if dropped[i] || taken.contains(&i) {
+                continue;
+            }
+            let least = taken.iter().map(|&k| looks[i].difference(&looks[k])).fold(f64::INFINITY, f64::min);
+            dropped[i] = least < NEAR;
+            if least < apart {
+                continue;
+            }
+            dropped[i] = taken.iter().any(|&k| looks[i].draws_the_curve_of(&looks[k], reach));
+            if !dropped[i] {
+                taken.push(i);
+            }
+        }
+    };
+    let exact = order.iter().take_while(|&&i| !keys[i].refused && keys[i].error <= floor).count();
+    if exact > 1 {
+        for apart in APART {
+            take(&order[..exact], apart);
+        }
+    }
+    take(&order, NEAR);
+    taken.sort_by(by_key);
+    taken
 }
+
+/// How many distinct candidates there are, counted up to `wanted`.
+pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> usize {
+    chosen(problem, found, wanted).len()
+}
+
+/// The best distinct candidates, at most `wanted`, ranked from 1, and all others as they were found.
+pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
+    let places = chosen(problem, &found, wanted);
+    let mut rank_of = vec![0; found.len()];
+    for (rank, &place) in (1..).zip(&places) {
+        rank_of[place] = rank;
+    }
+    let (mut best, mut others) = (Vec::with_capacity(places.len()), Vec::with_capacity(found.len()));
+    for (candidate, rank) in found.into_iter().zip(rank_of) {
+        if rank > 0 {
+            best.push(Candidate { rank, ..candidate });
+        } else {
+            others.push(candidate);
+        }
+    }
+    best.sort_by_key(|candidate| candidate.rank);
+    (best, others)
+}
+
 /// The best distinct candidates, at most `wanted`, ranked from 1.
 ///
 /// Where at least one is accepted only accepted ones are given.
-pub fn distinct(problem: &Problem, mut found: Vec<Candidate>, wanted: usize) -> Vec<Candidate> {
-    found.sort_by(|one, other| compare(problem, one, other));
-    if found.first().is_some_and(|best| best.accepted) {
-        found.retain(|candidate| candidate.accepted);
-    }
-    let reach = SAME_CURVE * problem.task().size();
-    let mut kept: Vec<(Candidate, Trace)> = Vec::new();
-    for candidate in found {
-        if kept.len() == wanted {
-            break;
-        }
-        let trace = Trace::of(&candidate);
-        if kept.iter().all(|(_, other)| !trace.is_same(other, reach)) {
-            kept.push((candidate, trace));
-        }
-    }
-    let rank = |(i, (candidate, _)): (usize, (Candidate, Trace))| Candidate { rank: i + 1, ..candidate };
-    kept.into_iter().enumerate().map(rank).collect()
+pub fn distinct(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> Vec<Candidate> {
+    divided(problem, found, wanted).0
 }

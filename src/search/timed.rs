@@ -19,7 +19,7 @@
 use super::belief::Belief;
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
 use super::polish::{basins_wanted, promising};
-use super::rank::{compare, distinct, exact_cost, exact_sum_sq, searched};
+use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::{Start, Starts, draw_ratios, drawn_types};
 use super::{Budget, Observer, Progress};
 use crate::linkage::{AssemblyMode, CouplerSide, LinkageType};
@@ -196,7 +196,7 @@ pub fn search(
             }
             belief.end_batch();
         }
-        out.found.sort_by(|one, other| compare(problem, one, other));
+        sort(problem, &mut out.found);
         out.found.truncate(KEPT);
         if let Some(reason) = budget.stop_reason() {
             out.reason = reason;
@@ -212,7 +212,7 @@ pub fn search(
         let explored = !binding || binding_waves >= BINDING_WAVES;
         let enough = wanted == 1 || wave >= LEAST_WAVES;
         if belief.is_firm() && explored && enough {
-            let distinct = if wanted == 1 { 1 } else { distinct(problem, out.found.clone(), wanted).len() };
+            let distinct = if wanted == 1 { 1 } else { count_distinct(problem, &out.found, wanted) };
             quiet = if distinct > known { 0 } else { quiet + 1 };
             known = distinct;
             if distinct >= wanted || quiet >= QUIET_WAVES {

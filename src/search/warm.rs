@@ -13,11 +13,20 @@ use crate::task::Timing;
 /// The design is brought into the problem's bounds. The type aimed at is the candidate's own where that is
 /// allowed, else the nearest.
 pub fn start_at(problem: &Problem, candidate: &Candidate) -> Option<Start> {
+    start_beside(problem, candidate, 1.0)
+}
+
+/// As [`start_at`], with the candidate's shortest link brought to `part` of itself.
+pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Option<Start> {
     let n = problem.task().len();
     if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
         return None;
     }
-    let shape = Shape::from(&candidate.linkage);
+    let as_it_is = Shape::from(&candidate.linkage);
+    let mut shape = as_it_is;
+    if part != 1.0 {
+        shorten(&mut shape, part);
+    }
     let types = problem.types();
     let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
     let (direction, offset) = direction_and_offset(problem, &candidate.crank_deg);
@@ -27,8 +36,8 @@ pub fn start_at(problem: &Problem, candidate: &Candidate) -> Option<Start> {
     let positions = match problem.task().timing() {
         Timing::Prescribed { .. } => Vec::new(),
         Timing::Free => {
-            // A design that was brought into its bounds has other curves.
-            let mut positions = positions(candidate, &shape)?;
+            // A design that was shortened or brought into its bounds has other curves.
+            let mut positions = positions(candidate, &as_it_is)?;
             TorusFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
         }
     };
@@ -63,4 +72,24 @@ fn positions(candidate: &Candidate, shape: &Shape) -> Option<Positions> {
         Some([(c - shape.crank_pivot) / shape.crank, (d - c) / shape.coupler])
     })
     .collect()
+}
+
+/// The shortest of ground, crank, coupler and follower to `part` of itself; the ground about its middle, the
+/// coupler point to the same place beside the coupler.
+fn shorten(shape: &mut Shape, part: f64) {
+    let links = shape.links();
+    let shortest = (0..4).min_by(|&i, &j| links[i].total_cmp(&links[j]));
+    match shortest {
+        Some(0) => {
+            let by = (shape.follower_pivot - shape.crank_pivot) * (0.5 * (1.0 - part));
+            shape.crank_pivot += by;
+            shape.follower_pivot -= by;
+        }
+        Some(1) => shape.crank *= part,
+        Some(2) => {
+            shape.coupler *= part;
+            shape.offset *= part;
+        }
+        _ => shape.follower *= part,
+    }
 }

@@ -108,6 +108,8 @@ pub fn candidate(
         },
         link_ratio: linkage.link_ratio(),
         defects: verdict.defects,
+        warnings: Vec::new(),
+        alternatives: Vec::new(),
         requirements: vec![Requirement {
             name: "link_ratio_max".into(),
             value: Figure::Number(linkage.link_ratio()),
@@ -139,6 +141,8 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         method: MethodRecord { asked: Method::Auto, used: vec!["variable-projection".into()] },
         termination: Termination { reason: Reason::Converged, reproducible: true },
         evaluations: Evaluations { objective: 12_345, positions: 222_210 },
+        family: None,
+        buildable: None,
         candidates: Vec::new(),
         conflict: None,
         relaxations: Vec::new(),

@@ -1,0 +1,81 @@
+//! What stands beside the candidates, in lines: the family, warnings, cognates, the buildable answer.
+
+use super::text::{clean, significant, wrapped};
+use super::words;
+use crate::record::{Candidate, Record, WarningKind};
+
+/// The text is no longer than this many lines of warnings and cognates each.
+const MOST_LINES: usize = 20;
+
+/// Lines for the table of candidates, set in by two, at most `columns` wide; empty where there is nothing to
+/// say.
+pub(super) fn lines(record: &Record, columns: usize) -> String {
+    let mut parts = Vec::new();
+    if let Some(family) = &record.family {
+        parts.push(format!("{}.", clean(&family.text)));
+    }
+    let said = record.candidates.iter().filter(|c| !c.warnings.is_empty());
+    parts.extend(said.take(MOST_LINES).map(|c| format!("#{}: {}", c.rank, warnings(c))));
+    if let Some(candidate) = &record.buildable {
+        parts.push(buildable(record, candidate));
+    }
+    let cognates =
+        record.candidates.iter().filter_map(|c| Some(format!("#{}: {}", c.rank, alternatives(c)?)));
+    parts.extend(cognates.take(MOST_LINES));
+    if parts.is_empty() {
+        return String::new();
+    }
+    let text: String = parts.iter().map(|part| wrapped("  ", "      ", part, columns)).collect();
+    format!("\n{text}")
+}
+
+/// The warnings of a candidate in one line; empty without any.
+pub(super) fn warnings(candidate: &Candidate) -> String {
+    candidate.warnings.iter().take(MOST_LINES).map(|w| clean(&w.text)).collect::<Vec<_>>().join("; ")
+}
+
+fn buildable(record: &Record, candidate: &Candidate) -> String {
+    let place = if candidate.rank > 0 { format!("#{}", candidate.rank) } else { "beside the table".into() };
+    // Where the first is warned of nothing but limits it may well be built: this one is free of them.
+    let first = record.candidates.first();
+    let limits_only = first.is_some_and(|c| c.warnings.iter().all(|w| w.kind == WarningKind::OnBound));
+    let label = if limits_only { "buildable, on no limit" } else { "buildable" };
+    let mut text = format!(
+        "{label} ({place}): sum of sq {}, rms {}{}, {}, worst transmission angle {} deg, ratio {}",
+        significant(candidate.error.sum_sq, 6),
+        significant(candidate.error.rms, 4),
+        words::unit_suffix(record),
+        candidate.linkage_type.name(),
+        significant(candidate.transmission_deg.worst, 3),
+        significant(candidate.link_ratio, 3),
+    );
+    if !candidate.warnings.is_empty() {
+        text.push_str(&format!("; {}", warnings(candidate)));
+    }
+    text + "; linkage-buildable.toml"
+}
+
+/// `same curve: 2 cognates, one accepted, worst transmission 41 deg, see record`.
+fn alternatives(candidate: &Candidate) -> Option<String> {
+    let all = &candidate.alternatives;
+    let count = match all.len() {
+        0 => return None,
+        1 => "1 cognate".to_owned(),
+        n => format!("{n} cognates"),
+    };
+    let accepted: Vec<_> = all.iter().filter(|a| a.accepted).collect();
+    let best = accepted.iter().map(|a| a.transmission_worst_deg).fold(f64::NEG_INFINITY, f64::max);
+    let verdict = match (accepted.len(), all.len()) {
+        (0, 1) => "not accepted".to_owned(),
+        (0, _) => "none accepted".to_owned(),
+        (1, 1) => "accepted".to_owned(),
+        (1, _) => "one accepted".to_owned(),
+        (n, _) => format!("{n} accepted"),
+    };
+    let angle = if accepted.is_empty() {
+        String::new()
+    } else {
+        format!(", worst transmission {} deg", significant(best, 3))
+    };
+    Some(format!("same curve: {count}, {verdict}{angle}, see record"))
+}

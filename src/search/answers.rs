@@ -1,0 +1,48 @@
+//! What a record says besides its ranked candidates: warnings, a family of exact answers, what can be built.
+
+use super::buildable::buildable;
+use super::family::family;
+use super::warnings::warnings;
+use super::{Budget, Observer, SearchOutcome};
+use crate::problem::Problem;
+use crate::problem::spec::Method;
+use crate::record::{Candidate, Family};
+
+/// What stands beside the candidates.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// The family that the first candidate belongs to.
+    pub family: Option<Family>,
+    /// What to build where the first candidate has warnings.
+    pub buildable: Option<Candidate>,
+}
+
+/// Gives the candidates their warnings and says what stands beside them.
+///
+/// Where the first has warnings and the method is `auto` a second search looks for something to build, with at
+/// most as many evaluations as the first one took and the budget still has; they are added to the outcome's,
+/// and where the clock or a cancellation cuts it short that becomes the outcome's reason.
+pub fn beside(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Beside {
+    for candidate in &mut outcome.candidates {
+        candidate.warnings = warnings(problem, candidate);
+    }
+    let family = outcome.candidates.first().and_then(|best| family(problem, best));
+    let solve = &problem.spec().solve;
+    if solve.method != Method::Auto || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty()) {
+        return Beside { family, buildable: None };
+    }
+    let used = outcome.evaluations.objective;
+    let allowance = used.min(solve.evaluations.saturating_sub(used));
+    let found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
+    outcome.evaluations.objective += found.evaluations.objective;
+    outcome.evaluations.positions += found.evaluations.positions;
+    if let Some(reason) = budget.stop_reason().filter(|_| found.searched) {
+        outcome.reason = reason;
+    }
+    Beside { family, buildable: found.candidate }
+}

@@ -1,0 +1,169 @@
+//! The same curve by another linkage: each candidate's Roberts cognates, judged under the problem.
+//!
+//! With free timing both cognates meet every point with the candidate's error. With prescribed timing only one
+//! whose crank turns in step with the candidate's does. With z = (P - C)/(D - C) that is the cognate at B,
+//! driven at G = A + z (B - A): its crank is (1 - z)(C - A), so that phi' = phi + arg(1 - z) for the whole
+//! motion. Where its angles may be counted from:
+//!
+//! - offset free: the increments are the same, it keeps the timing;
+//! - offset ground: its ground line is B - G = (1 - z)(B - A), turned by the same angle: it keeps the timing;
+//! - offset fixed: it keeps it only where 1 - z is real and positive (P on the line C-D, on the side of C).
+//!
+//! Its coupler turns in step with the candidate's follower and its follower with the candidate's coupler, so
+//! that its transmission angle is the candidate's too; what it may have better is its size and its place.
+
+use super::multistart::unwrapped;
+use super::rank::{exact_sum_sq, size, sort};
+use crate::assess::{assess, assess_on_curve};
+use crate::linkage::cognate::{Cognate, OriginalLink};
+use crate::linkage::mobility::wrapped;
+use crate::linkage::{AssemblyMode, FourBar};
+use crate::problem::Problem;
+use crate::record::{Alternative, Candidate};
+use crate::task::{AngleOffset, Timing};
+
+/// Sums of squares that differ by less than this part are the same error.
+pub const SAME_ERROR: f64 = 1e-6;
+/// A phase below this (radians) is none.
+const NO_PHASE: f64 = 1e-13;
+
+/// Gives each candidate its cognates as alternatives; where a cognate is the better linkage (accepted, or of a
+/// better worst transmission angle, or smaller) the two change places. Ranks are given anew.
+pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
+    for candidate in candidates.iter_mut() {
+        let mut forms = cognates(problem, candidate);
+        forms.insert(0, candidate.clone());
+        // Equal ones keep their order: the candidate that was found comes first.
+        forms.sort_by_cached_key(Merit::of);
+        let first = forms.remove(0);
+        if first.linkage != candidate.linkage {
+            // It takes the place with figures of its own.
+            match assess(problem, &first.linkage, &first.crank_deg, &first.t1_at) {
+                Some(judged) => *candidate = judged,
+                None => continue,
+            }
+        }
+        candidate.alternatives = forms.iter().map(alternative).collect();
+    }
+    if candidates.iter().any(|candidate| candidate.accepted) {
+        candidates.retain(|candidate| candidate.accepted);
+    }
+    sort(problem, candidates);
+    for (rank, candidate) in (1..).zip(candidates.iter_mut()) {
+        candidate.rank = rank;
+    }
+}
+
+/// What tells linkages of the same curve and error apart, on a grid above rounding; the less, the better.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Merit {
+    refused: bool,
+    unmet: usize,
+    lack_of_transmission: i64,
+    size: i64,
+}
+
+impl Merit {
+    fn of(candidate: &Candidate) -> Merit {
+        // Near a change point the angle is rounded to the root of the lengths' rounding.
+        let (degrees, logarithm) = (1e5, 1e9);
+        Merit {
+            refused: !candidate.accepted,
+            unmet: candidate.requirements.iter().filter(|r| !r.met).count(),
+            lack_of_transmission: -(candidate.transmission_deg.worst * degrees).round() as i64,
+            size: (size(candidate).ln() * logarithm).round() as i64,
+        }
+    }
+}
+
+fn alternative(form: &Candidate) -> Alternative {
+    Alternative {
+        linkage: form.linkage,
+        crank_deg: form.crank_deg.clone(),
+        t1_at: form.t1_at.clone(),
+        linkage_type: form.linkage_type,
+        accepted: form.accepted,
+        sum_sq: form.error.sum_sq,
+        transmission_worst_deg: form.transmission_deg.worst,
+        link_ratio: form.link_ratio,
+        not_met: not_met(form),
+    }
+}
+
+/// The names of the requirements that a candidate does not meet.
+pub fn not_met(candidate: &Candidate) -> Vec<String> {
+    candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone()).collect()
+}
+
+/// The cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem; its
+/// distances to the whole curve are theirs, for the curve is the same.
+pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
+    let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
+        return Vec::new();
+    };
+    let found = candidate.linkage.with_assembly(*t1).cognates_at(angle.to_radians());
+    let judged = |cognate: Cognate| {
+        let (linkage, crank_deg, t1_at) = match problem.task().timing() {
+            Timing::Free => placed(problem, candidate, &cognate)?,
+            Timing::Prescribed { offset, .. } => in_step(problem, candidate, &cognate, *offset)?,
+        };
+        let same = candidate.error.sum_sq * (1.0 + SAME_ERROR);
+        let bar = same.max(exact_sum_sq(problem));
+        let to_curve = Some(candidate.error.to_curve);
+        assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
+            .filter(|form| form.error.sum_sq <= bar)
+    };
+    found.into_iter().flatten().filter_map(judged).collect()
+}
+
+type Placed = (FourBar, Vec<f64>, Vec<AssemblyMode>);
+
+/// The cognate at the candidate's positions.
+fn positions(candidate: &Candidate, cognate: &Cognate) -> Option<Vec<(f64, AssemblyMode)>> {
+    let at = |(deg, t1): (&f64, &AssemblyMode)| cognate.position_of(deg.to_radians(), *t1);
+    candidate.crank_deg.iter().zip(&candidate.t1_at).map(at).collect()
+}
+
+fn placed(problem: &Problem, candidate: &Candidate, cognate: &Cognate) -> Option<Placed> {
+    let (angles, t1_at): (Vec<f64>, Vec<AssemblyMode>) = positions(candidate, cognate)?.into_iter().unzip();
+    let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
+    let (crank_deg, t1_at) = unwrapped(problem, &linkage, angles, t1_at);
+    Some((linkage, crank_deg, t1_at))
+}
+
+fn in_step(
+    problem: &Problem,
+    candidate: &Candidate,
+    cognate: &Cognate,
+    offset: AngleOffset,
+) -> Option<Placed> {
+    if cognate.crank.with != OriginalLink::Crank {
+        return None;
+    }
+    let t1_at: Vec<AssemblyMode> = positions(candidate, cognate)?.into_iter().map(|(_, t1)| t1).collect();
+    let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
+    let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
+    let direction = direction(written, &candidate.crank_deg);
+    let base = match offset {
+        AngleOffset::Fixed if cognate.crank.phase.abs() > NO_PHASE => return None,
+        AngleOffset::Fixed => 0.0,
+        AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+        AngleOffset::Free => {
+            let own = candidate.crank_deg.first()? - direction * written.first()?;
+            wrapped(own.to_radians() + cognate.crank.phase).to_degrees()
+        }
+    };
+    let crank_deg = written.iter().map(|deg| base + direction * deg).collect();
+    Some((linkage, crank_deg, t1_at))
+}
+
+/// +1 where the crank runs through the prescribed angles as they are written, -1 where it runs the other way.
+pub(super) fn direction(written: &[f64], crank_deg: &[f64]) -> f64 {
+    let first = written.first().copied().unwrap_or(0.0);
+    let away = |i: &usize| (written[*i] - first).abs();
+    let farthest = (0..written.len().min(crank_deg.len())).max_by(|i, j| away(i).total_cmp(&away(j)));
+    match farthest {
+        Some(i) if (crank_deg[i] - crank_deg[0]) * (written[i] - first) < 0.0 => -1.0,
+        _ => 1.0,
+    }
+}

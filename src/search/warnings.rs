@@ -1,0 +1,111 @@
+//! What stands against building a linkage that meets every requirement.
+//!
+//! The figures and limits are the candidate's own, as the referee judged them: the same record always has the
+//! same warnings.
+
+use crate::linkage::LinkageType;
+use crate::problem::Problem;
+use crate::record::{Candidate, Figure, Requirement, Warning, WarningKind};
+
+/// Below this worst transmission angle, in degrees, a loaded linkage may jam.
+pub const LEAST_TRANSMISSION_DEG: f64 = 10.0;
+/// Below this one friction alone stops it.
+const CERTAIN_DEG: f64 = 2.0;
+/// Beyond this ratio of the longest to the shortest link a linkage is hard to build.
+pub const GREATEST_LINK_RATIO: f64 = 20.0;
+/// A Grashof margin below this part of the longest link is almost a change point: play and tolerances decide
+/// which way the linkage turns.
+pub const LEAST_MARGIN: f64 = 1e-3;
+/// A value this near to its limit, in parts of the limit or of the target's size, is on it.
+pub const ON_BOUND: f64 = 1e-6;
+/// A figure that misses a limit by rounding does not miss it: the tolerance of requirements.
+const ROUNDING: f64 = 1e-7;
+
+/// The warnings of a candidate: transmission angle, link ratio, change point, then each limit that it lies on.
+pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
+    let mut list = Vec::new();
+    let mut push = |kind, key: &str, value: f64, limit: f64, text: String| {
+        list.push(Warning { kind, text, key: key.into(), value, limit });
+    };
+    let worst = candidate.transmission_deg.worst;
+    if worst < LEAST_TRANSMISSION_DEG - ROUNDING * LEAST_TRANSMISSION_DEG {
+        let end = if worst < CERTAIN_DEG { "it will jam" } else { "it may jam under load" };
+        let text = format!("worst transmission angle {} deg: {end}", shown(worst));
+        push(WarningKind::TransmissionAngle, "transmission_deg.worst", worst, LEAST_TRANSMISSION_DEG, text);
+    }
+    let ratio = candidate.link_ratio;
+    if ratio > GREATEST_LINK_RATIO + ROUNDING * GREATEST_LINK_RATIO {
+        let text = format!("longest link {} times the shortest: hard to build", shown(ratio));
+        push(WarningKind::LinkRatio, "link_ratio", ratio, GREATEST_LINK_RATIO, text);
+    }
+    let least = LEAST_MARGIN * candidate.linkage.longest_link();
+    let asked = problem.types().contains(&LinkageType::ChangePoint);
+    if candidate.grashof_margin.abs() < least && !asked {
+        let margin = candidate.grashof_margin;
+        let text = format!("Grashof margin {}: almost a change point", shown(margin));
+        push(WarningKind::ChangePoint, "grashof_margin", margin, least, text);
+    }
+    for requirement in &candidate.requirements {
+        on_bound(problem, requirement, &mut |key, side, value, limit| {
+            let text =
+                format!("{key}{side} = {} is on its limit: the problem's bounds decide it", shown(limit));
+            push(WarningKind::OnBound, key, value, limit, text);
+        });
+    }
+    list
+}
+
+/// Whether a warning speaks against the linkage itself, and not of the problem's limits alone.
+pub fn is_serious(warning: &Warning) -> bool {
+    warning.kind != WarningKind::OnBound
+}
+
+/// The sides of a box.
+const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
+
+/// Calls `each` with key, side of a box, value and limit for every limit of a requirement that the value lies on. Fixed values
+/// and coordinates that a box leaves no choice have none.
+fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
+    let name = requirement.name.as_str();
+    let unit = match name {
+        "link_ratio_max" => 1.0,
+        "transmission_deg_min" | "design.ground_angle_deg" => 180.0,
+        _ => problem.task().size(),
+    };
+    let on = |value: f64, limit: f64| (value - limit).abs() <= ON_BOUND * limit.abs().max(unit);
+    match (&requirement.value, &requirement.limit) {
+        (Figure::Number(value), Figure::Numbers(limits)) if name.starts_with("design.") => {
+            let [low, high] = limits[..] else { return };
+            if low < high {
+                for limit in [low, high].into_iter().filter(|limit| on(*value, *limit)) {
+                    each(name, "", *value, limit);
+                }
+            }
+        }
+        (Figure::Number(value), Figure::Number(limit)) if name != "tolerance" && on(*value, *limit) => {
+            each(name, "", *value, *limit);
+        }
+        (Figure::Numbers(values), Figure::Numbers(limits)) if values.len() == 4 && limits.len() == 4 => {
+            for (i, (value, limit)) in values.iter().zip(limits).enumerate() {
+                let open = limits[i % 2] < limits[i % 2 + 2];
+                if open && on(*value, *limit) {
+                    each(name, SIDES[i], *value, *limit);
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Three significant digits.
+fn shown(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if !(-4..6).contains(&exponent) {
+        return format!("{value:.2e}");
+    }
+    let text = format!("{value:.*}", (2 - exponent).max(0) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
