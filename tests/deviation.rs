@@ -270,7 +270,7 @@ fn thousands_of_points_have_a_least_largest_error_too() {
         let angles: Vec<String> = (0..n).map(|i| format!("{}", 360.0 * i as f64 / n as f64)).collect();
         format!(
             "format = 1\n[task.path]\npoints = [{}]\nclosed = true\n[task.path.timing]\ncrank_deg = [{}]\n\
-             [solve]\nobjective = \"max-deviation\"\nevaluations = 2500\n",
+             [solve]\nobjective = \"max-deviation\"\nevaluations = 6000\n",
             list.join(", "),
             angles.join(", ")
         )

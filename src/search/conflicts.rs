@@ -10,6 +10,7 @@
 //!
 //! All of it says what was found, not what exists: a search that finds nothing is no proof that there is nothing.
 
+use super::cognates;
 use super::loosen::{Demand, changes, judged_under, rounded_outward};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
 use super::warm::start_at;
@@ -198,7 +199,9 @@ impl Inquiry<'_> {
             best_sum_sq: None,
             accepted: false,
         });
-        let outcome = plan::search(&problem, self.budget, &|_| {})?;
+        let mut outcome = plan::search(&problem, self.budget, &|_| {})?;
+        // As a run does: a cognate may take its candidate's place.
+        cognates::offer(&problem, &mut outcome.candidates);
         let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
         Ok((accepted, outcome.evaluations.objective))
     }
