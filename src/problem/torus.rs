@@ -383,6 +383,17 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         true
     }
 
+    fn residuals(&self, x: &Design, state: &Positions, out: &mut Vec<[f64; 2]>) -> bool {
+        let Some(shape) = self.space.shape(x) else { return false };
+        out.clear();
+        out.extend(
+            state.iter().zip(self.problem.task().points()).map(|([e, u], target)| {
+                xy(target - (shape.crank_pivot + e * shape.crank + u * shape.offset))
+            }),
+        );
+        true
+    }
+
     fn retract(
         &self,
         from: &Design,

@@ -7,9 +7,12 @@
 //! side by side in batches of [`BATCH`] and are read in their order: the number of threads changes nothing but
 //! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
 //!
-//! *Stopping rule*: the best accepted error has come back, within [`SAME_OPTIMUM`], from [`HITS`] different
-//! rounds, and either as many distinct answers as were asked for are known or [`QUIET_BATCHES`] batches brought
-//! no new one. An exact answer needs no second hit.
+//! *Stopping rule*: the best error has come back, within [`SAME_OPTIMUM`], from as many independent rounds as
+//! [`Hits`] says (rounds that start near known ends do not count), or within [`NEARLY`] from four or more times
+//! as many where it is approached and hardly reached; and either as many distinct answers as were asked for are
+//! known or [`QUIET_BATCHES`] batches brought no new one. Rounds near known ends get their turn: sparse targets
+//! are searched through [`PATIENT_BATCHES`] batches at least, and so are dense ones that are met almost exactly,
+//! for these are likely to be met exactly by another linkage. An exact answer needs no second hit.
 
 use super::atlas::Matches;
 use super::coarse::Coarse;
@@ -40,8 +43,26 @@ const MIDDLE: usize = 3;
 const LEADING: usize = 8;
 /// Rounds that run side by side before any is read.
 const BATCH: u64 = 8;
-/// The best answer has to come back from this many rounds before it is believed.
-pub const HITS: usize = 6;
+/// From how many independent rounds the best answer has to come back before it is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hits {
+    /// Within [`SAME_OPTIMUM`].
+    pub same: usize,
+    /// Within [`NEARLY`].
+    pub near: usize,
+}
+
+/// Where each point counts for much, optima are many and rare ones worth waiting for.
+pub const SPARSE_HITS: Hits = Hits { same: 6, near: 24 };
+/// Many points say more of the linkage, and a round of them costs more.
+pub const DENSE_HITS: Hits = Hits { same: 4, near: 12 };
+/// Errors that differ by less than this part are nearly the same optimum.
+pub const NEARLY: f64 = 1e-3;
+/// Batches at least for a sparse target, and for a dense one that is met to better than [`ALMOST_EXACT`] of its
+/// size, but not exactly.
+const PATIENT_BATCHES: u64 = 5;
+/// See [`PATIENT_BATCHES`].
+const ALMOST_EXACT: f64 = 1e-3;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
 /// Ends that are kept.
@@ -81,6 +102,8 @@ struct Round {
     explored: f64,
     /// The ends on the explored points.
     leaders: Vec<(f64, Start)>,
+    /// It started from nothing that other rounds have found.
+    independent: bool,
     /// It met an exact, accepted answer.
     exact: bool,
 }
@@ -166,6 +189,7 @@ fn round(
         positions: 0,
         explored: f64::INFINITY,
         leaders: Vec::new(),
+        independent: known.is_empty() || index.is_multiple_of(2),
         exact: false,
     };
     let mut spender = Spender { round: nothing, allowance, budget };
@@ -189,7 +213,7 @@ fn round(
     // Every other round takes matches, as long as there are any.
     let first = index as usize / 2 * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, index);
-    if !known.is_empty() && index % 2 == 1 {
+    if !spender.round.independent {
         let end = &known[(index / 2) as usize % known.len()];
         for _ in 0..JITTERED {
             if spender.left() > 0 {
@@ -330,7 +354,9 @@ pub(super) fn search(
             }
             local.evaluations.objective += round.evaluations;
             local.evaluations.positions += round.positions;
-            best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
+            if round.independent {
+                best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
+            }
             ends.extend(round.ends);
             if round.exact {
                 break;
@@ -354,9 +380,14 @@ pub(super) fn search(
         if let Some(best) = &best {
             let error = searched(problem, best);
             let is_exact = error <= exact;
-            let same = error + (SAME_OPTIMUM * error).max(exact);
-            let hits = best_merits.iter().filter(|merit| **merit <= same).count();
-            if hits >= HITS || (is_exact && wanted == 1) {
+            let within = |part: f64| {
+                let limit = error + (part * error).max(exact);
+                best_merits.iter().filter(|merit| **merit <= limit).count()
+            };
+            let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
+            let believed = within(SAME_OPTIMUM) >= hits.same || within(NEARLY) >= hits.near;
+            let quick = is_exact || (coarse.is_some() && best.error.rms_over_size > ALMOST_EXACT);
+            if (believed && (quick || batch >= PATIENT_BATCHES)) || (is_exact && wanted == 1) {
                 let now =
                     if wanted == 1 { 1 } else { count_distinct(problem, &accepted(problem, &ends), wanted) };
                 quiet = if now > known { 0 } else { quiet + 1 };

@@ -245,6 +245,10 @@ pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
 /// Slacks and lengths are drawn over this range of ratios, evenly in their logarithm.
 const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
 
+/// One draw in this many has a slack from a range far beyond.
+const LONG_EVERY: usize = 4;
+const LONG_RANGE: (f64, f64) = (30.0, 1000.0);
+
 /// The ratios of a linkage of a type; `None` where a few draws found none.
 pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
     let log_uniform =
@@ -265,6 +269,10 @@ pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Rat
         _ => {
             let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
             let any = (below(stream, 3), below(stream, 4));
+            if below(stream, LONG_EVERY) == 0 {
+                // Two long links beside each other: towards a slider in place of a link.
+                s[any.0] = log_uniform(stream, LONG_RANGE);
+            }
             if drawn == LinkageType::ChangePoint {
                 // One slack is used up: the margin is zero.
                 s[any.0] = 0.0;

@@ -10,7 +10,10 @@
 //! tau_j = -<t_j, r_j + J_j dx> / (|t_j|^2 + nu)
 //! ```
 //!
-//! so the cost of a step is linear in the number of points. Where the points must keep their order along a
+//! so the cost of a step is linear in the number of points. Where progress is slow, as along a narrow curved
+//! valley, a step is bent by its geodesic acceleration: half of the a that solves the same system for the
+//! second derivative of the residuals along the step, taken from one more evaluation (Transtrum and Sethna
+//! 2012, *Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares minimization*). Where the points must keep their order along a
 //! common curve, neighbours that the step would let pass each other move as one (a pool): the tangents of a
 //! pool are eliminated together, and which points are pooled is decided anew in every step by isotonic
 //! regression (pool adjacent violators, Ayer et al. 1955), see [`super::ordered`]. Inequalities enter by an augmented Lagrangian
@@ -59,6 +62,12 @@ pub trait BlockLeastSquares<const N: usize> {
 
     /// The blocks of all points in their order; `false` where a derivative does not exist.
     fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N>)) -> bool;
+
+    /// r_j of all points in their order; `false` where one does not exist.
+    fn residuals(&self, x: &[f64; N], state: &Self::State, out: &mut Vec<[f64; 2]>) -> bool {
+        out.clear();
+        self.linearise(x, state, &mut |block| out.push(block.residual))
+    }
 
     /// The points' unknowns after a step `tau` from `state` at `from`, brought back to their curves at `to`;
     /// `false` where that fails.
@@ -144,6 +153,12 @@ pub struct LmResult<const N: usize, S> {
 const MAX_TAU: f64 = 0.6;
 /// First damping, in parts of the normal matrix' diagonal.
 const FIRST_DAMPING: f64 = 1e-3;
+/// The part of a step at which its bend is measured.
+const AHEAD: f64 = 0.1;
+/// A bend of more than this part of the step (in the normal matrix' diagonal) says that neither is to be trusted.
+const MOST_BENT: f64 = 0.375;
+/// A step that takes off less than this part of the merit is slow.
+const SLOW: f64 = 0.2;
 /// Past this damping a step is below rounding.
 const LAST_DAMPING: f64 = 1e14;
 
@@ -317,6 +332,62 @@ impl<const N: usize> Workspace<N> {
         }
     }
 
+    /// The right-hand side of the acceleration: J^T of the residuals' second derivative along a step, the
+    /// points' own unknowns eliminated; `bend` receives that derivative. `ahead` holds the residuals at the part
+    /// [`AHEAD`] of the step.
+    fn bending(
+        &self,
+        ahead: &[[f64; 2]],
+        dx: &[f64; N],
+        nu: f64,
+        bend: &mut Vec<[f64; 2]>,
+    ) -> SVector<f64, N> {
+        let mut gradient = SVector::<f64, N>::zeros();
+        bend.clear();
+        for ((block, tau), r) in self.blocks.iter().zip(&self.tau).zip(ahead) {
+            let t = block.tangent;
+            let mut second = [0.0; 2];
+            for axis in 0..2 {
+                let mut slope = t[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    slope += by * d;
+                }
+                second[axis] = 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope);
+            }
+            bend.push(second);
+            // What the point's own unknown does not take up.
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
+            for axis in 0..2 {
+                let left = block.weight * (second[axis] - t[axis] * taken);
+                for (sum, by) in gradient.iter_mut().zip(&block.jacobian[axis]) {
+                    *sum += left * by;
+                }
+            }
+        }
+        gradient
+    }
+
+    /// Adds the bend's half to the points' own steps.
+    fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
+        for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            if t_sq == 0.0 {
+                continue;
+            }
+            let mut along = 0.0;
+            for axis in 0..2 {
+                let mut moved = 0.5 * second[axis];
+                for (by, d) in block.jacobian[axis].iter().zip(half) {
+                    moved += by * d;
+                }
+                along += t[axis] * moved;
+            }
+            *tau = (*tau - along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
+        }
+    }
+
     /// What the linear model takes off the cost and the penalty.
     fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
         let mut promised = 0.0;
@@ -459,7 +530,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
     let mut normal: Option<Normal<N>> = None;
     // The damping of the points' own unknowns follows the shared one: nu = damping * mean |t_j|^2.
     let (mut nu, mut tangent_sq) = (0.0, 0.0);
-    let mut quiet = 0;
+    let (mut quiet, mut slow) = (0, false);
     for step in 0..options.max_steps {
         if result.cost <= options.exact_cost
             && penalty.shift.iter().all(|m| *m == 0.0)
@@ -507,17 +578,35 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         let shared = dx.into();
         work.own_steps_after(&shared, nu, !work.gaps.is_empty());
         let promised = work.promised(&shared, penalty.rho);
-        result.evaluations += 1;
-        let trial_merit = if problem.retract(&result.x, &result.state, &work.tau, &trial, &mut trial_state) {
-            if !work.gaps.is_empty() {
-                problem.join(&mut trial_state, work.order.leaders());
+        let evaluate = |work: &Workspace<N>, trial: &[f64; N], state: &mut P::State| {
+            if !problem.retract(&result.x, &result.state, &work.tau, trial, state) {
+                return None;
             }
-            problem
-                .cost(&trial, &trial_state)
-                .map(|cost| (cost, cost + penalty.of(problem, &trial, &trial_state)))
-        } else {
-            None
+            if !work.gaps.is_empty() {
+                problem.join(state, work.order.leaders());
+            }
+            problem.cost(trial, state).map(|cost| (cost, cost + penalty.of(problem, trial, state)))
         };
+        let mut trial_merit = None;
+        let mut evaluations = 0;
+        if slow && !work.order.any() {
+            evaluations += 1;
+            if let Some(bent) = bend(problem, result, system, &dx, (damping, nu), &mut work, &mut trial_state)
+            {
+                evaluations += 1;
+                trial_merit = evaluate(&work, &bent, &mut trial_state).filter(|(_, new)| *new < merit);
+                if trial_merit.is_some() {
+                    trial = bent;
+                } else {
+                    work.own_steps_after(&shared, nu, !work.gaps.is_empty());
+                }
+            }
+        }
+        if trial_merit.is_none() {
+            evaluations += 1;
+            trial_merit = evaluate(&work, &trial, &mut trial_state);
+        }
+        result.evaluations += evaluations;
         match trial_merit {
             Some((cost, new_merit)) if new_merit < merit => {
                 let gain = (merit - new_merit) / promised.max(f64::MIN_POSITIVE);
@@ -525,6 +614,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
                 result.x = trial;
                 std::mem::swap(&mut result.state, &mut trial_state);
                 result.cost = cost;
+                slow = reduction < SLOW * merit;
                 merit = new_merit;
                 damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
                 damping = damping.max(1e-15);
@@ -555,6 +645,40 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         }
     }
     result.outcome = LmOutcome::StepLimit;
+}
+
+/// A step bent by half its geodesic acceleration, in its bounds, the points' own steps with it; `None` where the
+/// bend cannot be measured or is too large.
+fn bend<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    at: &LmResult<N, P::State>,
+    system: &Normal<N>,
+    dx: &SVector<f64, N>,
+    (damping, nu): (f64, f64),
+    work: &mut Workspace<N>,
+    scratch: &mut P::State,
+) -> Option<[f64; N]> {
+    let shared: [f64; N] = (*dx).into();
+    let ahead: [f64; N] = std::array::from_fn(|i| at.x[i] + AHEAD * shared[i]);
+    let own: Vec<f64> = work.tau.iter().map(|tau| AHEAD * tau).collect();
+    if !problem.retract(&at.x, &at.state, &own, &ahead, scratch) {
+        return None;
+    }
+    let (mut residuals, mut second) = (Vec::with_capacity(own.len()), Vec::with_capacity(own.len()));
+    if !problem.residuals(&ahead, scratch, &mut residuals) {
+        return None;
+    }
+    let gradient = work.bending(&residuals, &shared, nu, &mut second);
+    let after: [f64; N] = std::array::from_fn(|i| at.x[i] + shared[i]);
+    let bent = Normal { matrix: system.matrix, gradient, tangent_sq: system.tangent_sq };
+    let half = 0.5 * bounded_step(&bent, &after, problem.bounds(), damping)?;
+    let length = |v: &SVector<f64, N>| (0..N).map(|i| system.matrix[(i, i)] * v[i] * v[i]).sum::<f64>();
+    if length(&half).is_nan() || length(&half) > MOST_BENT * MOST_BENT * length(dx) {
+        return None;
+    }
+    work.bend_own_steps(&half.into(), &second, nu);
+    let bounds = problem.bounds();
+    Some(std::array::from_fn(|i| (after[i] + half[i]).max(bounds[i].0).min(bounds[i].1)))
 }
 
 /// The damped step inside the bounds: what a step would push through a bound is put onto it and the rest is
