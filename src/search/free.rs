@@ -10,9 +10,11 @@
 //! *Stopping rule*: the best error has come back, within [`SAME_OPTIMUM`], from as many independent rounds as
 //! [`Hits`] says (rounds that start near known ends do not count), or within [`NEARLY`] from four or more times
 //! as many where it is approached and hardly reached; and either as many distinct answers as were asked for are
-//! known or [`QUIET_BATCHES`] batches brought no new one. Rounds near known ends get their turn: sparse targets
-//! are searched through [`PATIENT_BATCHES`] batches at least, and so are dense ones that are met almost exactly,
-//! for these are likely to be met exactly by another linkage. An exact answer needs no second hit.
+//! known or [`QUIET_BATCHES`] batches brought no new one. Sparse targets are searched through [`LEAST_BATCHES`]
+//! batches at least, so that rounds near known ends get their turn. On a dense target the errors that are left
+//! say whether more can be had: noise differs from point to point, while errors of neighbours that are alike are
+//! a shape that this linkage does not have and another may; then [`PATIENT_BATCHES`] batches are searched at
+//! least. An exact answer needs no second hit.
 
 use super::atlas::Matches;
 use super::coarse::Coarse;
@@ -22,6 +24,7 @@ use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
+use crate::linkage::dot;
 use crate::problem::Problem;
 use crate::problem::torus::TorusFit;
 use crate::record::{Candidate, Evaluations, Reason};
@@ -58,11 +61,15 @@ pub const SPARSE_HITS: Hits = Hits { same: 6, near: 24 };
 pub const DENSE_HITS: Hits = Hits { same: 4, near: 12 };
 /// Errors that differ by less than this part are nearly the same optimum.
 pub const NEARLY: f64 = 1e-3;
-/// Batches at least for a sparse target, and for a dense one that is met to better than [`ALMOST_EXACT`] of its
-/// size, but not exactly.
-const PATIENT_BATCHES: u64 = 5;
-/// See [`PATIENT_BATCHES`].
-const ALMOST_EXACT: f64 = 1e-3;
+/// Batches at least for a sparse target.
+const LEAST_BATCHES: u64 = 5;
+/// Batches at least for a dense target whose errors are not noise.
+const PATIENT_BATCHES: u64 = 24;
+/// Errors of neighbouring points that are more alike than this are not noise.
+const ALIKE: f64 = 0.6;
+/// From this batch on a dense target of at most so many points is also explored on all of them.
+const WHOLE_FROM: u64 = 3;
+const WHOLE_MOST: usize = 200;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
 /// Ends that are kept.
@@ -113,10 +120,40 @@ struct Setup<'a> {
     problem: &'a Problem,
     coarse: Option<&'a Coarse>,
     starts: &'a Starts<'a>,
-    matches: Option<&'a Matches>,
+    matches: Option<Matches>,
     /// One answer is wanted: the first exact one ends the search.
     single: bool,
     exact: f64,
+}
+
+/// One way of exploring, with what it knows.
+struct Stage<'a> {
+    setup: Setup<'a>,
+    /// The least merit on the explored points.
+    bar: f64,
+    /// The best different ends on the explored points.
+    leading: Vec<(f64, Start)>,
+    /// Rounds so far.
+    index: u64,
+}
+
+/// Which round it is: of the whole search, for its random stream, and of its stage.
+#[derive(Clone, Copy)]
+struct Place {
+    stream: u64,
+    index: u64,
+}
+
+/// How alike the errors of neighbouring points are: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near 1 for a
+/// smooth misfit.
+fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let Some(error) = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at) else {
+        return 1.0;
+    };
+    let whole: f64 = error.structural.iter().map(|r| r.norm_sqr()).sum();
+    let alike: f64 = error.structural.windows(2).map(|w| dot(w[0], w[1])).sum();
+    if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
 impl Setup<'_> {
@@ -176,7 +213,7 @@ const JITTER: (f64, f64) = (0.01, 0.5);
 
 fn round(
     setup: &Setup<'_>,
-    index: u64,
+    Place { stream: of_search, index }: Place,
     allowance: u64,
     (bar, known): (f64, &[Start]),
     budget: &Budget<'_>,
@@ -194,7 +231,7 @@ fn round(
     };
     let mut spender = Spender { round: nothing, allowance, budget };
     // A round before this one has the exact answer: this one is not read.
-    let beaten = || found.load(Ordering::Relaxed) < index;
+    let beaten = || found.load(Ordering::Relaxed) < of_search;
     if beaten() {
         return spender.round;
     }
@@ -212,7 +249,7 @@ fn round(
     };
     // Every other round takes matches, as long as there are any.
     let first = index as usize / 2 * MATCHED;
-    let mut draws = stream(setup.problem.spec().solve.seed, index);
+    let mut draws = stream(setup.problem.spec().solve.seed, of_search);
     if !spender.round.independent {
         let end = &known[(index / 2) as usize % known.len()];
         for _ in 0..JITTERED {
@@ -221,7 +258,7 @@ fn round(
             }
         }
     } else {
-        match setup.matches.filter(|matches| index.is_multiple_of(2) && first < matches.len()) {
+        match setup.matches.as_ref().filter(|matches| index.is_multiple_of(2) && first < matches.len()) {
             Some(matches) => {
                 for rank in first..(first + MATCHED).min(matches.len()) {
                     if spender.left() > 0 {
@@ -287,7 +324,7 @@ fn round(
         }
         spender.round.ends.push(end);
         if spender.round.exact {
-            found.fetch_min(index, Ordering::Relaxed);
+            found.fetch_min(of_search, Ordering::Relaxed);
             return spender.round;
         }
     }
@@ -305,18 +342,17 @@ pub(super) fn search(
 ) -> Local {
     let wanted = basins_wanted(problem);
     let coarse = Coarse::of(problem);
-    let explored = coarse.as_ref().map_or(problem, |coarse| &coarse.problem);
-    let starts = Starts::new(explored);
-    let matches = (starts.loop_points().len() >= LEAST_MATCHED).then(|| Matches::of(&starts));
     let exact = exact_cost(problem);
-    let setup = Setup {
-        problem,
-        coarse: coarse.as_ref(),
-        starts: &starts,
-        matches: matches.as_ref(),
-        single: wanted == 1,
-        exact,
+    let whole = Starts::new(problem);
+    let grouped = coarse.as_ref().map(|coarse| Starts::new(&coarse.problem));
+    let matches = |starts: &Starts<'_>| (starts.arc().len() >= LEAST_MATCHED).then(|| Matches::of(starts));
+    let stage = |coarse, starts| Stage {
+        setup: Setup { problem, coarse, starts, matches: matches(starts), single: wanted == 1, exact },
+        bar: f64::INFINITY,
+        leading: Vec::new(),
+        index: 0,
     };
+    let mut stages = vec![stage(coarse.as_ref(), grouped.as_ref().unwrap_or(&whole))];
     let mut local = Local {
         found: Vec::new(),
         evaluations: Evaluations::default(),
@@ -325,8 +361,6 @@ pub(super) fn search(
     };
     let mut ends: Vec<End> = Vec::new();
     let mut best_merits: Vec<f64> = Vec::new();
-    let mut bar = f64::INFINITY;
-    let mut leading: Vec<(f64, Start)> = Vec::new();
     let (mut known, mut quiet) = (0, 0);
     let (mut batch, mut draws) = (0, 0);
     loop {
@@ -337,16 +371,28 @@ pub(super) fn search(
         // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
         let left = limit.saturating_sub(local.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
+        // What grouping blurs is looked for on all points, in turn with the groups.
+        if stages.len() == 1 && batch == WHOLE_FROM && coarse.is_some() && problem.task().len() <= WHOLE_MOST
+        {
+            stages.push(stage(None, &whole));
+        }
+        let turn = batch as usize % stages.len();
+        let Stage { setup, bar, leading, index } = &mut stages[turn];
         let near_ends = leading.iter().map(|(_, start)| start.clone()).collect::<Vec<_>>();
         let found = AtomicU64::new(u64::MAX);
-        let rounds: Vec<Round> = (batch * BATCH..(batch + 1) * BATCH)
+        let first = batch * BATCH;
+        let rounds: Vec<Round> = (0..BATCH)
             .into_par_iter()
-            .map(|index| round(&setup, index, allowance(index), (bar, &near_ends), budget, &found))
+            .map(|i| {
+                let place = Place { stream: first + i, index: *index + i };
+                round(setup, place, allowance(i), (*bar, &near_ends), budget, &found)
+            })
             .collect();
         batch += 1;
+        *index += BATCH;
         for round in rounds {
             draws += round.draws;
-            bar = bar.min(round.explored);
+            *bar = bar.min(round.explored);
             for (merit, start) in round.leaders {
                 if leading.iter().all(|(other, _): &(f64, Start)| (merit - other).abs() > 1e-3 * other) {
                     leading.push((merit, start));
@@ -362,7 +408,7 @@ pub(super) fn search(
                 break;
             }
         }
-        by_merit(&mut leading, LEADING);
+        by_merit(leading, LEADING);
         ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
         ends.truncate(KEPT);
         let best = judge_from_the_best(problem, &mut ends, wanted, exact);
@@ -386,8 +432,13 @@ pub(super) fn search(
             };
             let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
             let believed = within(SAME_OPTIMUM) >= hits.same || within(NEARLY) >= hits.near;
-            let quick = is_exact || (coarse.is_some() && best.error.rms_over_size > ALMOST_EXACT);
-            if (believed && (quick || batch >= PATIENT_BATCHES)) || (is_exact && wanted == 1) {
+            let least = match &coarse {
+                _ if is_exact => 0,
+                None => LEAST_BATCHES,
+                Some(_) if likeness(problem, best) < ALIKE => 0,
+                Some(_) => PATIENT_BATCHES,
+            };
+            if (believed && batch >= least) || (is_exact && wanted == 1) {
                 let now =
                     if wanted == 1 { 1 } else { count_distinct(problem, &accepted(problem, &ends), wanted) };
                 quiet = if now > known { 0 } else { quiet + 1 };
