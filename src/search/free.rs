@@ -24,8 +24,9 @@ use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
-use crate::linkage::dot;
+use crate::linkage::{Complex, LinkageType, dot};
 use crate::problem::Problem;
+use crate::problem::requirements::assembly_of;
 use crate::problem::torus::TorusFit;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::solve::streams::{Stream, normal, stream, uniform};
@@ -186,6 +187,39 @@ impl Spender<'_> {
         self.round.positions += problem.task().len() as u64 * fit.evaluations;
         fit.end.map(|end| (fit.merit, end))
     }
+
+    /// As `fit`, and where the points have come to lie on two circuits of a Grashof linkage, as they can by way of
+    /// its change points, once more as a linkage that has but one circuit.
+    fn fit_on_one_circuit(
+        &mut self,
+        problem: &Problem,
+        start: Start,
+        effort: Effort,
+    ) -> Option<(f64, Start)> {
+        let (merit, mut end) = self.fit(problem, start, effort)?;
+        let types = problem.types();
+        let allowed = types.is_empty() || types.contains(&LinkageType::TripleRocker);
+        if problem.circuit_any() || !problem.branch_any() || !allowed || !on_two_circuits(problem, &end) {
+            return Some((merit, end));
+        }
+        end.setting.aim = Some(LinkageType::TripleRocker);
+        let again = self.fit(problem, end.clone(), effort);
+        // Where that fails, an end that the referee will refuse.
+        Some(again.unwrap_or((merit, end)))
+    }
+}
+
+/// Whether the positions of a start lie on different circuits of its linkage.
+fn on_two_circuits(problem: &Problem, start: &Start) -> bool {
+    let Some(shape) = problem.space(start.setting.side).shape(&start.design) else { return false };
+    let assembly = |[e, u]: &[Complex; 2]| assembly_of(&shape, *e, *u);
+    let Some(linkage) = start.positions.first().and_then(|p| shape.linkage(assembly(p)).ok()) else {
+        return false;
+    };
+    let mobility = linkage.mobility();
+    let mut circuits = start.positions.iter().map(|p| mobility.branch(p[0].arg(), assembly(p)).circuit);
+    let first = circuits.next();
+    mobility.circuits() > 1 && circuits.any(|circuit| Some(circuit) != first)
 }
 
 fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
@@ -289,7 +323,7 @@ fn round(
         }
         // Out of budget: as it stands.
         let kept = (merit, start.clone());
-        middle.push(spender.fit(explored, start, MIDDLE_FIT).unwrap_or(kept));
+        middle.push(spender.fit_on_one_circuit(explored, start, MIDDLE_FIT).unwrap_or(kept));
     }
     if middle.is_empty() {
         middle.extend(spare);
@@ -312,7 +346,7 @@ fn round(
         let end = if setup.single && merit > WORTH_FINISHING * best + setup.exact {
             None
         } else {
-            spender.fit(setup.problem, start.clone(), LAST_FIT)
+            spender.fit_on_one_circuit(setup.problem, start.clone(), LAST_FIT)
         };
         let (merit, start) = end.unwrap_or((merit, start));
         let mut end = End { start, merit, verdict: None };
@@ -410,6 +444,14 @@ pub(super) fn search(
         }
         by_merit(leading, LEADING);
         ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+        // Of what the referee has refused, a part is enough: it must not crowd out the accepted.
+        let mut refused = 0;
+        ends.retain(|end| {
+            let unfit =
+                end.verdict.as_ref().is_some_and(|v| v.as_ref().is_none_or(|c| !promising(problem, c)));
+            refused += usize::from(unfit);
+            !unfit || refused <= KEPT / 4
+        });
         ends.truncate(KEPT);
         let best = judge_from_the_best(problem, &mut ends, wanted, exact);
         if let Some(reason) = budget.stop_reason() {
