@@ -6,7 +6,7 @@
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
 use linkwright::problem::Problem;
-use linkwright::problem::spec::Method;
+use linkwright::problem::spec::{Method, Variables};
 use linkwright::problem_file;
 use linkwright::record::Candidate;
 use linkwright::search::population::{Population, search};
@@ -17,12 +17,13 @@ use std::time::Instant;
 
 const SEEDS: u64 = 20;
 
-fn problem(seed: u64, evaluations: u64, method: Method) -> Problem {
+fn problem(seed: u64, evaluations: u64, method: Method, variables: Variables) -> Problem {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/literature/k18.toml");
     let mut spec = problem_file::load(&path, &[]).expect("it is shipped").spec;
     spec.solve.seed = seed;
     spec.solve.evaluations = evaluations;
     spec.solve.method = method;
+    spec.solve.variables = variables;
     spec.solve.candidates = 1;
     Problem::new(spec).expect("it is one")
 }
@@ -47,17 +48,20 @@ fn main() {
     let budget = Budget { cancel: &cancel, deadline: None };
     println!("| search | evaluations at most | median sum of squares | best | worst | ms a run |");
     println!("|---|---|---|---|---|---|");
-    for evaluations in [20_000, 200_000] {
-        for which in [Population::UniformSampling, Population::Genetic, Population::DifferentialEvolution] {
-            row(which.name(), evaluations, |seed| {
-                let problem = problem(seed, evaluations, Method::DifferentialEvolution);
-                let end = search(&problem, which, evaluations, &budget, &|_| {}).expect("it runs");
-                assert!(end.evaluations <= evaluations, "the budget is kept");
-                best(&end.found)
-            });
+    let all = [Population::UniformSampling, Population::Genetic, Population::DifferentialEvolution];
+    for evaluations in [10_000, 20_000, 200_000] {
+        for (variables, word) in [(Variables::Nine, ""), (Variables::Reduced, ", reduced")] {
+            for which in all {
+                row(&format!("{}{word}", which.name()), evaluations, |seed| {
+                    let problem = problem(seed, evaluations, Method::DifferentialEvolution, variables);
+                    let end = search(&problem, which, evaluations, &budget, &|_| {}).expect("it runs");
+                    assert!(end.evaluations <= evaluations, "the budget is kept");
+                    best(&end.found)
+                });
+            }
         }
         row("least-squares", evaluations, |seed| {
-            let problem = problem(seed, evaluations, Method::LeastSquares);
+            let problem = problem(seed, evaluations, Method::LeastSquares, Variables::Nine);
             best(&plan::search(&problem, &budget, &|_| {}).expect("it runs").candidates)
         });
     }

@@ -19,6 +19,7 @@ use crate::problem::spec::{
     DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Objective, PathSpec, ProblemSpec,
     RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
+use crate::problem::{Problem, reduced};
 use crate::record::Unit;
 use crate::solve::population::PopulationError;
 use crate::task::AngleOffset;
@@ -125,6 +126,7 @@ pub fn parse(
     let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
     design.resolve(&task);
     let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
+    warnings.extend(variables_of(&toml, &spec)?);
     Ok(ProblemFile { name, source: raw.source, unit: raw.unit, spec, expect, warnings })
 }
 
@@ -264,6 +266,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
     Ok(SolveSpec {
         method: raw.method,
         objective: raw.objective,
+        variables: raw.variables,
         seed,
         candidates,
         evaluations,
@@ -286,6 +289,28 @@ fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnosti
         toml.at("solve.objective", message)
             .with_help("give tolerances: a point with half the tolerance counts twice")
     }))
+}
+
+/// Reduced variables need a reduced form; a warning where the method does not read them.
+fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+    if spec.solve.variables.is_nine() {
+        return Ok(None);
+    }
+    if !spec.solve.moves_reduced() {
+        let message =
+            format!("variables = \"reduced\" is not read by method = \"{}\"", spec.solve.method.name());
+        return Ok(Some(
+            toml.at("solve.variables", message)
+                .with_help("it is for genetic and differential-evolution; remove it, or choose one of them"),
+        ));
+    }
+    // What is wrong with the task itself has been said before.
+    match Problem::new(spec.clone()).ok().and_then(|problem| reduced::refusal(&problem)) {
+        None => Ok(None),
+        Some(refusal) => {
+            Err(Box::new(toml.at("solve.variables", refusal.to_string()).with_help(refusal.remedy())))
+        }
+    }
 }
 
 /// How many numbers a published vector has.

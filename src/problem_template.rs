@@ -76,6 +76,8 @@ transmission_deg_min = 30       # how well the coupler pushes the follower: 90 i
 candidates = 5                  # how many different answers
 seed = 1                        # the same seed gives the same answers; another one may give others
 # objective = "max-deviation"   # the least largest error; where silent, the least sum of squared errors
+# method = "differential-evolution"   # or "genetic", "least-squares"; where silent, "auto" chooses
+# variables = "reduced"         # for the first two of these; where silent, the literature's "nine"
 # evaluations = 200000          # how long to search
 # time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
 "#;

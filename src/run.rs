@@ -98,7 +98,8 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     Ok(Finished { record, search_s, beside_s })
 }
 
-/// SHA-256 of what decides a search: task, design, require, objective, method with its parameters, seed.
+/// SHA-256 of what decides a search: task, design, require, objective, variables, method with its
+/// parameters, seed.
 ///
 /// # Errors
 /// [`RunError::Json`] when the problem cannot be written as data.
@@ -109,6 +110,9 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
         design: &'a crate::problem::spec::DesignSpec,
         require: &'a crate::problem::spec::RequireSpec,
         objective: crate::problem::spec::Objective,
+        // Absent where it is the default: records from before there was a choice keep their digest.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        variables: Option<crate::problem::spec::Variables>,
         method: crate::problem::spec::Method,
         genetic: &'a crate::solve::genetic::GeneticParameters,
         differential_evolution: &'a crate::solve::differential_evolution::DifferentialEvolutionParameters,
@@ -120,6 +124,7 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
         design: &spec.design,
         require: &spec.require,
         objective: solve.objective,
+        variables: Some(solve.variables).filter(|v| !v.is_nine()),
         method: solve.method,
         genetic: &solve.genetic,
         differential_evolution: &solve.differential_evolution,

@@ -69,6 +69,7 @@ circuit = "any"
 branch = "any"
 [solve]
 method = "differential-evolution"
+variables = "nine"
 seed = 9223372036854775807
 candidates = 9
 evaluations = 1e6

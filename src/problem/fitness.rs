@@ -9,7 +9,7 @@
 //! A design that breaks a requirement is not given a cost that it does not have: it has a violation, and
 //! feasibility rules compare it (see [`crate::solve::population`]). Nothing here allocates.
 
-use super::design_space::{Design, DesignSpace, Shape};
+use super::design_space::{DesignSpace, Shape};
 use super::requirements::{Motion, Requirements, nearest_type};
 use super::spec::Objective;
 use super::{Problem, Setting};
@@ -63,6 +63,22 @@ pub struct Reading {
     pub arc: f64,
 }
 
+impl Reading {
+    /// Takes a reading that is better.
+    fn offer(&mut self, reading: Reading) {
+        if reading.fitness.compare(&self.fitness).is_lt() {
+            *self = reading;
+        }
+    }
+}
+
+/// The reading of what cannot be read.
+fn nothing() -> Reading {
+    let setting =
+        Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
+    Reading { fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN }, setting, arc: 0.0 }
+}
+
 impl<'a> PathFitness<'a> {
     /// The fitness of a problem.
     pub fn new(problem: &'a Problem) -> Self {
@@ -113,6 +129,11 @@ impl<'a> PathFitness<'a> {
         }
     }
 
+    /// The problem.
+    pub fn problem(&self) -> &'a Problem {
+        self.problem
+    }
+
     /// The design space of a side of the coupler point.
     pub fn space(&self, side: CouplerSide) -> &DesignSpace {
         self.spaces.iter().find(|(s, _)| *s == side).map_or(&self.spaces[0].1, |(_, space)| space)
@@ -130,25 +151,15 @@ impl<'a> PathFitness<'a> {
 
     /// The best reading of a design's free numbers.
     pub fn read(&self, genes: &[f64]) -> Reading {
-        let nothing =
-            Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
-        let mut best = Reading {
-            fitness: Fitness { violation: f64::INFINITY, cost: f64::NAN },
-            setting: nothing,
-            arc: 0.0,
-        };
-        let mut offer = |reading: Reading| {
-            if reading.fitness.compare(&best.fitness).is_lt() {
-                best = reading;
-            }
-        };
+        let mut best = nothing();
+        let mut offer = |reading: Reading| best.offer(reading);
         for (side, space) in &self.spaces {
             let x = space.from_free(genes);
             let Some(shape) = space.shape(&x) else { continue };
             if self.clocks.is_empty() {
                 self.free_readings(*side, &shape, &mut offer);
             } else {
-                self.timed_readings(*side, space, &x, &shape, &mut offer);
+                self.timed_readings(*side, space.offset(&x), &shape, &mut offer);
             }
         }
         best
@@ -170,6 +181,58 @@ impl<'a> PathFitness<'a> {
         )
     }
 
+    /// The angle added to every prescribed one, from the design's own where that is free.
+    fn angle_offset(&self, offset: f64, shape: &Shape) -> f64 {
+        match self.problem.task().timing() {
+            Timing::Prescribed { offset: AngleOffset::Free, .. } => offset,
+            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
+                (shape.follower_pivot - shape.crank_pivot).arg()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The reading of a shape in one direction (by its place among the allowed ones) and on one assembly;
+    /// `offset` is the crank angle's where it is free. Prescribed timing. Bounds of the design do not enter.
+    pub fn read_timed(
+        &self,
+        side: CouplerSide,
+        shape: &Shape,
+        offset: f64,
+        direction: usize,
+        assembly: AssemblyMode,
+    ) -> Option<Reading> {
+        let (direction, cos, sin) = self.clocks.get(direction)?;
+        let offset = self.angle_offset(offset, shape);
+        let turn = Complex::from_polar(1.0, offset);
+        let sums = timed_sums(&self.kernel(shape), turn, cos, sin, &self.targets, self.deviation);
+        let aim = nearest_type(shape.links(), self.problem.types());
+        let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
+        let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
+        let lack = self.requirements.lack(aim, shape, &motion);
+        let cost = sums.cost[usize::from(assembly == AssemblyMode::Minus)];
+        Some(Reading {
+            fitness: Fitness { violation: sums.open + lack, cost },
+            setting: Setting { aim, assembly, direction: *direction, side },
+            arc: 0.0,
+        })
+    }
+
+    /// How far the loop is from closing, summed over the points, in one direction: 0 where it closes at all
+    /// of them. `turn` is added to every prescribed angle.
+    pub fn open(&self, shape: &Shape, turn: f64, direction: usize) -> f64 {
+        let Some((_, cos, sin)) = self.clocks.get(direction) else { return f64::INFINITY };
+        let turn = Complex::from_polar(1.0, turn);
+        timed_sums(&self.kernel(shape), turn, cos, sin, &self.targets, None).open
+    }
+
+    /// The best reading of a shape with free timing. Bounds of the design do not enter.
+    pub fn read_free(&self, side: CouplerSide, shape: &Shape) -> Reading {
+        let mut best = nothing();
+        self.free_readings(side, shape, &mut |reading| best.offer(reading));
+        best
+    }
+
     /// What the requirements lack; computed once a shape where the motion does not enter.
     fn lack(
         &self,
@@ -184,22 +247,9 @@ impl<'a> PathFitness<'a> {
         *shared.get_or_insert_with(|| self.requirements.lack(aim, shape, motion))
     }
 
-    fn timed_readings(
-        &self,
-        side: CouplerSide,
-        space: &DesignSpace,
-        x: &Design,
-        shape: &Shape,
-        offer: &mut dyn FnMut(Reading),
-    ) {
+    fn timed_readings(&self, side: CouplerSide, offset: f64, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
         let kernel = self.kernel(shape);
-        let offset = match self.problem.task().timing() {
-            Timing::Prescribed { offset: AngleOffset::Free, .. } => space.offset(x),
-            Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
-                (shape.follower_pivot - shape.crank_pivot).arg()
-            }
-            _ => 0.0,
-        };
+        let offset = self.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
         let aim = nearest_type(shape.links(), self.problem.types());
         let mut shared = None;

@@ -7,6 +7,7 @@ pub mod design_space;
 pub mod fitness;
 pub mod linear_fit;
 pub mod projection;
+pub mod reduced;
 pub mod requirements;
 pub mod spec;
 pub mod timed;

@@ -250,6 +250,12 @@ impl Projection {
     }
 }
 
+/// [low, high] of ln p, ln q, ln r of a problem whose ground has this length, where it is known.
+pub fn ratio_box(problem: &Problem, ground: Option<f64>) -> [(f64, f64); 3] {
+    let [p, q, r, _] = ratio_bounds(problem, link_limits(problem, ground), AngleRole::None);
+    [p, q, r]
+}
+
 /// The limits of ground, a, b and c, a little inside the design's where a requirement keeps a margin.
 fn link_limits(problem: &Problem, ground: Option<f64>) -> [Limits; 4] {
     let mut limits = problem.space(CouplerSide::Plus).link_limits();

@@ -336,6 +336,24 @@ pub enum Objective {
     MaxDeviation,
 }
 
+/// In which variables the population searches move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variables {
+    /// The parameters of the linkage, and the crank's offset where it is free: the literature's form.
+    #[default]
+    Nine,
+    /// Ratios of links and at most an angle or two; pivots, size and coupler point by linear least squares.
+    Reduced,
+}
+
+impl Variables {
+    /// Whether these are the literature's.
+    pub fn is_nine(&self) -> bool {
+        *self == Variables::Nine
+    }
+}
+
 /// How to search and when to stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolveSpec {
@@ -343,6 +361,9 @@ pub struct SolveSpec {
     pub method: Method,
     /// What is minimised.
     pub objective: Objective,
+    /// In which variables `genetic` and `differential-evolution` move; the other methods do not read it.
+    #[serde(default)]
+    pub variables: Variables,
     /// Every draw comes from this number.
     pub seed: u64,
     /// How many distinct answers are wanted.
@@ -358,11 +379,20 @@ pub struct SolveSpec {
     pub differential_evolution: DifferentialEvolutionParameters,
 }
 
+impl SolveSpec {
+    /// Whether the search moves in the reduced variables: a population search that was asked to.
+    pub fn moves_reduced(&self) -> bool {
+        let population = matches!(self.method, Method::Genetic | Method::DifferentialEvolution);
+        population && self.variables == Variables::Reduced
+    }
+}
+
 impl Default for SolveSpec {
     fn default() -> Self {
         SolveSpec {
             method: Method::Auto,
             objective: Objective::SumOfSquares,
+            variables: Variables::Nine,
             seed: 1,
             candidates: 5,
             evaluations: 200_000,

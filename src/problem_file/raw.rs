@@ -1,7 +1,9 @@
 //! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
 
 use crate::linkage::{AssemblyMode, LinkageType};
-use crate::problem::spec::{DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver};
+use crate::problem::spec::{
+    DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver, Variables,
+};
 use crate::record::Unit;
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
 use crate::solve::genetic::GeneticParameters;
@@ -154,6 +156,9 @@ pub(crate) struct RawSolve {
     /// What is minimised.
     #[serde(default)]
     pub objective: Objective,
+    /// In which variables genetic and differential-evolution move.
+    #[serde(default)]
+    pub variables: Variables,
     /// Every draw comes from this number.
     pub seed: Option<Count>,
     /// How many distinct answers are wanted.

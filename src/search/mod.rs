@@ -19,6 +19,7 @@ pub mod plan;
 pub mod polish;
 pub mod population;
 pub mod rank;
+pub mod reduced;
 pub mod starts;
 pub mod timed;
 pub mod warm;

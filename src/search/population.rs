@@ -1,17 +1,19 @@
-//! The population searches on the design vector: genetic, differential evolution, and uniform sampling as the
-//! baseline that they are measured against.
+//! The population searches on the design vector or in reduced variables: genetic, differential evolution, and
+//! uniform sampling as the baseline that they are measured against.
 
 use super::multistart::{judged, settle_positions};
+use super::reduced::{ReducedFitness, forms};
 use super::starts::Start;
 use super::{Budget, Observer, Progress};
 use crate::problem::Problem;
 use crate::problem::fitness::PathFitness;
+use crate::problem::reduced::refusal;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Reason};
 use crate::solve::argmin_bridge::{Limits, StopReason, run_restarts};
 use crate::solve::differential_evolution::DifferentialEvolution;
 use crate::solve::genetic::Genetic;
-use crate::solve::population::{Generations, Individual, PopulationError, PopulationProblem};
+use crate::solve::population::{Generations, PopulationError, PopulationProblem};
 use crate::solve::random_search::{UniformSampling, UniformSamplingParameters};
 use crate::task::Timing;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -53,13 +55,23 @@ pub struct PopulationEnd {
     pub reason: Reason,
 }
 
+/// A fitness whose individuals become starts.
+pub(super) trait Searched: PopulationProblem {
+    /// How many positions of the linkage one evaluation computes.
+    fn positions(&self) -> u64;
+    /// The start that an individual stands for.
+    fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start>;
+}
+
 /// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
 /// are used.
 ///
-/// Where everything is fixed there is one design, and it is read once.
+/// In reduced variables where the method is a population search and `variables` asks for them
+/// ([`crate::problem::spec::SolveSpec::moves_reduced`]). Where everything is fixed there is one design, and it is
+/// read once.
 ///
 /// # Errors
-/// [`PopulationError`] when the parameters are out of range.
+/// [`PopulationError`] when the parameters are out of range, or when there are no reduced variables.
 pub fn search(
     problem: &Problem,
     which: Population,
@@ -67,7 +79,25 @@ pub fn search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<PopulationEnd, PopulationError> {
-    let fitness = PathFitness::new(problem);
+    if !problem.spec().solve.moves_reduced() {
+        return search_in(problem, &PathFitness::new(problem), which, evaluations, budget, observer);
+    }
+    if let Some(refusal) = refusal(problem) {
+        return Err(PopulationError::Form { why: refusal.to_string() });
+    }
+    let forms = forms(problem);
+    let fitness = ReducedFitness::new(problem, &forms);
+    search_in(problem, &fitness, which, evaluations, budget, observer)
+}
+
+fn search_in<F: Searched>(
+    problem: &Problem,
+    fitness: &F,
+    which: Population,
+    evaluations: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<PopulationEnd, PopulationError> {
     let spec = &problem.spec().solve;
     let mut algorithm: Box<dyn Generations> = match which {
         Population::Genetic => Box::new(Genetic::new(spec.genetic)?),
@@ -77,20 +107,19 @@ pub fn search(
         Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
     };
     if fitness.bounds().is_empty() {
-        let only = Individual { x: Vec::new(), fitness: fitness.evaluate(&[]) };
-        let starts: Vec<Start> = start_of(problem, &fitness, &only, budget).into_iter().collect();
+        let starts: Vec<Start> = fitness.start(&[], budget).into_iter().collect();
         return Ok(PopulationEnd {
             found: starts.iter().filter_map(|start| judged(problem, start)).collect(),
             starts,
             evaluations: 1,
-            positions: fitness.positions_per_evaluation(),
+            positions: fitness.positions(),
             reason: Reason::Converged,
         });
     }
     let limits = Limits { evaluations, target: Some(super::rank::exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(budget.stopped());
-    let outcome = run_restarts(&fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
+    let outcome = run_restarts(fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
         if budget.stopped() {
             stop.store(true, Ordering::Relaxed);
         }
@@ -107,7 +136,7 @@ pub fn search(
     let kept =
         [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
     for individual in kept {
-        let Some(start) = start_of(problem, &fitness, individual, budget) else { continue };
+        let Some(start) = fitness.start(&individual.x, budget) else { continue };
         found.extend(judged(problem, &start));
         starts.push(start);
     }
@@ -117,7 +146,7 @@ pub fn search(
         starts,
         found,
         evaluations: outcome.evaluations,
-        positions: outcome.evaluations * fitness.positions_per_evaluation(),
+        positions: outcome.evaluations * fitness.positions(),
         reason: match outcome.reason {
             StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
             // The fitness is no judge: an exact answer has to stand before the referee too.
@@ -132,23 +161,25 @@ pub fn search(
 /// Individuals of the last population that are looked at for distinct answers.
 const KEPT: usize = 20;
 
-fn start_of(
-    problem: &Problem,
-    fitness: &PathFitness<'_>,
-    individual: &Individual,
-    budget: &Budget<'_>,
-) -> Option<Start> {
-    debug_assert_eq!(individual.x.len(), fitness.bounds().len());
-    let reading = fitness.read(&individual.x);
-    let space = fitness.space(reading.setting.side);
-    let design = space.from_free(&individual.x);
-    let positions = match problem.task().timing() {
-        Timing::Prescribed { .. } => Vec::new(),
-        Timing::Free => {
-            let shape = space.shape(&design)?;
-            let sampled = fitness.positions(&shape, &reading)?;
-            settle_positions(problem, &design, reading.setting, sampled, budget)?.0
-        }
-    };
-    Some(Start { design, setting: reading.setting, positions })
+impl Searched for PathFitness<'_> {
+    fn positions(&self) -> u64 {
+        self.positions_per_evaluation()
+    }
+
+    fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start> {
+        debug_assert_eq!(x.len(), self.bounds().len());
+        let problem = self.problem();
+        let reading = self.read(x);
+        let space = self.space(reading.setting.side);
+        let design = space.from_free(x);
+        let positions = match problem.task().timing() {
+            Timing::Prescribed { .. } => Vec::new(),
+            Timing::Free => {
+                let shape = space.shape(&design)?;
+                let sampled = PathFitness::positions(self, &shape, &reading)?;
+                settle_positions(problem, &design, reading.setting, sampled, budget)?.0
+            }
+        };
+        Some(Start { design, setting: reading.setting, positions })
+    }
 }

@@ -4,7 +4,7 @@
 //! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
 //! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
 
-use crate::linkage::mobility::Mobility;
+use crate::linkage::mobility::{InputArc, Mobility};
 use crate::linkage::{
     AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates,
     mobility::{grashof_margin, linkage_type},
@@ -152,7 +152,13 @@ impl<'a> Starts<'a> {
         }
     }
 
-    fn fit(&self, ratios: &Ratios, known: &KnownPivots, positions: &[[Complex; 2]]) -> Option<Shape> {
+    /// The shape by linear least squares through positions measured from the ground line.
+    pub(super) fn fit(
+        &self,
+        ratios: &Ratios,
+        known: &KnownPivots,
+        positions: &[[Complex; 2]],
+    ) -> Option<Shape> {
         let task = self.problem.task();
         fit(ratios, known, positions, task.points(), task.weights())
     }
@@ -171,42 +177,75 @@ impl<'a> Starts<'a> {
         let partial = uniform(stream, 0.5, 5.8);
         let within = [uniform(stream, -FRAC_PI_2, FRAC_PI_2), uniform(stream, -FRAC_PI_2, FRAC_PI_2)];
         let arc_choice = below(stream, 2);
-        let at = |e: Complex, t: f64| Some([e, coupler_direction(ratios, e, t)?]);
         if drawn.input_turns_fully() || drawn == LinkageType::ChangePoint {
             let span = if closed { TAU } else { partial };
-            return self
-                .arc
-                .iter()
-                .map(|s| at(Complex::from_polar(1.0, start + direction * span * s), assembly.sign()))
-                .collect();
+            return self.turning(ratios, assembly, start, direction * span).collect();
         }
         let mobility = unit_linkage(ratios)?;
         let index = (arc_choice as u8) % mobility.circuits().max(1);
         let arc = mobility.arc(crate::linkage::Circuit { index })?;
-        // Keep a little off the toggles, where the assembly is undecided.
-        const INSIDE: f64 = 1.0 - 1e-9;
         if self.problem.branch_any() {
             let span = if closed { TAU } else { partial };
-            return self
-                .arc
-                .iter()
-                .map(|s| {
-                    let psi = start + direction * span * s;
-                    let angle = arc.middle + INSIDE * arc.half_width * psi.sin();
-                    at(Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
-                })
-                .collect();
+            return self.round_an_arc(ratios, &arc, start, direction * span).collect();
         }
-        let [from, to] = within;
-        let ends = [from.sin(), to.sin()].map(|x| arc.middle + INSIDE * arc.half_width * x);
+        let ends = within.map(f64::sin);
         if (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1 {
             return None;
         }
+        self.along_an_arc(ratios, &arc, assembly, ends).collect()
+    }
+
+    /// Positions (from the ground line) of a crank that turns through `span` from `start`, as the points are
+    /// along the target.
+    pub(super) fn turning(
+        &self,
+        ratios: &Ratios,
+        assembly: AssemblyMode,
+        start: f64,
+        span: f64,
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
         self.arc
             .iter()
-            .map(|s| at(Complex::from_polar(1.0, ends[0] + (ends[1] - ends[0]) * s), assembly.sign()))
-            .collect()
+            .map(move |s| position(ratios, Complex::from_polar(1.0, start + span * s), assembly.sign()))
     }
+
+    /// The same of a crank that rocks on an arc and passes its toggles, psi from `start` through `span`.
+    pub(super) fn round_an_arc(
+        &self,
+        ratios: &Ratios,
+        arc: &InputArc,
+        start: f64,
+        span: f64,
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
+        self.arc.iter().map(move |s| {
+            let psi = start + span * s;
+            let angle = arc.middle + INSIDE * arc.half_width * psi.sin();
+            position(ratios, Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+        })
+    }
+
+    /// The same of a crank that rocks on an arc from one end to the other, given in parts of its half width.
+    pub(super) fn along_an_arc(
+        &self,
+        ratios: &Ratios,
+        arc: &InputArc,
+        assembly: AssemblyMode,
+        ends: [f64; 2],
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
+        let ends = ends.map(|x| arc.middle + INSIDE * arc.half_width * x);
+        self.arc.iter().map(move |s| {
+            let angle = ends[0] + (ends[1] - ends[0]) * s;
+            position(ratios, Complex::from_polar(1.0, angle), assembly.sign())
+        })
+    }
+}
+
+/// Keep a little off the toggles, where the assembly is undecided.
+const INSIDE: f64 = 1.0 - 1e-9;
+
+/// A position from the ground line.
+fn position(ratios: &Ratios, e: Complex, t: f64) -> Option<[Complex; 2]> {
+    Some([e, coupler_direction(ratios, e, t)?])
 }
 
 /// The types that draws are made of.

@@ -160,6 +160,12 @@ pub enum PopulationError {
         /// Its value.
         value: f64,
     },
+    /// The problem cannot be put in the variables that were asked for.
+    #[error("{why}")]
+    Form {
+        /// What stands in the way.
+        why: String,
+    },
     /// The limit allows no evaluation at all.
     #[error("a limit of zero evaluations leaves nothing to search with")]
     NoEvaluations,
