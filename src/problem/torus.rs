@@ -21,6 +21,7 @@ use crate::linkage::mobility::linkage_type;
 use crate::linkage::{Complex, LinkageType, dot, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 
+use crate::task::referee::ORDER_TOLERANCE;
 use std::f64::consts::TAU;
 
 /// The positions of all points: (e_j, u_j).
@@ -102,7 +103,12 @@ impl<'a> TorusFit<'a> {
         }
         let total = |direction: f64| -> f64 {
             let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
-            positions.windows(2).map(step).sum()
+            // Points that share a place make no step, and rounding must not make a turn of it.
+            positions
+                .windows(2)
+                .map(step)
+                .map(|step| if step > TAU - ORDER_TOLERANCE { 0.0 } else { step })
+                .sum()
         };
         let (forward, backward) = (total(1.0), total(-1.0));
         if forward.min(backward) >= TAU {

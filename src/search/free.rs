@@ -67,7 +67,7 @@ const LEAST_BATCHES: u64 = 5;
 /// Batches at least for a dense target whose errors are not noise.
 const PATIENT_BATCHES: u64 = 24;
 /// Errors of neighbouring points that are more alike than this are not noise.
-const ALIKE: f64 = 0.6;
+const ALIKE: f64 = 0.3;
 /// From this batch on a dense target of at most so many points is also explored on all of them.
 const WHOLE_FROM: u64 = 3;
 const WHOLE_MOST: usize = 200;

@@ -276,7 +276,8 @@ pub fn unwrapped(
     let mobility = linkage.mobility();
     let arc = mobility.arc(mobility.branch(angles[0], assemblies[0]).circuit);
     let total = |direction: f64| -> f64 {
-        angles.windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
+        let step = |w: &[f64]| (direction * (w[1] - w[0])).rem_euclid(TAU);
+        angles.windows(2).map(step).map(|step| if step > TAU - ORDER_TOLERANCE { 0.0 } else { step }).sum()
     };
     let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
     let mut along: Vec<f64> = match arc {
