@@ -299,8 +299,8 @@ fn what_is_offered_beside_a_linkage_that_jams_does_not_jam() {
     assert!(built.accepted && built.rank == 0);
     assert!(built.transmission_deg.worst >= 10.0 && built.link_ratio <= 20.0);
     assert!(!built.warnings.iter().any(is_serious));
-    // The best known one that can be built.
-    assert!(built.error.sum_sq < 0.0030709, "{}", built.error.sum_sq);
+    // Near the best known one that can be built, 0.0030708, with a tenth of a search's budget.
+    assert!(built.error.sum_sq < 0.00310, "{}", built.error.sum_sq);
     // Where all that was found is at hand it is never worse than the best of these.
     let known = buildable(&problem, std::slice::from_ref(&first), &all, 0, &budget, &|_| {});
     assert_eq!(known.evaluations.objective, 0);

@@ -290,6 +290,9 @@ pub fn unwrapped(
                 let step = if step > TAU - ORDER_TOLERANCE { step - TAU } else { step };
                 along.push(along[along.len() - 1] + direction * step);
             }
+            if !problem.task().repeats_first() {
+                stop_short_of_the_first(&mut along, direction);
+            }
             along
         }
     };
@@ -299,4 +302,19 @@ pub fn unwrapped(
         assemblies[last] = assemblies[0];
     }
     (along.iter().map(|a| a.to_degrees()).collect(), assemblies)
+}
+
+/// Points at the end that share the first point's place, a whole turn on, stand a hair before it: once around is
+/// not passed.
+fn stop_short_of_the_first(along: &mut [f64], direction: f64) {
+    const HAIR: f64 = 4.0 * ORDER_TOLERANCE;
+    const TOUCHING: f64 = 1e-6;
+    let (Some(&first), Some(&last)) = (along.first(), along.last()) else { return };
+    let beyond = direction * (last - first) - TAU;
+    if (-HAIR..TOUCHING).contains(&beyond) {
+        let end = first + direction * (TAU - HAIR);
+        for angle in along.iter_mut().rev().take_while(|angle| (**angle - last).abs() <= TOUCHING) {
+            *angle = end;
+        }
+    }
 }

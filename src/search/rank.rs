@@ -270,7 +270,25 @@ fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
 pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
     let floor = exact_objective(problem);
     let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
-    let by_key = |i: &usize, j: &usize| keys[*i].cmp(&keys[*j]).then(i.cmp(j));
+    // Equals that differ in their last digits are told apart by these, not by who was found first.
+    let numbers = |i: usize| {
+        let n = found[i].linkage.natural_coordinates();
+        [
+            n.crank_pivot[0],
+            n.crank_pivot[1],
+            n.follower_pivot[0],
+            n.follower_pivot[1],
+            n.crank,
+            n.coupler,
+            n.follower,
+        ]
+    };
+    let by_numbers = |i: usize, j: usize| {
+        let pairs = numbers(i).into_iter().zip(numbers(j));
+        pairs.map(|(x, y)| x.total_cmp(&y)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    let by_key =
+        |i: &usize, j: &usize| keys[*i].cmp(&keys[*j]).then_with(|| by_numbers(*i, *j)).then(i.cmp(j));
     if wanted <= 1 {
         return (0..found.len()).min_by(by_key).into_iter().take(wanted).collect();
     }

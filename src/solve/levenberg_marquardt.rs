@@ -159,6 +159,8 @@ const AHEAD: f64 = 0.1;
 const MOST_BENT: f64 = 0.375;
 /// A step that takes off less than this part of the merit is slow.
 const SLOW: f64 = 0.2;
+/// Times that points which have passed each other are pooled after a step.
+const MOST_REPAIRS: usize = 4;
 /// Past this damping a step is below rounding.
 const LAST_DAMPING: f64 = 1e14;
 
@@ -584,12 +586,16 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
             }
             if !work.gaps.is_empty() {
                 problem.join(state, work.order.leaders());
+                if !put_in_order(problem, trial, state, &work.stiffness) {
+                    return None;
+                }
             }
             problem.cost(trial, state).map(|cost| (cost, cost + penalty.of(problem, trial, state)))
         };
         let mut trial_merit = None;
         let mut evaluations = 0;
-        if slow && !work.order.any() {
+        // Three evaluations at most: the bend, the bent step and the straight one.
+        if slow && !work.order.any() && result.evaluations + 3 <= options.max_evaluations {
             evaluations += 1;
             if let Some(bent) = bend(problem, result, system, &dx, (damping, nu), &mut work, &mut trial_state)
             {
@@ -645,6 +651,31 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         }
     }
     result.outcome = LmOutcome::StepLimit;
+}
+
+/// Pools what a step has let pass each other after all, because the way back to the curves is not straight.
+fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    x: &[f64; N],
+    state: &mut P::State,
+    stiffness: &[f64],
+) -> bool {
+    let mut gaps = Vec::with_capacity(stiffness.len());
+    for _ in 0..MOST_REPAIRS {
+        gaps.clear();
+        if !problem.gaps(x, state, &mut gaps) || gaps.iter().all(|gap| *gap >= 0.0) {
+            return true;
+        }
+        let mut order = Ordered::new(gaps.len());
+        let mut tau = vec![0.0; gaps.len()];
+        order.pool(&gaps, &mut tau, stiffness);
+        let before = state.clone();
+        if !problem.retract(x, &before, &tau, x, state) {
+            return false;
+        }
+        problem.join(state, order.leaders());
+    }
+    true
 }
 
 /// A step bent by half its geodesic acceleration, in its bounds, the points' own steps with it; `None` where the
