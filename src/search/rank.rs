@@ -273,15 +273,8 @@ pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usiz
     // Equals that differ in their last digits are told apart by these, not by who was found first.
     let numbers = |i: usize| {
         let n = found[i].linkage.natural_coordinates();
-        [
-            n.crank_pivot[0],
-            n.crank_pivot[1],
-            n.follower_pivot[0],
-            n.follower_pivot[1],
-            n.crank,
-            n.coupler,
-            n.follower,
-        ]
+        let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
+        [ax, ay, bx, by, n.crank, n.coupler, n.follower, n.crank_side, n.follower_side]
     };
     let by_numbers = |i: usize, j: usize| {
         let pairs = numbers(i).into_iter().zip(numbers(j));
