@@ -11,7 +11,7 @@
 //! 1972; for coupler curves McGarva and Mullineux 1993.) The nearest entries are then laid onto the target by
 //! similarity at every shift (Procrustes), and the best give starts.
 //!
-//! *Open targets.* [`ARCS`] stretches of each entry's curve, of random begin and length, stand in a second
+//! *Open targets.* `ARCS` stretches of each entry's curve, of random begin and length, stand in a second
 //! atlas as M points c_m evenly along them, centred and of unit norm. With the target t_m alike, what a
 //! similarity leaves of the target is 1 - |sum conj(c_m) t_m|^2.
 //!

@@ -1,19 +1,19 @@
 //! The search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt on the torus,
 //! and a stop when the best answer keeps coming back.
 //!
-//! A *round* takes [`SCREEN`] drawn starts (for closed targets first the atlas's matches), fits the [`SHORT`]
-//! most promising for a few steps, the best [`MIDDLE`] of those on, and finishes those that can still matter.
+//! A *round* takes `SCREEN` drawn starts (for closed targets first the atlas's matches), fits the `SHORT`
+//! most promising for a few steps, the best `MIDDLE` of those on, and finishes those that can still matter.
 //! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them. Rounds run
-//! side by side in batches of [`BATCH`] and are read in their order: the number of threads changes nothing but
+//! side by side in batches of `BATCH` and are read in their order: the number of threads changes nothing but
 //! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
 //!
-//! *Stopping rule*: the best error has come back, within [`SAME_OPTIMUM`], from as many independent rounds as
-//! [`Hits`] says (rounds that start near known ends do not count), or within [`NEARLY`] from four or more times
+//! *Stopping rule*: the best error has come back, within `SAME_OPTIMUM`, from as many independent rounds as
+//! [`Hits`] says (rounds that start near known ends do not count), or within `NEARLY` from four or more times
 //! as many where it is approached and hardly reached; and either as many distinct answers as were asked for are
-//! known or [`QUIET_BATCHES`] batches brought no new one. Sparse targets are searched through [`LEAST_BATCHES`]
+//! known or `QUIET_BATCHES` batches brought no new one. Sparse targets are searched through `LEAST_BATCHES`
 //! batches at least, so that rounds near known ends get their turn. On a dense target the errors that are left
 //! say whether more can be had: noise differs from point to point, while errors of neighbours that are alike are
-//! a shape that this linkage does not have and another may; then [`PATIENT_BATCHES`] batches are searched at
+//! a shape that this linkage does not have and another may; then `PATIENT_BATCHES` batches are searched at
 //! least. An exact answer needs no second hit.
 
 use super::atlas::Matches;
@@ -50,9 +50,9 @@ const BATCH: u64 = 8;
 /// From how many independent rounds the best answer has to come back before it is believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hits {
-    /// Within [`SAME_OPTIMUM`].
+    /// Within `SAME_OPTIMUM`.
     pub same: usize,
-    /// Within [`NEARLY`].
+    /// Within `NEARLY`.
     pub near: usize,
 }
 

@@ -1,7 +1,7 @@
 //! Prescribed timing: the search on the reduced form.
 //!
 //! A batch draws [`DRAWS`] ratios and angles from its own stream of the seed, screens them in every allowed
-//! direction on both assemblies, fits the [`SHORT`] that promise most for a few steps and the best [`LONG`] of
+//! direction on both assemblies, fits the `SHORT` that promise most for a few steps and the best [`LONG`] of
 //! them to the end ([`crate::problem::projection`]). An end that keeps every bound and requirement stands as it
 //! is. One that does not, and is better than what stands, is a lower bound of what its basin can give: it is
 //! polished in the physical parameters under all requirements ([`polish`]).
@@ -9,12 +9,12 @@
 //! Where such ends turn up, the requirements bind, and later waves also fit under all requirements from the first
 //! step on: the screened draws that promise most with what they lack, and rounds of [`super::multistart`] in turn.
 //!
-//! [`WAVE`] batches run side by side and are read in their order; what a wave may skip (polishes of ends that are
+//! `WAVE` batches run side by side and are read in their order; what a wave may skip (polishes of ends that are
 //! no better than the best so far) depends on earlier waves only. So the number of threads changes no digit.
 //!
 //! *Stopping rule.* The best objective has to come back from independent batches ([`super::belief`]). Where
-//! requirements bind, [`BINDING_WAVES`] waves have had to look at them; where several answers are wanted the
-//! search goes on until as many distinct ones are known or [`QUIET_WAVES`] waves brought no further one.
+//! requirements bind, `BINDING_WAVES` waves have had to look at them; where several answers are wanted the
+//! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
 use super::belief::Belief;
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
