@@ -213,7 +213,7 @@ fn held(candidate: &Candidate) -> bool {
 /// Polishes what a search has found as the objective and the tolerances ask, and adds what comes of it.
 ///
 /// `limit` is the budget of evaluations of which `evaluations` tells what is used; it is kept. The best
-/// [`BASINS`] distinct candidates are polished side by side, and so are starts around the best of what comes of
+/// `BASINS` distinct candidates are polished side by side, and so are starts around the best of what comes of
 /// them until that is no news, or until the tolerances are met; where neither tolerances nor the largest deviation
 /// ask for it, only accepted ones that a limit holds.
 pub fn improve(

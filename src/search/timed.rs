@@ -1,7 +1,7 @@
 //! Prescribed timing: the search on the reduced form.
 //!
 //! A batch draws [`DRAWS`] ratios and angles from its own stream of the seed, screens them in every allowed
-//! direction on both assemblies, fits the `SHORT` that promise most for a few steps and the best [`LONG`] of
+//! direction on both assemblies, fits the `SHORT` that promise most for a few steps and the best `LONG` of
 //! them to the end ([`crate::problem::projection`]). An end that keeps every bound and requirement stands as it
 //! is. One that does not, and is better than what stands, is a lower bound of what its basin can give: it is
 //! polished in the physical parameters under all requirements ([`polish`]).
