@@ -161,6 +161,8 @@ const MOST_BENT: f64 = 0.375;
 const SLOW: f64 = 0.2;
 /// Times that points which have passed each other are pooled after a step.
 const MOST_REPAIRS: usize = 4;
+/// Points that lie further apart than this (radians) have not just passed each other.
+const JUST_PASSED: f64 = 0.05;
 /// Past this damping a step is below rounding.
 const LAST_DAMPING: f64 = 1e14;
 
@@ -663,7 +665,12 @@ fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
     let mut gaps = Vec::with_capacity(stiffness.len());
     for _ in 0..MOST_REPAIRS {
         gaps.clear();
-        if !problem.gaps(x, state, &mut gaps) || gaps.iter().all(|gap| *gap >= 0.0) {
+        if !problem.gaps(x, state, &mut gaps) {
+            return true;
+        }
+        // Only points that are near each other have just passed: over longer ways a gap is a rough measure.
+        gaps.iter_mut().filter(|gap| **gap < -JUST_PASSED).for_each(|gap| *gap = 0.0);
+        if gaps.iter().all(|gap| *gap >= 0.0) {
             return true;
         }
         let mut order = Ordered::new(gaps.len());
