@@ -1,0 +1,312 @@
+//! The linear system of a step: normal equations with the points' own unknowns eliminated, pools of points that
+//! may not pass each other, the bend of a step, and the step inside the bounds.
+
+use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
+use crate::solve::ordered::Ordered;
+use nalgebra::{SMatrix, SVector};
+
+pub(super) struct Normal<const N: usize> {
+    pub(super) matrix: SMatrix<f64, N, N>,
+    pub(super) gradient: SVector<f64, N>,
+    /// mean |t_j|^2.
+    pub(super) tangent_sq: f64,
+}
+
+/// What an inner solve works with, kept from step to step.
+pub(super) struct Workspace<const N: usize> {
+    pub(super) blocks: Vec<PointBlock<N>>,
+    /// The constraints that lack something: (shift - g, dg/dx).
+    pub(super) lacking: Vec<(f64, [f64; N])>,
+    /// w_j (|t_j|^2 + nu).
+    pub(super) stiffness: Vec<f64>,
+    /// The points' own steps.
+    pub(super) tau: Vec<f64>,
+    pub(super) gaps: Vec<f64>,
+    pub(super) order: Ordered,
+}
+
+impl<const N: usize> Workspace<N> {
+    pub(super) fn new(points: usize) -> Self {
+        Workspace {
+            blocks: Vec::with_capacity(points),
+            lacking: Vec::new(),
+            stiffness: vec![0.0; points],
+            tau: vec![0.0; points],
+            gaps: Vec::with_capacity(points),
+            order: Ordered::new(points),
+        }
+    }
+
+    /// Each point's own best step for its residual as it stands.
+    pub(super) fn own_steps(&mut self, nu: f64) {
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            self.stiffness[j] = block.weight * (t_sq + nu);
+            self.tau[j] = if t_sq == 0.0 {
+                0.0
+            } else {
+                -(t[0] * block.residual[0] + t[1] * block.residual[1]) / (t_sq + nu)
+            };
+        }
+    }
+
+    /// Each point's own step after a shared step `dx`; pooled points end in one place.
+    pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64, ordered: bool) {
+        let along = |block: &PointBlock<N>| {
+            let mut moved = block.residual;
+            for (value, row) in moved.iter_mut().zip(&block.jacobian) {
+                let mut sum = 0.0;
+                for (by, d) in row.iter().zip(dx) {
+                    sum += by * d;
+                }
+                *value += sum;
+            }
+            block.tangent[0] * moved[0] + block.tangent[1] * moved[1]
+        };
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t_sq = block.tangent[0].powi(2) + block.tangent[1].powi(2);
+            self.tau[j] =
+                if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
+        }
+        if ordered {
+            self.order.pool(&self.gaps, &mut self.tau, &self.stiffness);
+        }
+    }
+
+    /// The right-hand side of the acceleration: J^T of the residuals' second derivative along a step, the
+    /// points' own unknowns eliminated; `bend` receives that derivative. `ahead` holds the residuals at the part
+    /// [`AHEAD`] of the step.
+    pub(super) fn bending(
+        &self,
+        ahead: &[[f64; 2]],
+        dx: &[f64; N],
+        nu: f64,
+        bend: &mut Vec<[f64; 2]>,
+    ) -> SVector<f64, N> {
+        let mut gradient = SVector::<f64, N>::zeros();
+        bend.clear();
+        for ((block, tau), r) in self.blocks.iter().zip(&self.tau).zip(ahead) {
+            let t = block.tangent;
+            let mut second = [0.0; 2];
+            for axis in 0..2 {
+                let mut slope = t[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    slope += by * d;
+                }
+                second[axis] = 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope);
+            }
+            bend.push(second);
+            // What the point's own unknown does not take up.
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
+            for axis in 0..2 {
+                let left = block.weight * (second[axis] - t[axis] * taken);
+                for (sum, by) in gradient.iter_mut().zip(&block.jacobian[axis]) {
+                    *sum += left * by;
+                }
+            }
+        }
+        gradient
+    }
+
+    /// Adds the bend's half to the points' own steps.
+    pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
+        for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            if t_sq == 0.0 {
+                continue;
+            }
+            let mut along = 0.0;
+            for axis in 0..2 {
+                let mut moved = 0.5 * second[axis];
+                for (by, d) in block.jacobian[axis].iter().zip(half) {
+                    moved += by * d;
+                }
+                along += t[axis] * moved;
+            }
+            *tau = (*tau - along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
+        }
+    }
+
+    /// What the linear model takes off the cost and the penalty.
+    pub(super) fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
+        let mut promised = 0.0;
+        for (block, tau) in self.blocks.iter().zip(&self.tau) {
+            for axis in 0..2 {
+                let mut change = block.tangent[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    change += by * d;
+                }
+                promised -= block.weight * change * (2.0 * block.residual[axis] + change);
+            }
+        }
+        for (lack, gradient) in &self.lacking {
+            let change: f64 = gradient.iter().zip(dx).map(|(by, d)| by * d).sum();
+            promised += rho * change * (2.0 * lack - change);
+        }
+        promised
+    }
+}
+
+#[inline(always)]
+fn add_row<const N: usize>(
+    matrix: &mut [[f64; N]; N],
+    gradient: &mut [f64; N],
+    weight: f64,
+    row: &[f64; N],
+    residual: f64,
+) {
+    for i in 0..N {
+        let w = weight * row[i];
+        gradient[i] += w * residual;
+        for k in 0..N {
+            matrix[i][k] += w * row[k];
+        }
+    }
+}
+
+pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    at: &LmResult<N, P::State>,
+    penalty: &Penalty,
+    nu: f64,
+    work: &mut Workspace<N>,
+) -> Option<Normal<N>> {
+    work.blocks.clear();
+    let complete = problem.linearise(&at.x, &at.state, &mut |block| work.blocks.push(*block));
+    if !complete {
+        return None;
+    }
+    work.gaps.clear();
+    let ordered = problem.gaps(&at.x, &at.state, &mut work.gaps);
+    if ordered {
+        work.own_steps(nu);
+        work.order.pool(&work.gaps, &mut work.tau, &work.stiffness);
+    }
+    let mut matrix = [[0.0; N]; N];
+    let mut gradient = [0.0; N];
+    let mut tangent_sum = 0.0;
+    problem.wide(
+        #[inline(always)]
+        || {
+            for (index, block) in work.blocks.iter().enumerate() {
+                let t = block.tangent;
+                let t_sq = t[0] * t[0] + t[1] * t[1];
+                tangent_sum += t_sq;
+                if ordered && !work.order.is_alone(index) {
+                    continue;
+                }
+                let (r, j) = (&block.residual, &block.jacobian);
+                if t_sq == 0.0 {
+                    add_row(&mut matrix, &mut gradient, block.weight, &j[0], r[0]);
+                    add_row(&mut matrix, &mut gradient, block.weight, &j[1], r[1]);
+                    continue;
+                }
+                let length = t_sq.sqrt();
+                let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+                let mut row = [0.0; N];
+                for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+                    for i in 0..N {
+                        row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
+                    }
+                    let residual = axis[0] * r[0] + axis[1] * r[1];
+                    add_row(&mut matrix, &mut gradient, block.weight * weight, &row, residual);
+                }
+            }
+        },
+    );
+    if ordered {
+        for pool in work.order.pools() {
+            // r_j + t_j m_j + J_j dx + t_j tau with the way m_j to the common place and one tau for all.
+            let mut by_tau = [0.0; N];
+            let (mut along, mut stiffness) = (0.0, 0.0);
+            for &(index, way) in pool {
+                let block = &work.blocks[index];
+                let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
+                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
+                add_row(&mut matrix, &mut gradient, w, &j[0], r[0]);
+                add_row(&mut matrix, &mut gradient, w, &j[1], r[1]);
+                for i in 0..N {
+                    by_tau[i] += w * (t[0] * j[0][i] + t[1] * j[1][i]);
+                }
+                along += w * (t[0] * r[0] + t[1] * r[1]);
+                stiffness += work.stiffness[index];
+            }
+            if stiffness > 0.0 {
+                add_row(&mut matrix, &mut gradient, -1.0 / stiffness, &by_tau, along);
+            }
+        }
+    }
+    let mut i = 0;
+    work.lacking.clear();
+    problem.constraints(&at.x, &at.state, &mut |row| {
+        let lack = penalty.shift[i] - row.value;
+        i += 1;
+        if lack > 0.0 {
+            work.lacking.push((lack, row.gradient));
+            add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
+        }
+    });
+    let usable = matrix.iter().flatten().chain(gradient.iter()).all(|v| v.is_finite());
+    usable.then(|| Normal {
+        matrix: SMatrix::from_fn(|i, k| matrix[i][k]),
+        gradient: SVector::from(gradient),
+        tangent_sq: tangent_sum / work.blocks.len().max(1) as f64,
+    })
+}
+
+/// The damped step inside the bounds: what a step would push through a bound is put onto it and the rest is
+/// solved again, so that the step is the model's minimum on the face that it ends on. `None` where the damped
+/// matrix is not positive definite.
+pub(super) fn bounded_step<const N: usize>(
+    system: &Normal<N>,
+    x: &[f64; N],
+    bounds: &[(f64, f64); N],
+    damping: f64,
+) -> Option<SVector<f64, N>> {
+    let mut damped = system.matrix;
+    let diagonal_max = (0..N).map(|i| damped[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
+    let mut held = [false; N];
+    let mut dx = SVector::<f64, N>::zeros();
+    for i in 0..N {
+        let (low, high) = bounds[i];
+        held[i] = low == high
+            || damped[(i, i)] == 0.0
+            || (x[i] <= low && system.gradient[i] >= 0.0)
+            || (x[i] >= high && system.gradient[i] <= 0.0);
+        damped[(i, i)] += damping * damped[(i, i)].max(1e-10 * diagonal_max);
+    }
+    for _ in 0..=N {
+        let mut matrix = damped;
+        let mut right =
+            -(system.gradient + damped * SVector::from_fn(|i, _| if held[i] { dx[i] } else { 0.0 }));
+        for i in (0..N).filter(|&i| held[i]) {
+            for k in 0..N {
+                matrix[(i, k)] = 0.0;
+                matrix[(k, i)] = 0.0;
+            }
+            matrix[(i, i)] = 1.0;
+            right[i] = dx[i];
+        }
+        dx = matrix.cholesky()?.solve(&right);
+        let mut crossed = false;
+        for i in 0..N {
+            if held[i] {
+                continue;
+            }
+            let (low, high) = bounds[i];
+            let to = x[i] + dx[i];
+            if to < low || to > high {
+                dx[i] = if to < low { low - x[i] } else { high - x[i] };
+                held[i] = true;
+                crossed = true;
+            }
+        }
+        if !crossed {
+            break;
+        }
+    }
+    Some(dx)
+}
