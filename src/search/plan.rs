@@ -1,17 +1,20 @@
 //! Which searches run, in which order, and when they have done enough.
 //!
-//! `least-squares` fits from many starts until the best answer has come back [`HITS`] times from different
-//! rounds and as many distinct answers as were asked for are known. `auto` does the same and, when nothing
-//! acceptable came of it within its share of the budget, lets differential evolution look for a feasible
-//! design and polishes what that finds. The population searches alone run without a polish.
+//! `least-squares` and `auto` search prescribed timing in its reduced form ([`timed`]) and free timing on the curves
+//! of positions ([`free`]); each has its own rule of repeated hits. Where the reduced form is not to be had or finds
+//! nothing acceptable, rounds in the physical parameters follow: until the best answer has come back [`HITS`] times
+//! from different rounds and as many distinct answers as were asked for are known. What the objective and the
+//! tolerances ask beyond least squares is polished afterwards ([`super::polish`]). When still nothing is
+//! acceptable, `auto` lets differential evolution look for a feasible design and polishes what that finds. The
+//! population searches alone run without a polish.
 
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::polish::{improve, promising, reserve};
 use super::population::{self, Population};
 use super::rank::{count_distinct, divided, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::Starts;
-use super::timed;
 use super::{Budget, Observer, Progress, SearchOutcome};
+use super::{free, timed};
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::Method;
@@ -149,8 +152,8 @@ impl Local {
     }
 }
 
-/// Prescribed timing: the reduced form first; where it is not to be had or nothing acceptable came of it within its
-/// share, and with free timing, rounds in the physical parameters.
+/// Free timing: [`free`]. Prescribed timing: the reduced form first, and where it is not to be had or nothing
+/// acceptable came of it within its share, rounds in the physical parameters.
 fn local_search(
     problem: &Problem,
     limit: u64,
@@ -158,6 +161,9 @@ fn local_search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Local {
+    if matches!(problem.task().timing(), Timing::Free) {
+        return free::search(problem, limit, patience, budget, observer);
+    }
     let share = (patience as f64 * REDUCED_SHARE) as u64;
     let Some(timed) = timed::search(problem, limit, share, budget, observer) else {
         return rounds(problem, limit, patience, budget, observer);
@@ -188,8 +194,8 @@ fn local_search(
     local
 }
 
-/// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
-/// an acceptable candidate.
+/// Prescribed timing in the physical parameters: rounds until the best is believed, until `limit` evaluations are
+/// used, or until `patience` are used without an acceptable candidate.
 fn rounds(
     problem: &Problem,
     limit: u64,
@@ -197,9 +203,6 @@ fn rounds(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Local {
-    if matches!(problem.task().timing(), Timing::Free) {
-        return super::free::search(problem, limit, patience, budget, observer);
-    }
     let wanted = problem.spec().solve.candidates;
     let exact = exact_cost(problem);
     let starts = Starts::new(problem);
