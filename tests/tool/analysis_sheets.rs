@@ -1,8 +1,6 @@
 //! The drawings of analyses and of cognates: which sheets there are, sound markup, no number that isn't one.
 
-mod common;
-
-use common::root;
+use crate::common::root;
 use linkwright::analysis::{Analysis, PositionMethod, Request, analyze, full_turn};
 use linkwright::linkage::motion::CrankMotion;
 use linkwright::linkage::{AssemblyMode, FourBar, point};

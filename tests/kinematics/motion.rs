@@ -1,13 +1,11 @@
 //! Velocities and accelerations: the seed's tables, central differences, analytic cases, and toggles.
 
-mod reference;
-
+use crate::reference::{cases, closed_position, linkage, position, scale, shipped_linkage, transmission};
 use linkwright::linkage::gradient::TOGGLE_SINE;
 use linkwright::linkage::mobility::wrapped;
 use linkwright::linkage::motion::{CrankMotion, LinkageMotion, Motion};
 use linkwright::linkage::{AssemblyMode, Complex, FourBar, Position, VectorLoop};
 use proptest::prelude::*;
-use reference::{cases, closed_position, linkage, position, scale, shipped_linkage, transmission};
 use std::f64::consts::{PI, TAU};
 
 fn lift() -> FourBar {
@@ -204,7 +202,7 @@ proptest! {
 
     #[test]
     fn a_toggle_has_no_velocity_and_nothing_next_to_it_is_huge(
-        l in reference::any_linkage(),
+        l in crate::reference::any_linkage(),
         k in -3..=3i64,
     ) {
         // The toggles themselves, and their neighbours among the doubles: a velocity is never above what

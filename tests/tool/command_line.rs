@@ -1,9 +1,7 @@
 //! The command as a person or a script meets it: what it prints, writes and returns.
 
-mod common;
-
+use crate::common::root;
 use assert_cmd::Command;
-use common::root;
 use linkwright::record::Record;
 use std::fs;
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! Prescribed timing from many seeds, and targets that a known linkage draws.
 
-mod common;
-
-use common::{literature, parse, run_on};
+use crate::common::{literature, parse, run_on};
 use linkwright::linkage::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
 use linkwright::record::{Reason, Record};
 use linkwright::solve::streams::{Stream, stream, uniform};

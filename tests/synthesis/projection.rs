@@ -1,9 +1,7 @@
 //! The reduced form of prescribed timing: its costs are those of real linkages, its linear unknowns are the
 //! best ones, its Jacobian gives the gradient, and eight lanes give the bits of one.
 
-mod common;
-
-use common::parse;
+use crate::common::parse;
 use linkwright::linkage::{AssemblyMode, Complex};
 use linkwright::problem::Problem;
 use linkwright::problem::projection::{Batch, ProjectedFit, Projection, Reduced, UNKNOWNS};

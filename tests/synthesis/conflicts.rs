@@ -1,8 +1,6 @@
 //! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
 
-mod common;
-
-use common::{bytes, job, literature, load, root, run_on};
+use crate::common::{bytes, job, literature, load, root, run_on};
 use linkwright::problem_file::ProblemFile;
 use linkwright::record::{Reason, Record};
 use linkwright::run::{Context, run};

@@ -1,8 +1,6 @@
 //! The house as lib.rs draws it: which room may use which.
 
-mod common;
-
-use common::root;
+use crate::common::root;
 use std::path::{Path, PathBuf};
 
 fn sources(folder: &Path) -> Vec<PathBuf> {

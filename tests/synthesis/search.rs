@@ -1,9 +1,7 @@
 //! The main job on the published problems: what is found, from which seeds, and that nothing but the problem
 //! and the seed decides it.
 
-mod common;
-
-use common::{bytes, literature, load, parse, root, run_on};
+use crate::common::{bytes, literature, load, parse, root, run_on};
 use linkwright::linkage::LinkageType;
 use linkwright::record::{Reason, Record};
 use linkwright::verify::verify;
@@ -134,7 +132,8 @@ fn a_budget_of_evaluations_is_kept() {
 
 #[test]
 fn every_example_has_an_accepted_answer_that_verifies() {
-    for path in common::shipped("toml").iter().filter(|p| p.parent().is_some_and(|d| d.ends_with("examples")))
+    for path in
+        crate::common::shipped("toml").iter().filter(|p| p.parent().is_some_and(|d| d.ends_with("examples")))
     {
         let record = run_on(2, load(path, &[]));
         assert!(best(&record).is_finite(), "{}", path.display());

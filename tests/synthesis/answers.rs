@@ -1,9 +1,7 @@
 //! What a record says beside its errors: distinct answers, cognates of the same curve, families of exact
 //! answers, warnings and what can be built.
 
-mod common;
-
-use common::{bytes, literature, parse, run_on};
+use crate::common::{bytes, literature, parse, run_on};
 use linkwright::assess::assess;
 use linkwright::linkage::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
 use linkwright::problem::Problem;
@@ -268,7 +266,7 @@ fn a_limit_that_decides_the_answer_is_named() {
         assert!((warning.value - warning.limit).abs() < 1e-4);
     }
     // The side of a box is named.
-    let file = common::load(&common::root().join("problems/examples/pivot-box.toml"), &[]);
+    let file = crate::common::load(&crate::common::root().join("problems/examples/pivot-box.toml"), &[]);
     let record = run_on(1, file);
     let first = &record.candidates[0].warnings[0];
     assert_eq!(first.key, "pivots_in");

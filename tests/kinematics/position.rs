@@ -1,7 +1,8 @@
 //! Positions: what holds for every four-bar, and what happens at the edges.
 
-mod reference;
-
+use crate::reference::{
+    any_linkage, cases, closed_position, joints_by_angles, linkage, nine, rounding, scale,
+};
 use linkwright::linkage::lane::{F64x8, LANES};
 use linkwright::linkage::position::{CouplerPoints, Kernel};
 use linkwright::linkage::{
@@ -9,7 +10,6 @@ use linkwright::linkage::{
     VectorLoop, cross,
 };
 use proptest::prelude::*;
-use reference::{any_linkage, cases, closed_position, joints_by_angles, linkage, nine, rounding, scale};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 
 fn mirrored(linkage: &FourBar) -> FourBar {
@@ -101,11 +101,11 @@ proptest! {
         phi in -7.0..7.0f64,
     ) {
         // Within 1e-10 of a toggle the two may differ: FLAT_TOLERANCE takes 1e-12 of b^2/s^2 as flat.
-        let s = reference::diagonal(&l, phi);
+        let s = crate::reference::diagonal(&l, phi);
         let (b, c) = (l.coupler(), l.follower());
         let slack = (s - (b - c).abs()).abs().min((b + c - s).abs());
         prop_assume!(slack > 1e-10 * scale(&l));
-        prop_assert_eq!(l.position(phi).is_closed(), reference::closes(&l, phi));
+        prop_assert_eq!(l.position(phi).is_closed(), crate::reference::closes(&l, phi));
     }
 
     #[test]
@@ -326,7 +326,7 @@ fn links_that_cannot_be_joined_are_open_everywhere() {
 
 #[test]
 fn a_crank_angle_that_is_no_number_closes_nothing() {
-    let l = reference::shipped_linkage("romero");
+    let l = crate::reference::shipped_linkage("romero");
     for phi in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(!l.position(phi).is_closed());
         assert!(l.transmission_angle(phi).is_none());
@@ -444,7 +444,7 @@ fn other_constructors_refuse_what_is_not_a_number() {
 fn de_castros_example_gives_the_table_with_the_coupler_points_put_right() {
     // Angles as printed to 0.1 degree; P of rows 2 to 4 as corrected (the table reuses row 1's coupler
     // angle).
-    let l = reference::shipped_linkage("de-castro-2-1");
+    let l = crate::reference::shipped_linkage("de-castro-2-1");
     let rows = [
         (90.0f64, 258.9, 54.2, 64.893, 510.820),
         (120.0, -34.8, 60.5, -150.697, 589.540),
@@ -469,7 +469,7 @@ fn de_castros_example_gives_the_table_with_the_coupler_points_put_right() {
 
 #[test]
 fn romeros_four_configurations_meet_his_constraints() {
-    let example = reference::shipped_linkage("romero").natural_coordinates();
+    let example = crate::reference::shipped_linkage("romero").natural_coordinates();
     let mut points = Vec::new();
     for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
         for side in [CouplerSide::Plus, CouplerSide::Minus] {

@@ -2,11 +2,9 @@
 //! stand beside them, best known linkages give the best known sums, classical linkages run as straight as
 //! they should.
 
-mod reference;
-
+use crate::reference::{linkage, shipped_linkage};
 use linkwright::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, LinkageType};
 use linkwright::task::{AngleOffset, PathOptions, PathTask, Timing};
-use reference::{linkage, shipped_linkage};
 use std::f64::consts::{PI, TAU};
 
 fn read(folder: &str, name: &str) -> toml::Table {

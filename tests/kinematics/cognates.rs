@@ -1,17 +1,15 @@
 //! The Roberts-Chebyshev cognates: three linkages, one curve.
 
-mod reference;
-
+use crate::reference::{Draws, Flooded, linkage, rounding, scale, shipped_linkage, transmission};
 use linkwright::linkage::cognate::{Cognate, CognateError, OriginalLink, SharedPivot};
 use linkwright::linkage::mobility::wrapped;
 use linkwright::linkage::{AssemblyMode, Complex, FourBar, Joints, LinkageType, point};
-use reference::{Draws, Flooded, linkage, rounding, scale, shipped_linkage, transmission};
 use std::f64::consts::PI;
 
 const BOTH: [AssemblyMode; 2] = [AssemblyMode::Plus, AssemblyMode::Minus];
 
 fn sine(l: &FourBar, phi: f64, t1: AssemblyMode) -> Option<f64> {
-    let [c, d, _] = reference::position(l, phi, t1)?;
+    let [c, d, _] = crate::reference::position(l, phi, t1)?;
     Some(transmission(c, d, l.follower_pivot()).sin())
 }
 

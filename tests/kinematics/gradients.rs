@@ -1,13 +1,13 @@
 //! Derivatives of the coupler point against two independent ones: dual numbers through the vector loop's
 //! angles, and central differences of the position solver.
 
-mod reference;
-
+use crate::reference::{
+    cases, closed_position, joints_by_angles, linkage, nine, position, scale, transmission,
+};
 use linkwright::linkage::gradient::{Frame, shape_gradient};
 use linkwright::linkage::{AssemblyMode, Complex, CouplerSide, FourBar, NaturalCoordinates};
 use num_dual::{Dual64, DualNum};
 use proptest::prelude::*;
-use reference::{cases, closed_position, joints_by_angles, linkage, nine, position, scale, transmission};
 
 /// dP by the k-th of the nine natural coordinates, k = 9: by the crank angle; by dual numbers.
 fn by_dual_numbers(l: &FourBar, phi: f64, k: usize) -> Complex {
@@ -148,9 +148,9 @@ fn no_gradient_is_made_up_where_there_is_none() {
     assert!(open.gradient(3.0).is_none());
     assert!(open.frame(3.0, AssemblyMode::Plus).is_none());
     // On the line C-D the height of the triangle has no derivative by b, d and e.
-    assert!(reference::shipped_linkage("hoeken").gradient(2.0).is_none());
+    assert!(crate::reference::shipped_linkage("hoeken").gradient(2.0).is_none());
     // But by the offset in the coupler's frame it has.
-    let hoeken = reference::shipped_linkage("hoeken");
+    let hoeken = crate::reference::shipped_linkage("hoeken");
     let frame = hoeken.frame(2.0, AssemblyMode::Plus).unwrap();
     let gradient = shape_gradient(&frame, 1.0, 2.5, hoeken.coupler_offset()).unwrap();
     assert_eq!(gradient.shape[7], frame.coupler);

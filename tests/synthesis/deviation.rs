@@ -1,9 +1,7 @@
 //! The least largest deviation, tolerances that are met or said not to be, and the polish of answers that a limit
 //! holds.
 
-mod common;
-
-use common::{bytes, literature, parse, run_on};
+use crate::common::{bytes, literature, parse, run_on};
 use linkwright::problem::Problem;
 use linkwright::problem::fitness::PathFitness;
 use linkwright::problem_file::ProblemFile;

@@ -1,8 +1,6 @@
 //! The derivatives that the local searches use, by the public check, on random starts of every kind of task.
 
-mod common;
-
-use common::parse;
+use crate::common::parse;
 use linkwright::problem::Problem;
 use linkwright::problem::timed::TimedFit;
 use linkwright::problem::torus::TorusFit;

@@ -1,9 +1,7 @@
 //! The suite: published vectors by our referee, figures of many seeds, the command, what it writes.
 
-mod common;
-
+use crate::common::{job, literature, parse, root};
 use assert_cmd::Command;
-use common::{job, literature, parse, root};
 use linkwright::linkage::AssemblyMode;
 use linkwright::problem::Problem;
 use linkwright::problem::spec::Method;

@@ -1,11 +1,9 @@
 //! What a linkage can do, against brute force: a flood fill of its configuration curve and dense samples.
 
-mod reference;
-
+use crate::reference::{Draws, Flooded, linkage, position, shipped_linkage, transmission};
 use linkwright::linkage::mobility::{CHANGE_POINT_TOLERANCE, grashof_margin, linkage_type, wrapped};
 use linkwright::linkage::transmission::angle_opposite;
 use linkwright::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange, LinkageType, cross};
-use reference::{Draws, Flooded, linkage, position, shipped_linkage, transmission};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -40,7 +38,7 @@ fn the_type_is_what_the_links_do_when_they_are_turned() {
         )
         .unwrap();
         let turns =
-            |l: &FourBar| (0..1440).all(|i| reference::closes(l, TAU * (f64::from(i) + 0.5) / 1440.0));
+            |l: &FourBar| (0..1440).all(|i| crate::reference::closes(l, TAU * (f64::from(i) + 0.5) / 1440.0));
         let (crank, follower) = (turns(&l), turns(&from_the_follower));
         // Take the crank as the ground: the coupler turns relative to it exactly when it turns fully there.
         let on_the_crank = FourBar::with_coupler_offset(
@@ -221,10 +219,13 @@ fn toggles_stand_where_coupler_and_follower_are_in_line() {
             assert!(l.position(phi).is_closed(), "{l}: the toggle itself closes");
             // |CB| is b + c or |b - c| to the rounding of the lengths and of the angle: s ds = g a sin theta
             // dphi.
-            let s = reference::diagonal(&l, phi);
+            let s = crate::reference::diagonal(&l, phi);
             let (b, c) = (l.coupler(), l.follower());
             let off = (s - (b - c).abs()).abs().min((s - b - c).abs());
-            assert!(off <= 32.0 * f64::EPSILON * reference::scale(&l).powi(2) / s, "{l}: {off:e} at {phi}");
+            assert!(
+                off <= 32.0 * f64::EPSILON * crate::reference::scale(&l).powi(2) / s,
+                "{l}: {off:e} at {phi}"
+            );
             assert_eq!(mobility.branch(phi, AssemblyMode::Plus).circuit, toggle.circuit, "{l}");
             // Closed on one side, open on the other.
             let [inside, outside] =
@@ -338,7 +339,7 @@ fn the_transmission_angle_at_a_position_is_the_angle_at_the_follower_pin() {
             match (l.transmission_angle(phi), wanted) {
                 (Some(got), Some(wanted)) => {
                     // d mu = s ds/(b c sin mu), s known to eps scale.
-                    let slack = 32.0 * f64::EPSILON * reference::scale(&l).powi(2)
+                    let slack = 32.0 * f64::EPSILON * crate::reference::scale(&l).powi(2)
                         / (l.coupler() * l.follower() * wanted.sin());
                     assert!((got - wanted).abs() <= slack, "{l} at {phi}: {got} for {wanted}");
                 }
@@ -375,7 +376,7 @@ fn the_nearest_point_of_a_curve_is_that_of_dense_samples() {
             // Never farther than any sample; nearer by at most what lies between samples: the last grid step
             // next to a toggle, where P goes as the root of the angle.
             assert!(got.distance <= wanted + 1e-9, "{l}: {} for {wanted}", got.distance);
-            let root = (2.0 * TAU / 1440.0f64).sqrt() * reference::scale(&l);
+            let root = (2.0 * TAU / 1440.0f64).sqrt() * crate::reference::scale(&l);
             let gap = if curve.position_at(0.0) == (0.0, l.assembly()) { 0.02 } else { root };
             assert!(wanted - got.distance <= gap, "{l}: {} for {wanted}", got.distance);
         }
@@ -393,7 +394,11 @@ fn a_point_of_the_curve_is_at_distance_zero() {
             let nearest = CouplerCurve::through(&l, phi, t1, 720).nearest(p).unwrap();
             // Golden section stops at the root of eps of the squared distance: 1e-8 of the curve's speed at
             // most.
-            assert!(nearest.distance <= 1e-7 * reference::scale(&l), "{l} at {phi}: {:e}", nearest.distance);
+            assert!(
+                nearest.distance <= 1e-7 * crate::reference::scale(&l),
+                "{l} at {phi}: {:e}",
+                nearest.distance
+            );
         }
     }
 }
@@ -456,7 +461,7 @@ fn a_circuit_comes_round_to_where_it_began() {
                 assert_eq!(l.mobility().branch(at, assembly).circuit, circuit, "{l} stays on its circuit");
                 let (here, again) = (curve.point_at(tau), curve.point_at(tau + TAU));
                 if let (Some(here), Some(again)) = (here, again) {
-                    assert!((here - again).norm() <= 1e-6 * reference::scale(&l), "{l} at {tau}");
+                    assert!((here - again).norm() <= 1e-6 * crate::reference::scale(&l), "{l} at {tau}");
                 }
             }
         }

@@ -2,15 +2,12 @@
 //! made from the figures that the library computes, so it cannot go stale: this test makes it again and
 //! compares. To write it after a change of wording: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test seeds_document`.
 
-mod common;
-mod reference;
-
+use crate::reference::shipped_linkage;
 use linkwright::linkage::loop_closure::{
     Arctangent, IterationOptions, IterationVerdict, LoopRoots, Singularity,
 };
 use linkwright::linkage::motion::{CrankMotion, LinkageMotion, Motion};
 use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
-use reference::shipped_linkage;
 use std::fmt::Write;
 
 const HEAD: &str = "\
@@ -18,7 +15,7 @@ const HEAD: &str = "\
 
 Three papers stand at the beginning of this project. Every example in them is computed here again; where a
 table is wrong, the right value stands beside it. This page is made from the library's own figures and compared
-by a test (`tests/seeds_document.rs`), so it says what the program does.
+by a test (`tests/tool/seeds_document.rs`), so it says what the program does.
 
 - **De Castro**: C. A. De Castro, *Analisis de posicion, velocidad y aceleracion de mecanismos de 4 barras por
   metodos analiticos-numericos* (vector loop, fixed-point iteration; examples 2.1 to 4.2).
@@ -293,7 +290,7 @@ fn the_seed_papers_page_says_what_the_library_computes() {
     de_castro(&mut page);
     romero(&mut page);
     utp(&mut page);
-    let path = common::root().join("docs/seeds.md");
+    let path = crate::common::root().join("docs/seeds.md");
     if std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some() {
         std::fs::write(&path, &page).expect("the page can be written");
     }

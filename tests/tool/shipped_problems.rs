@@ -1,8 +1,6 @@
 //! Every file in `problems/` loads, says the same again, and can be written and read back.
 
-mod common;
-
-use common::{bytes, load, run_on, shipped};
+use crate::common::{bytes, load, run_on, shipped};
 use linkwright::linkage_file;
 use linkwright::problem::spec::ProblemSpec;
 use linkwright::record::Record;
@@ -47,7 +45,7 @@ fn every_four_bar_linkage_file_survives_a_round_trip() {
 
 #[test]
 fn a_record_reads_back_to_the_same_bytes() {
-    let record = run_on(1, common::literature("e5", &[]));
+    let record = run_on(1, crate::common::literature("e5", &[]));
     let text = bytes(&record);
     let again: Record = serde_json::from_str(&text).expect("it reads back");
     assert_eq!(bytes(&again), text);

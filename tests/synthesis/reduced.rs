@@ -1,8 +1,6 @@
 //! The population searches in reduced variables: what is found, how much cheaper, and when they are refused.
 
-mod common;
-
-use common::{bytes, literature, parse, run_on};
+use crate::common::{bytes, literature, parse, run_on};
 use linkwright::linkage::{AssemblyMode, CouplerSide};
 use linkwright::problem::Problem;
 use linkwright::problem::design_space::Shape;

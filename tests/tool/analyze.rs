@@ -1,9 +1,7 @@
 //! `analyze` and `cognates` as a person meets them.
 
-mod common;
-
+use crate::common::root;
 use assert_cmd::Command;
-use common::root;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

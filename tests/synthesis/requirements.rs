@@ -1,8 +1,6 @@
 //! What is required is held by the search, and what the search calls accepted the referee accepts.
 
-mod common;
-
-use common::{parse, run_on};
+use crate::common::{parse, run_on};
 use linkwright::record::{Figure, Record};
 use linkwright::verify::verify;
 use proptest::prelude::*;

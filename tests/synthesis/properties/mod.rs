@@ -1,14 +1,10 @@
 //! What is called accepted is acceptable: random targets under random requirements, each record verified and
 //! each accepted candidate checked again by code that shares nothing with the judge.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod plain;
 mod problems;
-#[path = "../common/random.rs"]
-mod random;
 
-use common::{bytes, run_on};
+use crate::common::{bytes, run_on};
 use linkwright::linkage::LinkageType;
 use linkwright::problem::spec::{
     DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,

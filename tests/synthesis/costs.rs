@@ -1,8 +1,6 @@
 //! What requirements cost: the multipliers against solving again at moved limits, and what the record says.
 
-mod common;
-
-use common::{bytes, literature, load, root, run_on};
+use crate::common::{bytes, literature, load, root, run_on};
 use linkwright::problem::Problem;
 use linkwright::problem_file::ProblemFile;
 use linkwright::record::{Candidate, Cost};

@@ -3,14 +3,12 @@
 //! The brute-force judge floods the configuration curve on a grid and calls points in order when, read once
 //! around, the way along the circuit falls (or rises) at most once.
 
-mod reference;
-
+use crate::reference::{Draws, Flooded, linkage, position, transmission};
 use linkwright::linkage::{
     AssemblyMode, Complex, CouplerSide, FourBar, InputRange, LinkageType, NaturalCoordinates,
 };
 use linkwright::task::referee::judge;
 use linkwright::task::{AngleOffset, Defect, PathOptions, PathTask, Timing, Verdict};
-use reference::{Draws, Flooded, linkage, position, transmission};
 use std::f64::consts::{PI, TAU};
 
 /// n distinct points; with `repeated` the last is the first.
@@ -457,7 +455,10 @@ fn the_footprint_holds_every_joint_of_the_motion_and_no_more() {
                 let outward = if side < 2 { -1.0 } else { 1.0 };
                 let more = outward * (got[side] - wanted[side]);
                 // Never inside of a sample, and outside of all by what lies between five thousand of them.
-                assert!((-1e-9..=1e-4 * reference::scale(&l)).contains(&more), "{l}: side {side}: {more:e}");
+                assert!(
+                    (-1e-9..=1e-4 * crate::reference::scale(&l)).contains(&more),
+                    "{l}: side {side}: {more:e}"
+                );
             }
         }
     }
@@ -477,7 +478,7 @@ fn the_motion_passes_the_points_and_stays_between_them() {
         for &(phi, t1) in &chosen {
             let p = l.position_with(phi, t1).joints().unwrap().coupler_point;
             let nearest = joints.iter().map(|j| (j.coupler_point - p).norm()).fold(f64::MAX, f64::min);
-            assert!(nearest <= 0.01 * reference::scale(&l), "{l}: the motion misses {p} by {nearest}");
+            assert!(nearest <= 0.01 * crate::reference::scale(&l), "{l}: the motion misses {p} by {nearest}");
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The seeds' other position methods beside the natural coordinates, and where each of them ends.
 
-mod reference;
-
+use crate::reference::{
+    Draws, any_linkage, cases, closed_position, linkage, rounding, scale, shipped_linkage,
+};
 use linkwright::linkage::assembly_condition::AssemblyCondition;
 use linkwright::linkage::loop_closure::{
     Arctangent, Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity,
@@ -9,7 +10,6 @@ use linkwright::linkage::loop_closure::{
 use linkwright::linkage::mobility::wrapped;
 use linkwright::linkage::{AssemblyMode, Complex, FourBar, LinkageType, cross};
 use proptest::prelude::*;
-use reference::{Draws, any_linkage, cases, closed_position, linkage, rounding, scale, shipped_linkage};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 const BOTH: [AssemblyMode; 2] = [AssemblyMode::Plus, AssemblyMode::Minus];
@@ -61,7 +61,7 @@ proptest! {
         let run = l.close_by_iteration(phi, &options);
         let Some(root) = run.root() else { return Err(TestCaseError::fail(format!("{run:?}"))) };
         let wanted = l.position_with(phi, root.assembly).joints().expect("closed");
-        let sine = reference::transmission(wanted.crank_pin, wanted.follower_pin, l.follower_pivot()).sin();
+        let sine = crate::reference::transmission(wanted.crank_pin, wanted.follower_pin, l.follower_pivot()).sin();
         let slack = rounding(&l, phi, root.assembly)[0] + 2.0 * l.coupler() * 1e-12 / (sine * sine);
         prop_assert!((root.joints.follower_pin - wanted.follower_pin).norm() <= slack);
         prop_assert!(run.iterations < 10_000 && run.step <= 1e-12);
@@ -69,7 +69,7 @@ proptest! {
 
     #[test]
     fn no_method_closes_a_loop_that_is_open(l in any_linkage(), phi in -7.0..7.0f64) {
-        let s = reference::diagonal(&l, phi);
+        let s = crate::reference::diagonal(&l, phi);
         let (b, c) = (l.coupler(), l.follower());
         let missing = ((b - c).abs() - s).max(s - b - c);
         prop_assume!(missing > 1e-3 * scale(&l));
@@ -84,7 +84,7 @@ proptest! {
 
     #[test]
     fn the_sufficient_condition_is_the_one_that_closes(l in any_linkage(), phi in -7.0..7.0f64) {
-        let s = reference::diagonal(&l, phi);
+        let s = crate::reference::diagonal(&l, phi);
         let (b, c) = (l.coupler(), l.follower());
         prop_assume!((s - (b - c).abs()).abs().min((b + c - s).abs()) > 1e-10 * scale(&l));
         let condition = l.assembly_condition(phi).expect("C is off B");
@@ -105,8 +105,8 @@ fn methods_agree_on_linkages_of_every_type() {
             let phi = f64::from(i) * PI / 18.0 + 0.011;
             for assembly in BOTH {
                 let Some(wanted) = l.position_with(phi, assembly).joints() else { continue };
-                let Some([c, d, _]) = reference::position(&l, phi, assembly) else { continue };
-                if reference::transmission(c, d, l.follower_pivot()).sin() < 0.01 {
+                let Some([c, d, _]) = crate::reference::position(&l, phi, assembly) else { continue };
+                if crate::reference::transmission(c, d, l.follower_pivot()).sin() < 0.01 {
                     continue;
                 }
                 let [pin, _] = rounding(&l, phi, assembly);
@@ -208,7 +208,7 @@ fn a_loop_that_cannot_close_settles_on_a_false_point() {
     let run = iterate(&l, 3.0, 50.0);
     assert_eq!(run.verdict, IterationVerdict::FalsePoint, "{run:?}");
     // s = |CB| is about 9; b + c = 6: three units are missing.
-    assert!((run.residual - (reference::diagonal(&l, 3.0) - 6.0)).abs() <= 1e-9);
+    assert!((run.residual - (crate::reference::diagonal(&l, 3.0) - 6.0)).abs() <= 1e-9);
 }
 
 #[test]

@@ -1,0 +1,13 @@
+//! Positions, motion, mobility, curves, chains and the referee, against reference implementations.
+
+mod chain;
+mod cognates;
+mod gradients;
+mod literature;
+mod loop_closure;
+mod mobility;
+mod motion;
+mod position;
+mod referee;
+#[path = "../reference/mod.rs"]
+mod reference;

@@ -1,0 +1,18 @@
+//! Searches: what they find, what a requirement costs, what they say about it.
+
+mod answers;
+#[path = "../common/mod.rs"]
+mod common;
+mod conflicts;
+mod costs;
+mod derivatives;
+mod deviation;
+mod projection;
+mod properties;
+#[path = "../common/random.rs"]
+mod random;
+mod reduced;
+mod requirements;
+mod search;
+mod suite;
+mod timed_search;

@@ -1,0 +1,15 @@
+//! Files, texts, command line, reports: what a user reads and types.
+
+mod analysis_sheets;
+mod analyze;
+mod bad_input;
+mod command_line;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../reference/mod.rs"]
+mod reference;
+mod report;
+mod rooms;
+mod seeds_document;
+mod shipped_problems;
+mod text_in;
