@@ -23,6 +23,7 @@
 //! | [`solve`] | numbers only: populations, Levenberg-Marquardt, convex programs, non-negative least squares, random streams | |
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
+//! | [`exact`] | every linkage through nine precision points | linkage, task |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
@@ -42,6 +43,7 @@ pub mod assess;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod diagnostic;
+pub mod exact;
 mod input_text;
 pub mod linkage;
 pub mod linkage_file;

@@ -1,0 +1,20 @@
+//! Every four-bar linkage whose coupler point passes exactly through nine given points (Alt's problem).
+//!
+//! Points P_0 .. P_8 as complex numbers, delta_j = P_j - P_0. In the frame of P_0 the linkage stands at its first
+//! point with the moving pins x and y and their ground pivots a and b; the coupler has turned by T_j = e^{i theta_j}
+//! when P is at P_j. Each of the two links keeps its length:
+//!
+//! ```text
+//! (x T_j + delta_j - a)(x* / T_j + delta*_j - a*) = (x - a)(x* - a*),      j = 1 .. 8,   the same for (y, b)
+//! ```
+//!
+//! 16 equations in the 16 unknowns x, y, a, b, their starred twins and T_1 .. T_8. Over the complex numbers the twins
+//! are unknowns of their own; in a real linkage they are the conjugates and |T_j| = 1. Generic points have 8652
+//! solutions: 1442 classes of six, three Roberts cognates times two labels of the links.
+//!
+//! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
+//! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
+
+pub mod target;
+
+pub use target::{Displacements, Solution, Target, TargetError};
