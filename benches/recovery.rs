@@ -9,6 +9,7 @@
 //!     --evaluations N     budget of a search (200000)
 //!     --time-limit S      seconds of a search at most (none)
 //!     --order any         the points in any order (required)
+//!     --curve I           curve I of each class alone
 //!     --show              every curve on its own line, with what went wrong
 //! ```
 //!
@@ -83,6 +84,7 @@ struct Arguments {
     time_limit_s: Option<f64>,
     order: OrderPolicy,
     noises: Vec<f64>,
+    only: Option<u64>,
     show: bool,
 }
 
@@ -96,6 +98,7 @@ impl Arguments {
             time_limit_s: None,
             order: OrderPolicy::Required,
             noises: vec![0.0, NOISE],
+            only: None,
             show: false,
         };
         let mut words = std::env::args().skip(1);
@@ -115,6 +118,7 @@ impl Arguments {
                 }
                 "--clean" => arguments.noises = vec![0.0],
                 "--noisy" => arguments.noises = vec![NOISE],
+                "--curve" => arguments.only = Some(value().parse().expect("a whole number")),
                 "--show" => arguments.show = true,
                 other if other.starts_with('-') => panic!("{other} is no argument of this bench"),
                 other => match other.parse() {
@@ -210,7 +214,8 @@ fn median(values: &[f64]) -> f64 {
 fn row(class: &Class, noise: f64, with: &Arguments) {
     let (mut recovered, mut accepted, mut weak) = (0_u64, 0_u64, 0_u64);
     let (mut times, mut evaluations, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    for index in 0..with.count {
+    let curves = with.only.map_or(0..with.count, |only| only..only + 1);
+    for index in curves.clone() {
         let traced = curve(class, with.seed, index);
         let points = if noise > 0.0 {
             // Its own stream: the clean curve is the same with and without.
@@ -248,14 +253,14 @@ fn row(class: &Class, noise: f64, with: &Arguments) {
             println!("  {word} {} {index} ({kind}): {found}; {:.1} ms", class.name, finished.search_s * 1e3);
         }
     }
-    let share = |count: u64| 100.0 * count as f64 / with.count as f64;
+    let share = |count: u64| 100.0 * count as f64 / curves.clone().count() as f64;
     let worst = times.iter().copied().fold(0.0, f64::max);
     let kind = if noise > 0.0 { "1 % noise" } else { "clean" };
     let ratio = if ratios.is_empty() { "-".into() } else { format!("{:.4}", median(&ratios)) };
     println!(
         "| {} | {kind} | {} | {:.1} % | {:.1} % | {ratio} | {weak} | {:.1} | {worst:.1} | {:.0} |",
         class.name,
-        with.count,
+        curves.clone().count(),
         share(recovered),
         share(accepted),
         median(&times),

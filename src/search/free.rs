@@ -336,19 +336,25 @@ fn round(
         if beaten() {
             return spender.round;
         }
-        let start = match setup.coarse {
+        // A better one has been finished, in this round or before it.
+        if setup.single && merit > WORTH_FINISHING * best + setup.exact {
+            continue;
+        }
+        let mut start = match setup.coarse {
             None => start,
             Some(coarse) => match coarse.refine(setup.problem, &start) {
                 Some(start) => start,
                 None => continue,
             },
         };
-        let end = if setup.single && merit > WORTH_FINISHING * best + setup.exact {
-            None
-        } else {
-            spender.fit_on_one_circuit(setup.problem, start.clone(), LAST_FIT)
+        let (merit, start) = match spender.fit_on_one_circuit(setup.problem, start.clone(), LAST_FIT) {
+            Some(end) => end,
+            // Out of budget: as it stands, by its error on all points.
+            None => match promise(setup.problem, &mut start) {
+                Some(merit) => (merit, start),
+                None => continue,
+            },
         };
-        let (merit, start) = end.unwrap_or((merit, start));
         let mut end = End { start, merit, verdict: None };
         if setup.single && merit <= setup.exact {
             let verdict = judged(setup.problem, &end.start);
