@@ -4,7 +4,7 @@
 //! fully, psi of [`InputArc`](super::InputArc) where it rocks (there t1 = sign cos tau, so that both branches
 //! and their toggles are passed smoothly).
 
-use super::{AssemblyMode, Circuit, Complex, FourBar, Mobility, dot};
+use super::{AssemblyMode, Circuit, Complex, FourBar, Mobility, dot, length};
 use std::f64::consts::TAU;
 
 /// How many samples a full circuit gets when nothing else is asked: 0.5 degrees apart.
@@ -65,7 +65,7 @@ impl CouplerCurve {
     /// The length of the closed curve, as the sum of the chords between samples.
     pub fn length(&self) -> f64 {
         let points: Vec<Complex> = self.points().collect();
-        (0..points.len()).map(|i| (points[(i + 1) % points.len()] - points[i]).norm()).sum()
+        (0..points.len()).map(|i| length(points[(i + 1) % points.len()] - points[i])).sum()
     }
 
     /// The nearest point of the curve; `None` for a curve without a point.
@@ -74,7 +74,7 @@ impl CouplerCurve {
     /// longest chord next to it is below the best) is refined by golden section between its neighbours.
     pub fn nearest(&self, to: Complex) -> Option<Nearest> {
         let n = self.samples.len();
-        let distance = |p: Option<Complex>| p.map_or(f64::INFINITY, |p| (p - to).norm());
+        let distance = |p: Option<Complex>| p.map_or(f64::INFINITY, |p| length(p - to));
         let coarse: Vec<f64> = self.samples.iter().map(|&p| distance(p)).collect();
         let best = coarse.iter().copied().fold(f64::INFINITY, f64::min);
         let step = TAU / n as f64;
@@ -82,7 +82,7 @@ impl CouplerCurve {
         for i in 0..n {
             let (before, after) = (coarse[(i + n - 1) % n], coarse[(i + 1) % n]);
             let chord = |j: usize| match (self.samples[i], self.samples[j]) {
-                (Some(p), Some(q)) => (p - q).norm(),
+                (Some(p), Some(q)) => length(p - q),
                 _ => 0.0,
             };
             let reach = chord((i + 1) % n).max(chord((i + n - 1) % n));
@@ -126,7 +126,7 @@ impl CouplerCurve {
             .into_iter()
             .filter_map(|t| {
                 let p = self.point_at(t)?;
-                Some(Nearest { parameter: t, point: p, distance: (p - to).norm() })
+                Some(Nearest { parameter: t, point: p, distance: length(p - to) })
             })
             .min_by(|x, y| x.distance.total_cmp(&y.distance))
     }

@@ -62,6 +62,12 @@ pub fn cross(x: Complex, y: Complex) -> f64 {
     x.re * y.im - x.im * y.re
 }
 
+/// |z| = sqrt(x^2 + y^2), for components between 1e-150 and 1e150; faster than `norm`, which guards all others.
+#[inline(always)]
+pub fn length(z: Complex) -> f64 {
+    z.norm_sqr().sqrt()
+}
+
 /// i z: the vector turned by +90 degrees.
 #[inline(always)]
 pub fn turned(z: Complex) -> Complex {

@@ -8,7 +8,7 @@
 
 use super::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use crate::linkage::{
-    AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, mobility::wrapped, point, xy,
+    AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, mobility::wrapped, point, xy,
 };
 use crate::task::PathTask;
 use std::f64::consts::{PI, TAU};
@@ -71,7 +71,7 @@ impl Shape {
 
     /// ground, a, b, c.
     pub fn links(&self) -> [f64; 4] {
-        [(self.follower_pivot - self.crank_pivot).norm(), self.crank, self.coupler, self.follower]
+        [length(self.follower_pivot - self.crank_pivot), self.crank, self.coupler, self.follower]
     }
 }
 
@@ -358,12 +358,12 @@ impl DesignSpace {
             GroundChart::Polar => {
                 let (low, high) = self.bounds[3];
                 let middle = if low.is_finite() { 0.5 * (low + high) } else { 0.0 };
-                (ground.norm(), middle + wrapped(ground.arg() - middle))
+                (length(ground), middle + wrapped(ground.arg() - middle))
             }
         };
         let (q_1, q_2) = match self.coupler {
             CouplerChart::Offset => (shape.offset.re, shape.offset.im),
-            CouplerChart::Distances(_) => (shape.offset.norm(), (shape.offset - shape.coupler).norm()),
+            CouplerChart::Distances(_) => (length(shape.offset), length(shape.offset - shape.coupler)),
         };
         let a = shape.crank_pivot;
         [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
@@ -435,6 +435,6 @@ pub fn pivots(shape: &Shape) -> [[f64; 2]; 2] {
 
 /// A direction as a unit vector; the x axis for the zero vector.
 pub fn unit(v: Complex) -> Complex {
-    let length = v.norm();
-    if length > 0.0 { v / length } else { point([1.0, 0.0]) }
+    let long = length(v);
+    if long > 0.0 { v / long } else { point([1.0, 0.0]) }
 }

@@ -15,7 +15,7 @@ use super::design_space::{Derived, DerivedBound, SHAPE, Shape, unit};
 use super::spec::{RequireSpec, TransmissionOver};
 use crate::linkage::gradient::{Frame, shape_gradient};
 use crate::linkage::mobility::{grashof_margin, linkage_type, wrapped};
-use crate::linkage::{AssemblyMode, Complex, FourBar, LinkageType, cross, dot, turned};
+use crate::linkage::{AssemblyMode, Complex, FourBar, LinkageType, cross, dot, length, turned};
 use std::f64::consts::PI;
 
 /// The margin aimed at inside the limits, in parts of the target's size.
@@ -232,13 +232,13 @@ impl Requirements {
                 Derived::CrankSide => {
                     let along = unit(shape.offset);
                     (row[7], row[8]) = (along.re, along.im);
-                    shape.offset.norm()
+                    length(shape.offset)
                 }
                 Derived::FollowerSide => {
                     let from_d = shape.offset - shape.coupler;
                     let along = unit(from_d);
                     (row[5], row[7], row[8]) = (-along.re, along.re, along.im);
-                    from_d.norm()
+                    length(from_d)
                 }
             };
             let margin = if low == high { 0.0 } else { margin };
@@ -302,7 +302,7 @@ impl Requirements {
             let mut row = [0.0; SHAPE];
             (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im);
             row[4] = -dot(along, crank);
-            (v.norm(), row, -dot(along, turned(crank)) * a)
+            (length(v), row, -dot(along, turned(crank)) * a)
         };
         let extremes = match (over, motion) {
             (TransmissionOver::Cycle, _) => [aligned(-1.0), aligned(1.0)],

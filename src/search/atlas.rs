@@ -18,7 +18,7 @@
 //! Both are drawn from a fixed stream, once in a process, when they are first asked for, on all cores.
 
 use super::starts::{Start, Starts, draw_ratios};
-use crate::linkage::mobility::Mobility;
+use crate::linkage::mobility::{Mobility, linkage_type};
 use crate::linkage::{Circuit, Complex, InputArc, LinkageType};
 use crate::problem::linear_fit::{Ratios, coupler_direction};
 use crate::solve::streams::{Stream, below, stream, uniform};
@@ -27,7 +27,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
 /// Entries.
-const ENTRIES: usize = 20_000;
+const ENTRIES: usize = 30_000;
 /// Entries drawn from one stream.
 const CHUNK: usize = 500;
 /// The seed of the atlas: it is the same for every problem and run.
@@ -39,7 +39,7 @@ const EVEN: usize = 32;
 /// Harmonics on each side.
 const HARMONICS: usize = 6;
 /// Entries that are laid onto the target.
-const LAID: usize = 400;
+const LAID: usize = 2400;
 
 type Descriptor = [f32; 2 * HARMONICS];
 
@@ -179,13 +179,40 @@ const KINDS: [LinkageType; 5] = [
     LinkageType::TripleRocker,
 ];
 
+/// Every so many entries almost have a change point: their curves have the sharpest corners.
+const NEAR_CHANGE_POINT_EVERY: usize = 4;
+/// How far from it, in parts of the shortest link.
+const FROM_CHANGE_POINT: (f64, f64) = (1e-4, 0.1);
+
+/// The same links with the longest one changed so that s + l - p - q is almost zero, on either side.
+fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, LinkageType)> {
+    let mut links = [1.0, ratios.crank, ratios.coupler, ratios.follower];
+    let (mut shortest, mut longest) = (0, 0);
+    for i in 1..4 {
+        shortest = if links[i] < links[shortest] { i } else { shortest };
+        longest = if links[i] > links[longest] { i } else { longest };
+    }
+    let off = uniform(stream, FROM_CHANGE_POINT.0.ln(), FROM_CHANGE_POINT.1.ln()).exp();
+    let side = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
+    let others: f64 = links.iter().sum::<f64>() - links[longest] - links[shortest];
+    links[longest] = others - links[shortest] + side * off * links[shortest];
+    let kind = linkage_type(links).filter(|kind| *kind != LinkageType::ChangePoint)?;
+    let ground = links[0];
+    let ratios = Ratios { crank: links[1] / ground, coupler: links[2] / ground, follower: links[3] / ground };
+    Some((ratios, kind))
+}
+
 fn draw(stream: &mut Stream) -> Option<Entry> {
     let kind = KINDS[below(stream, KINDS.len())];
     let assembly = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
     let which = below(stream, 2) as u8;
     let reach = uniform(stream, 0.05_f64.ln(), 3.0_f64.ln()).exp();
     let angle = uniform(stream, -PI, PI);
-    let ratios = draw_ratios(stream, kind)?;
+    let mut ratios = draw_ratios(stream, kind)?;
+    let mut kind = kind;
+    if below(stream, NEAR_CHANGE_POINT_EVERY) == 0 {
+        (ratios, kind) = near_change_point(stream, &ratios)?;
+    }
     let longest = ratios.crank.max(ratios.coupler).max(ratios.follower).max(1.0);
     let offset = Complex::new(0.5 * ratios.coupler, 0.0) + Complex::from_polar(reach * longest, angle);
     let arc = if kind.input_turns_fully() {

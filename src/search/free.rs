@@ -1,8 +1,9 @@
 //! The search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt on the torus,
 //! and a stop when the best answer keeps coming back.
 //!
-//! A *round* takes `SCREEN` drawn starts (for closed targets first the atlas's matches), fits the `SHORT`
-//! most promising for a few steps, the best `MIDDLE` of those on, and finishes those that can still matter.
+//! A *round* takes `SCREEN` drawn starts, or matches of the atlas where the target has points enough, or starts near
+//! known ends and along the differences between them; it fits the `SHORT` most promising for a few steps, the
+//! best `MIDDLE` of those on, and finishes those that can still matter.
 //! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them. Rounds run
 //! side by side in batches of `BATCH` and are read in their order: the number of threads changes nothing but
 //! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
@@ -11,8 +12,8 @@
 //! [`Hits`] says (rounds that start near known ends do not count), or within `NEARLY` from four or more times
 //! as many where it is approached and hardly reached; and either as many distinct answers as were asked for are
 //! known or `QUIET_BATCHES` batches brought no new one. Sparse targets are searched through `LEAST_BATCHES`
-//! batches at least, so that rounds near known ends get their turn. On a dense target the errors that are left
-//! say whether more can be had: noise differs from point to point, while errors of neighbours that are alike are
+//! batches at least, so that rounds near known ends get their turn, dense ones through `DENSE_BATCHES`. On a dense
+//! target the errors that are left say whether more can be had: noise differs from point to point, while errors of neighbours that are alike are
 //! a shape that this linkage does not have and another may; then `PATIENT_BATCHES` batches are searched at
 //! least. An exact answer needs no second hit.
 
@@ -41,10 +42,14 @@ const MATCHED: usize = 48;
 const JITTERED: usize = 40;
 /// Starts fitted for a few steps.
 const SHORT: usize = 16;
-/// Starts fitted on.
+const DENSE_SHORT: usize = 10;
+/// Starts fitted on. On a dense target most lead to the same end: at first one a round, and more rounds.
 const MIDDLE: usize = 3;
+const DENSE_MIDDLE: usize = 1;
 /// Different ends that later rounds start near.
-const LEADING: usize = 8;
+const LEADING: usize = 12;
+/// Ends on the explored points whose merits differ by less than this part are one.
+const DIFFERENT: f64 = 1e-3;
 /// Rounds that run side by side before any is read.
 const BATCH: u64 = 8;
 /// From how many independent rounds the best answer has to come back before it is believed.
@@ -64,6 +69,8 @@ pub const DENSE_HITS: Hits = Hits { same: 4, near: 12 };
 pub const NEARLY: f64 = 1e-3;
 /// Batches at least for a sparse target.
 const LEAST_BATCHES: u64 = 5;
+/// Batches at least for a dense target.
+const DENSE_BATCHES: u64 = 3;
 /// Batches at least for a dense target whose errors are not noise.
 const PATIENT_BATCHES: u64 = 24;
 /// Errors of neighbouring points that are more alike than this are not noise.
@@ -110,6 +117,10 @@ struct Round {
     explored: f64,
     /// The ends on the explored points.
     leaders: Vec<(f64, Start)>,
+    /// The merits on the explored points and on all of them of what it finished.
+    finished: Vec<(f64, f64)>,
+    /// The merits on all points of ends that it met again and did not finish a second time.
+    met_again: Vec<f64>,
     /// It started from nothing that other rounds have found.
     independent: bool,
     /// It met an exact, accepted answer.
@@ -134,8 +145,17 @@ struct Stage<'a> {
     bar: f64,
     /// The best different ends on the explored points.
     leading: Vec<(f64, Start)>,
+    /// The merits on the explored points and on all of them of what has been finished.
+    finished: Vec<(f64, f64)>,
     /// Rounds so far.
     index: u64,
+}
+
+/// What earlier batches of a stage know.
+struct Known<'a> {
+    bar: f64,
+    near_ends: &'a [Start],
+    finished: &'a [(f64, f64)],
 }
 
 /// Which round it is: of the whole search, for its random stream, and of its stage.
@@ -242,6 +262,38 @@ fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Option<Start> {
     fit.settle(&start.design, &mut start.positions).then_some(start)
 }
 
+/// A start near a known end in the direction in which two others differ, in design and positions: what the ends of
+/// one family have in common is kept, as in differential evolution (Storn and Price 1997).
+fn along_a_difference(
+    problem: &Problem,
+    [end, one, other]: [&Start; 3],
+    stream: &mut Stream,
+) -> Option<Start> {
+    let part = uniform(stream, DIFFERENCE.0, DIFFERENCE.1);
+    let fit = TorusFit::new(problem, end.setting);
+    let mut start = end.clone();
+    for (i, (value, &(low, high))) in start.design.iter_mut().zip(fit.space().bounds()).enumerate() {
+        let step = if fit.space().is_length(i) && *value > 0.0 && one.design[i] > 0.0 && other.design[i] > 0.0
+        {
+            *value * ((one.design[i] / other.design[i]).powf(part) - 1.0)
+        } else {
+            part * (one.design[i] - other.design[i])
+        };
+        *value = (*value + step).max(low).min(high);
+    }
+    for (position, (ahead, behind)) in
+        start.positions.iter_mut().zip(one.positions.iter().zip(&other.positions))
+    {
+        for (direction, (to, from)) in position.iter_mut().zip(ahead.iter().zip(behind)) {
+            *direction *= Complex::from_polar(1.0, part * (to * from.conj()).arg());
+        }
+    }
+    fit.settle(&start.design, &mut start.positions).then_some(start)
+}
+
+/// The part of a difference that is added.
+const DIFFERENCE: (f64, f64) = (-1.0, 1.0);
+
 /// Random steps away from a known end, in parts of a length or of the target's size.
 const JITTER: (f64, f64) = (0.01, 0.5);
 
@@ -249,7 +301,7 @@ fn round(
     setup: &Setup<'_>,
     Place { stream: of_search, index }: Place,
     allowance: u64,
-    (bar, known): (f64, &[Start]),
+    known: &Known<'_>,
     budget: &Budget<'_>,
     found: &AtomicU64,
 ) -> Round {
@@ -260,7 +312,9 @@ fn round(
         positions: 0,
         explored: f64::INFINITY,
         leaders: Vec::new(),
-        independent: known.is_empty() || index.is_multiple_of(2),
+        finished: Vec::new(),
+        met_again: Vec::new(),
+        independent: known.near_ends.is_empty() || index.is_multiple_of(2),
         exact: false,
     };
     let mut spender = Spender { round: nothing, allowance, budget };
@@ -281,18 +335,32 @@ fn round(
             drawn.push((promise, start));
         }
     };
-    // Every other round takes matches, as long as there are any.
-    let first = index as usize / 2 * MATCHED;
+    // Of three independent rounds two take matches, as long as there are any.
+    let turn = index as usize / 2;
+    let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, of_search);
     if !spender.round.independent {
-        let end = &known[(index / 2) as usize % known.len()];
-        for _ in 0..JITTERED {
-            if spender.left() > 0 {
-                take(&mut spender, near(explored, end, &mut draws));
+        let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
+        for i in 0..JITTERED {
+            if spender.left() == 0 {
+                break;
             }
+            let mut other =
+                || &known.near_ends[uniform(&mut draws, 0.0, known.near_ends.len() as f64) as usize];
+            let (one, other) = (other(), other());
+            let start = if i % 2 == 1
+                && one.setting.side == other.setting.side
+                && one.setting.side == end.setting.side
+            {
+                along_a_difference(explored, [end, one, other], &mut draws)
+            } else {
+                near(explored, end, &mut draws)
+            };
+            take(&mut spender, start);
         }
     } else {
-        match setup.matches.as_ref().filter(|matches| index.is_multiple_of(2) && first < matches.len()) {
+        let matched = index.is_multiple_of(2) && turn % 3 < 2;
+        match setup.matches.as_ref().filter(|matches| matched && first < matches.len()) {
             Some(matches) => {
                 for rank in first..(first + MATCHED).min(matches.len()) {
                     if spender.left() > 0 {
@@ -309,14 +377,16 @@ fn round(
             }
         }
     }
-    by_merit(&mut drawn, SHORT);
+    let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
+    let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
+    by_merit(&mut drawn, shorts);
     let spare = drawn.first().cloned();
-    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
     for (_, start) in drawn {
         fitted.extend(spender.fit(explored, start, SHORT_FIT));
     }
-    by_merit(&mut fitted, MIDDLE);
-    let mut middle: Vec<(f64, Start)> = Vec::with_capacity(MIDDLE);
+    by_merit(&mut fitted, middles);
+    let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
     for (merit, start) in fitted {
         if beaten() {
             return spender.round;
@@ -328,10 +398,10 @@ fn round(
     if middle.is_empty() {
         middle.extend(spare);
     }
-    by_merit(&mut middle, MIDDLE);
+    by_merit(&mut middle, middles);
     spender.round.explored = middle.first().map_or(f64::INFINITY, |(merit, _)| *merit);
     spender.round.leaders = middle.clone();
-    let best = spender.round.explored.min(bar);
+    let best = spender.round.explored.min(known.bar);
     for (merit, start) in middle {
         if beaten() {
             return spender.round;
@@ -340,6 +410,12 @@ fn round(
         if setup.single && merit > WORTH_FINISHING * best + setup.exact {
             continue;
         }
+        let same = |(explored, _): &&(f64, f64)| (explored - merit).abs() <= SAME_OPTIMUM * merit;
+        if let Some((_, whole)) = known.finished.iter().find(same).filter(|_| setup.coarse.is_some()) {
+            spender.round.met_again.push(*whole);
+            continue;
+        }
+        let explored = merit;
         let mut start = match setup.coarse {
             None => start,
             Some(coarse) => match coarse.refine(setup.problem, &start) {
@@ -355,6 +431,7 @@ fn round(
                 None => continue,
             },
         };
+        spender.round.finished.push((explored, merit));
         let mut end = End { start, merit, verdict: None };
         if setup.single && merit <= setup.exact {
             let verdict = judged(setup.problem, &end.start);
@@ -390,6 +467,7 @@ pub(super) fn search(
         setup: Setup { problem, coarse, starts, matches: matches(starts), single: wanted == 1, exact },
         bar: f64::INFINITY,
         leading: Vec::new(),
+        finished: Vec::new(),
         index: 0,
     };
     let mut stages = vec![stage(coarse.as_ref(), grouped.as_ref().unwrap_or(&whole))];
@@ -417,37 +495,42 @@ pub(super) fn search(
             stages.push(stage(None, &whole));
         }
         let turn = batch as usize % stages.len();
-        let Stage { setup, bar, leading, index } = &mut stages[turn];
+        let Stage { setup, bar, leading, finished, index } = &mut stages[turn];
         let near_ends = leading.iter().map(|(_, start)| start.clone()).collect::<Vec<_>>();
+        let so_far = Known { bar: *bar, near_ends: &near_ends, finished };
         let found = AtomicU64::new(u64::MAX);
         let first = batch * BATCH;
         let rounds: Vec<Round> = (0..BATCH)
             .into_par_iter()
             .map(|i| {
                 let place = Place { stream: first + i, index: *index + i };
-                round(setup, place, allowance(i), (*bar, &near_ends), budget, &found)
+                round(setup, place, allowance(i), &so_far, budget, &found)
             })
             .collect();
         batch += 1;
         *index += BATCH;
+        let mut finished_now = Vec::new();
         for round in rounds {
             draws += round.draws;
             *bar = bar.min(round.explored);
             for (merit, start) in round.leaders {
-                if leading.iter().all(|(other, _): &(f64, Start)| (merit - other).abs() > 1e-3 * other) {
+                if leading.iter().all(|(other, _): &(f64, Start)| (merit - other).abs() > DIFFERENT * other) {
                     leading.push((merit, start));
                 }
             }
             local.evaluations.objective += round.evaluations;
             local.evaluations.positions += round.positions;
             if round.independent {
-                best_merits.push(round.ends.iter().map(|end| end.merit).fold(f64::INFINITY, f64::min));
+                let merits = round.ends.iter().map(|end| end.merit).chain(round.met_again);
+                best_merits.push(merits.fold(f64::INFINITY, f64::min));
             }
+            finished_now.extend(round.finished);
             ends.extend(round.ends);
             if round.exact {
                 break;
             }
         }
+        finished.extend(finished_now);
         by_merit(leading, LEADING);
         ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
         // Of what the referee has refused, a part is enough: it must not crowd out the accepted.
@@ -483,7 +566,7 @@ pub(super) fn search(
             let least = match &coarse {
                 _ if is_exact => 0,
                 None => LEAST_BATCHES,
-                Some(_) if likeness(problem, best) < ALIKE => 0,
+                Some(_) if likeness(problem, best) < ALIKE => DENSE_BATCHES,
                 Some(_) => PATIENT_BATCHES,
             };
             if (believed && batch >= least) || (is_exact && wanted == 1) {

@@ -23,6 +23,7 @@ pub(super) struct Workspace<const N: usize> {
     pub(super) tau: Vec<f64>,
     pub(super) gaps: Vec<f64>,
     pub(super) order: Ordered,
+    rows: Rows<N>,
 }
 
 impl<const N: usize> Workspace<N> {
@@ -34,6 +35,7 @@ impl<const N: usize> Workspace<N> {
             tau: vec![0.0; points],
             gaps: Vec::with_capacity(points),
             order: Ordered::new(points),
+            rows: Rows::new(),
         }
     }
 
@@ -150,7 +152,74 @@ impl<const N: usize> Workspace<N> {
     }
 }
 
-#[inline(always)]
+/// Lanes that a sum of products runs in.
+const LANES: usize = 8;
+
+/// Rows of a Jacobian with their residuals, a block of [`LANES`] rows after the other and a column after the other
+/// in a block; what is missing in the last block is zero.
+pub(super) struct Rows<const N: usize> {
+    jacobian: Vec<[[f64; LANES]; N]>,
+    residual: Vec<[f64; LANES]>,
+    count: usize,
+}
+
+impl<const N: usize> Rows<N> {
+    fn new() -> Self {
+        Rows { jacobian: Vec::new(), residual: Vec::new(), count: 0 }
+    }
+
+    fn clear(&mut self) {
+        self.jacobian.clear();
+        self.residual.clear();
+        self.count = 0;
+    }
+
+    #[inline(always)]
+    fn push(&mut self, row: impl Fn(usize) -> f64, residual: f64) {
+        let lane = self.count % LANES;
+        if lane == 0 {
+            self.jacobian.push([[0.0; LANES]; N]);
+            self.residual.push([0.0; LANES]);
+        }
+        self.count += 1;
+        if let (Some(block), Some(residuals)) = (self.jacobian.last_mut(), self.residual.last_mut()) {
+            for (i, column) in block.iter_mut().enumerate() {
+                column[lane] = row(i);
+            }
+            residuals[lane] = residual;
+        }
+    }
+
+    /// J^T J and J^T r. Each sum runs in [`LANES`] lanes whatever the machine has, so its rounding is the same
+    /// everywhere.
+    #[inline(always)]
+    fn squared(&self) -> ([[f64; N]; N], [f64; N]) {
+        let mut matrix = [[0.0; N]; N];
+        let mut gradient = [0.0; N];
+        for i in 0..N {
+            let mut sums = [[0.0; LANES]; N];
+            let mut by_residual = [0.0; LANES];
+            for (block, residual) in self.jacobian.iter().zip(&self.residual) {
+                let column = &block[i];
+                for k in i..N {
+                    for lane in 0..LANES {
+                        sums[k][lane] += column[lane] * block[k][lane];
+                    }
+                }
+                for lane in 0..LANES {
+                    by_residual[lane] += column[lane] * residual[lane];
+                }
+            }
+            for k in i..N {
+                matrix[i][k] = sums[k].iter().sum();
+                matrix[k][i] = matrix[i][k];
+            }
+            gradient[i] = by_residual.iter().sum();
+        }
+        (matrix, gradient)
+    }
+}
+
 fn add_row<const N: usize>(
     matrix: &mut [[f64; N]; N],
     gradient: &mut [f64; N],
@@ -185,59 +254,61 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
         work.own_steps(nu);
         work.order.pool(&work.gaps, &mut work.tau, &work.stiffness);
     }
-    let mut matrix = [[0.0; N]; N];
-    let mut gradient = [0.0; N];
     let mut tangent_sum = 0.0;
-    problem.wide(
-        #[inline(always)]
-        || {
-            for (index, block) in work.blocks.iter().enumerate() {
-                let t = block.tangent;
-                let t_sq = t[0] * t[0] + t[1] * t[1];
-                tangent_sum += t_sq;
-                if ordered && !work.order.is_alone(index) {
-                    continue;
-                }
-                let (r, j) = (&block.residual, &block.jacobian);
-                if t_sq == 0.0 {
-                    add_row(&mut matrix, &mut gradient, block.weight, &j[0], r[0]);
-                    add_row(&mut matrix, &mut gradient, block.weight, &j[1], r[1]);
-                    continue;
-                }
-                let length = t_sq.sqrt();
-                let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
-                let mut row = [0.0; N];
-                for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
-                    for i in 0..N {
-                        row[i] = axis[0] * j[0][i] + axis[1] * j[1][i];
-                    }
-                    let residual = axis[0] * r[0] + axis[1] * r[1];
-                    add_row(&mut matrix, &mut gradient, block.weight * weight, &row, residual);
-                }
-            }
-        },
-    );
+    let Workspace { blocks, rows, order, stiffness, .. } = work;
+    rows.clear();
+    for (index, block) in blocks.iter().enumerate() {
+        let t = block.tangent;
+        let t_sq = t[0] * t[0] + t[1] * t[1];
+        tangent_sum += t_sq;
+        if ordered && !order.is_alone(index) {
+            continue;
+        }
+        let (r, j) = (&block.residual, &block.jacobian);
+        if t_sq == 0.0 {
+            let scale = block.weight.sqrt();
+            rows.push(|i| scale * j[0][i], scale * r[0]);
+            rows.push(|i| scale * j[1][i], scale * r[1]);
+            continue;
+        }
+        let length = t_sq.sqrt();
+        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+            let scale = (block.weight * weight).sqrt();
+            let axis = [scale * axis[0], scale * axis[1]];
+            rows.push(|i| axis[0] * j[0][i] + axis[1] * j[1][i], axis[0] * r[0] + axis[1] * r[1]);
+        }
+    }
+    let mut eliminated = Vec::new();
     if ordered {
-        for pool in work.order.pools() {
+        for pool in order.pools() {
             // r_j + t_j m_j + J_j dx + t_j tau with the way m_j to the common place and one tau for all.
             let mut by_tau = [0.0; N];
-            let (mut along, mut stiffness) = (0.0, 0.0);
+            let (mut along, mut stiff) = (0.0, 0.0);
             for &(index, way) in pool {
-                let block = &work.blocks[index];
+                let block = &blocks[index];
                 let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
                 let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
-                add_row(&mut matrix, &mut gradient, w, &j[0], r[0]);
-                add_row(&mut matrix, &mut gradient, w, &j[1], r[1]);
+                let scale = w.sqrt();
+                rows.push(|i| scale * j[0][i], scale * r[0]);
+                rows.push(|i| scale * j[1][i], scale * r[1]);
                 for i in 0..N {
                     by_tau[i] += w * (t[0] * j[0][i] + t[1] * j[1][i]);
                 }
                 along += w * (t[0] * r[0] + t[1] * r[1]);
-                stiffness += work.stiffness[index];
+                stiff += stiffness[index];
             }
-            if stiffness > 0.0 {
-                add_row(&mut matrix, &mut gradient, -1.0 / stiffness, &by_tau, along);
+            if stiff > 0.0 {
+                eliminated.push((stiff, by_tau, along));
             }
         }
+    }
+    let (mut matrix, mut gradient) = problem.wide(
+        #[inline(always)]
+        || rows.squared(),
+    );
+    for (stiff, by_tau, along) in &eliminated {
+        add_row(&mut matrix, &mut gradient, -1.0 / stiff, by_tau, *along);
     }
     let mut i = 0;
     work.lacking.clear();
