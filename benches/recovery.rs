@@ -162,6 +162,7 @@ fn problem(class: &Class, traced: &Traced, points: &[Complex], seed: u64, with: 
                 weight: None,
                 tolerance: None,
                 timing: None,
+                raw: None,
             },
         },
         design: DesignSpec {
