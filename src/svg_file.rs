@@ -14,6 +14,7 @@ use crate::diagnostic::Diagnostic;
 use crate::input_text;
 use crate::linkage::MAX_MAGNITUDE;
 use crate::record::Unit;
+use std::borrow::Cow;
 use std::path::Path;
 
 /// How many points a drawing gives where nothing is said.
@@ -24,6 +25,9 @@ pub const MAX_ELEMENTS: u32 = 200_000;
 pub const MAX_DEPTH: usize = 128;
 /// The most segments of a shape, arcs counted once.
 pub const MAX_SEGMENTS: usize = 100_000;
+
+/// Begins a document type.
+const DOCTYPE: &str = "<!DOCTYPE";
 
 /// What is wanted of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,8 +95,9 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
         return Err(about("the file is empty".into(), "save the drawing as (plain) SVG"));
     }
     let xml = roxmltree::ParsingOptions { nodes_limit: 4 * MAX_ELEMENTS, ..Default::default() };
+    let plain = without_empty_doctype(text);
     let parsed =
-        roxmltree::Document::parse_with_options(text, xml).map_err(|error| not_xml(file, text, &error))?;
+        roxmltree::Document::parse_with_options(&plain, xml).map_err(|error| not_xml(file, text, &error))?;
     let mut document = document::Document::new(file, text, &parsed)?;
     let chosen = document.target(options.id)?;
     let scale = match (document.physical(), options.unit.unwrap_or(Unit::Mm)) {
@@ -134,6 +139,24 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
     })
 }
 
+/// The text with blanks in the place of a document type that declares nothing (`<!DOCTYPE svg PUBLIC ..>`, as many
+/// programs write it). One with declarations stays and is refused.
+fn without_empty_doctype(text: &str) -> Cow<'_, str> {
+    let found = text.find(DOCTYPE).and_then(|start| {
+        let end = start + text.get(start..)?.find('>')? + 1;
+        (!text.get(start..end)?.contains('[')).then_some(start..end)
+    });
+    match found {
+        None => Cow::Borrowed(text),
+        Some(range) => {
+            // Every byte keeps its place, and every line its number.
+            let blank: String =
+                text[range.clone()].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }).collect();
+            Cow::Owned(format!("{}{blank}{}", &text[..range.start], &text[range.end..]))
+        }
+    }
+}
+
 /// What the XML reader says, in a designer's words.
 fn not_xml(file: &str, text: &str, error: &roxmltree::Error) -> Box<Diagnostic> {
     use roxmltree::Error;
@@ -155,6 +178,10 @@ fn not_xml(file: &str, text: &str, error: &roxmltree::Error) -> Box<Diagnostic> 
             (format!("the drawing is no XML: {words}"), "save the drawing again as (plain) SVG")
         }
     };
+    if let (Error::DtdDetected, Some(start)) = (error, text.find(DOCTYPE)) {
+        let place = start..start + DOCTYPE.len();
+        return Box::new(Diagnostic::new(file, text, message).at(place).with_help(help));
+    }
     let place = error.pos();
     let line_start: usize =
         text.split_inclusive('\n').take((place.row as usize).saturating_sub(1)).map(str::len).sum();

@@ -110,7 +110,7 @@ impl<'a, 'input> Document<'a, 'input> {
                 let page = self.page;
                 let transform = page.affine * self.transform_of(&self.root)?;
                 for child in self.root.children() {
-                    self.visit(child, transform, page.extent, 0, &mut shapes)?;
+                    self.visit(child, transform, page.extent, 1, &mut shapes)?;
                 }
             }
             Some(id) => {
@@ -181,6 +181,7 @@ impl<'a, 'input> Document<'a, 'input> {
         } else if name == "use" {
             self.visit_use(&node, transform, extent, depth, shapes)?;
         } else if is_container(name) && (name != "symbol" || depth == 0) {
+            // A symbol shows by a use only, or where it was named itself.
             let (transform, extent) = match name {
                 "svg" | "symbol" => self.inner(&node, transform, extent, (None, None))?,
                 _ => (transform, extent),
@@ -301,9 +302,8 @@ impl<'a, 'input> Document<'a, 'input> {
                 ))
             }
             Err(error) => {
-                let message = format!("this transform cannot be read: {error}");
-                let help = "write transforms such as translate(10 20) rotate(30)";
-                Err(self.at_attribute(node, "transform", message, help))
+                let scope = Scope { file: self.file, text: self.text, node: *node, extent: None };
+                Err(scope.at_error("transform", "transform", &error, "such as translate(10 20) rotate(30)"))
             }
         }
     }

@@ -159,6 +159,28 @@ impl Scope<'_, '_> {
         }
     }
 
+    /// What cannot be read in an attribute, at the character where the reading stopped.
+    pub fn at_error(&self, key: &str, what: &str, error: &svgtypes::Error, example: &str) -> Box<Diagnostic> {
+        use svgtypes::Error::{InvalidChar, InvalidNumber, InvalidString, UnexpectedData};
+        let help = format!("export the drawing again, or write its {what} {example}");
+        let value = self.node.attribute_node(key).map(|a| (a.value(), a.range_value()));
+        let position = match error {
+            UnexpectedData(at) | InvalidChar(_, at) | InvalidString(_, at) | InvalidNumber(at) => Some(*at),
+            _ => None,
+        };
+        // Where the text is as it stands in the file; positions count characters from 1.
+        if let (Some(position), Some((value, range))) = (position, value)
+            && self.text.get(range.clone()) == Some(value)
+            && let Some((start, c)) = value.char_indices().nth(position.saturating_sub(1))
+        {
+            let start = range.start + start;
+            let diagnostic =
+                Diagnostic::new(self.file, self.text, format!("this {what} cannot be read from here on"));
+            return Box::new(diagnostic.at(start..start + c.len_utf8()).with_help(help));
+        }
+        self.at(key, format!("this {what} cannot be read: {error}"), &help)
+    }
+
     /// A length in user units; `axis` says what a percentage is of: x, y or r.
     pub fn length(&self, key: &str, axis: char) -> Answer<Option<f64>> {
         let Some(text) = self.node.attribute(key).filter(|text| text.trim() != "auto") else {
@@ -293,14 +315,8 @@ impl Scope<'_, '_> {
             if i >= MAX_SEGMENTS {
                 return Err(self.too_many());
             }
-            let segment = segment.map_err(|error| {
-                let message = format!("this path cannot be read after {i} commands: {error}");
-                self.at(
-                    "d",
-                    message,
-                    "export the path again, or write its data as SVG 1.1 has it (M 0 0 L 10 5)",
-                )
-            })?;
+            let segment =
+                segment.map_err(|error| self.at_error("d", "path", &error, "such as M 0 0 L 10 5 z"))?;
             pen.draw(segment);
         }
         let mut strokes = pen.strokes.into_iter().filter(|stroke| !stroke.segments.is_empty());
