@@ -123,9 +123,9 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
     };
     let least = if curve.closed() { 3 } else { 2 };
     if options.samples < least {
-        let shape = if curve.closed() { "closed" } else { "open" };
+        let shape = if curve.closed() { "a closed" } else { "an open" };
         return Err(at(
-            format!("samples = {}: a {shape} curve needs at least {least} points", options.samples),
+            format!("samples = {}: {shape} curve needs at least {least} points", options.samples),
             "60 points describe most paths",
         ));
     }

@@ -36,11 +36,11 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     if problem_file::is_drawing(path) {
         let file = problem_file::from_points_file(path, &[])?;
         let drawn = &file.spec.task.path;
-        let shape = if drawn.closed { "closed" } else { "open" };
+        let shape = if drawn.closed { "a closed" } else { "an open" };
         let unit = file.unit.map_or("user units", |unit| unit.label());
         let size = drawn.to_task().map_or(0.0, |task| task.size());
         let summary =
-            format!("a drawing: {} points of a {shape} curve, size {size:.6} {unit}", drawn.points.len());
+            format!("a drawing: {} points of {shape} curve, size {size:.6} {unit}", drawn.points.len());
         return Ok((summary, file.warnings));
     }
     if is_linkage_file(path) {

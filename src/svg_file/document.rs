@@ -303,7 +303,7 @@ impl<'a, 'input> Document<'a, 'input> {
             }
             Err(error) => {
                 let scope = Scope { file: self.file, text: self.text, node: *node, extent: None };
-                Err(scope.at_error("transform", "transform", &error, "such as translate(10 20) rotate(30)"))
+                Err(scope.at_error("transform", "transform", &error, "translate(10 20) rotate(30)"))
             }
         }
     }

@@ -162,7 +162,7 @@ impl Scope<'_, '_> {
     /// What cannot be read in an attribute, at the character where the reading stopped.
     pub fn at_error(&self, key: &str, what: &str, error: &svgtypes::Error, example: &str) -> Box<Diagnostic> {
         use svgtypes::Error::{InvalidChar, InvalidNumber, InvalidString, UnexpectedData};
-        let help = format!("export the drawing again, or write its {what} {example}");
+        let help = format!("export the drawing again; this is how a {what} is written: {example}");
         let value = self.node.attribute_node(key).map(|a| (a.value(), a.range_value()));
         let position = match error {
             UnexpectedData(at) | InvalidChar(_, at) | InvalidString(_, at) | InvalidNumber(at) => Some(*at),
@@ -315,8 +315,7 @@ impl Scope<'_, '_> {
             if i >= MAX_SEGMENTS {
                 return Err(self.too_many());
             }
-            let segment =
-                segment.map_err(|error| self.at_error("d", "path", &error, "such as M 0 0 L 10 5 z"))?;
+            let segment = segment.map_err(|error| self.at_error("d", "path", &error, "M 0 0 L 10 5 z"))?;
             pen.draw(segment);
         }
         let mut strokes = pen.strokes.into_iter().filter(|stroke| !stroke.segments.is_empty());
