@@ -7,6 +7,7 @@
 
 mod arc_length;
 mod document;
+mod pen;
 mod shape;
 mod viewport;
 

@@ -4,12 +4,13 @@
 
 use super::MAX_SEGMENTS;
 use super::arc_length::hull;
+use super::pen::Pen;
 use super::viewport::px_of;
 use crate::diagnostic::{Diagnostic, quoted};
-use kurbo::{Affine, Arc, CubicBez, Line, PathSeg, Point, QuadBez, SvgArc, Vec2};
+use kurbo::{Affine, Arc, CubicBez, Line, PathSeg, Point, SvgArc, Vec2};
 use roxmltree::Node;
 use std::f64::consts::TAU;
-use svgtypes::{Length, LengthUnit, NumberListParser, PathParser, PathSegment};
+use svgtypes::{Length, LengthUnit, NumberListParser, PathParser};
 
 /// How far a cubic may lie from its ellipse, in radii.
 const ARC_TOLERANCE: f64 = 1e-11;
@@ -62,7 +63,7 @@ impl Outline {
 
     /// An elliptical arc of a path (SVG 1.1, F.6): scaled so that its chord is 1, because kurbo's tests for straight
     /// arcs are absolute.
-    fn arc_to(
+    pub fn arc_to(
         &mut self,
         from: Point,
         to: Point,
@@ -326,100 +327,6 @@ impl Scope<'_, '_> {
                 format!("this path has {} separate strokes; a coupler curve is one", more + 1),
                 "break the path apart in your editor (Inkscape: Path > Break Apart) and name one with svg_id",
             )),
-        }
-    }
-}
-
-/// Follows path data (SVG 1.1, 8.3).
-#[derive(Default)]
-struct Pen {
-    strokes: Vec<Outline>,
-    start: Point,
-    at: Point,
-    /// The last control point of a cubic, of a quadratic.
-    cubic: Option<Point>,
-    quadratic: Option<Point>,
-    /// Whether the next command begins a stroke.
-    lifted: bool,
-}
-
-impl Pen {
-    fn stroke(&mut self) -> &mut Outline {
-        if self.lifted || self.strokes.is_empty() {
-            self.strokes.push(Outline::default());
-            self.lifted = false;
-        }
-        let last = self.strokes.len() - 1;
-        &mut self.strokes[last]
-    }
-
-    fn push(&mut self, segment: PathSeg, to: Point) {
-        self.stroke().segments.push(segment);
-        self.at = to;
-    }
-
-    fn line(&mut self, to: Point) {
-        let from = self.at;
-        if to != from {
-            self.push(PathSeg::Line(Line::new(from, to)), to);
-        }
-    }
-
-    fn curve(&mut self, p1: Point, p2: Point, to: Point) {
-        self.push(PathSeg::Cubic(CubicBez::new(self.at, p1, p2, to)), to);
-        self.cubic = Some(p2);
-    }
-
-    fn quad(&mut self, p1: Point, to: Point) {
-        // As a cubic, exactly: one formula for arc lengths.
-        self.push(PathSeg::Cubic(QuadBez::new(self.at, p1, to).raise()), to);
-        self.quadratic = Some(p1);
-    }
-
-    fn draw(&mut self, segment: PathSegment) {
-        let base = self.at;
-        let place = |abs: bool, x: f64, y: f64| {
-            if abs { Point::new(x, y) } else { Point::new(base.x + x, base.y + y) }
-        };
-        let (cubic, quadratic) = (self.cubic.take(), self.quadratic.take());
-        let mirrored = |control: Option<Point>| control.map_or(base, |c| base + (base - c));
-        match segment {
-            PathSegment::MoveTo { abs, x, y } => {
-                self.at = place(abs, x, y);
-                self.start = self.at;
-                self.lifted = true;
-            }
-            PathSegment::LineTo { abs, x, y } => self.line(place(abs, x, y)),
-            PathSegment::HorizontalLineTo { abs, x } => {
-                self.line(Point::new(if abs { x } else { base.x + x }, base.y));
-            }
-            PathSegment::VerticalLineTo { abs, y } => {
-                self.line(Point::new(base.x, if abs { y } else { base.y + y }));
-            }
-            PathSegment::CurveTo { abs, x1, y1, x2, y2, x, y } => {
-                self.curve(place(abs, x1, y1), place(abs, x2, y2), place(abs, x, y));
-            }
-            PathSegment::SmoothCurveTo { abs, x2, y2, x, y } => {
-                self.curve(mirrored(cubic), place(abs, x2, y2), place(abs, x, y));
-            }
-            PathSegment::Quadratic { abs, x1, y1, x, y } => self.quad(place(abs, x1, y1), place(abs, x, y)),
-            PathSegment::SmoothQuadratic { abs, x, y } => self.quad(mirrored(quadratic), place(abs, x, y)),
-            PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
-                let to = place(abs, x, y);
-                if to != base {
-                    self.stroke().arc_to(base, to, Vec2::new(rx, ry), x_axis_rotation, large_arc, sweep);
-                }
-                self.at = to;
-            }
-            PathSegment::ClosePath { .. } => {
-                let start = self.start;
-                self.line(start);
-                if let (false, Some(stroke)) = (self.lifted, self.strokes.last_mut()) {
-                    stroke.closed = true;
-                }
-                self.at = start;
-                self.lifted = true;
-            }
         }
     }
 }
