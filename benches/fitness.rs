@@ -22,7 +22,7 @@ fn problem(n: usize, timed: bool) -> Problem {
         (0..n).map(|i| [2.0 * angle(i).cos() + 0.3 * (2.0 * angle(i)).cos(), angle(i).sin()]).collect();
     let crank_deg = (0..n).map(|i| angle(i).to_degrees()).collect();
     let timing = timed.then_some(TimingSpec { crank_deg, offset: AngleOffset::Free });
-    let path = PathSpec { points, closed: true, weight: None, tolerance: None, timing };
+    let path = PathSpec { points, closed: true, weight: None, tolerance: None, timing, raw: None };
     let task = TaskSpec { path };
     let mut design = DesignSpec::default();
     design.resolve(&task.path.to_task().expect("the target is a path"));

@@ -166,6 +166,7 @@ fn problem(class: &Class, traced: &Traced, points: &[Complex], seed: u64, with: 
                 weight: None,
                 tolerance: None,
                 timing: None,
+                raw: None,
             },
         },
         design: DesignSpec {

@@ -3,11 +3,11 @@
 //! Searches call it to rank, `run` to write the record and `verify` to check one: there is one judge, and it
 //! asks no optimiser.
 
-use crate::linkage::{AssemblyMode, FourBar};
+use crate::linkage::{AssemblyMode, Complex, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Limits, Objective, OnePolicy, OrderPolicy, TransmissionOver};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
-use crate::task::error::rms;
+use crate::task::error::{distances_to_curve, rms};
 use crate::task::referee::{Verdict, judge};
 
 /// A requirement is met within this part of max(1, |limit|).
@@ -91,6 +91,7 @@ pub fn assess_on_curve(
             max_at: error.max_at,
             rms_over_size: rms(error.sum_sq, n) / task.size(),
             to_curve,
+            to_raw: None,
         },
         linkage_type,
         grashof_margin: linkage.grashof_margin(),
@@ -115,6 +116,16 @@ pub fn assess_on_curve(
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
         && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     Some(candidate)
+}
+
+/// The distances from the points as they were given, before smoothing and resampling, to the coupler curve of a
+/// candidate; `None` where the target is those points themselves.
+pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorRecord> {
+    let raw = &problem.spec().task.path.raw.as_ref()?.points;
+    let points: Vec<Complex> = raw.iter().map(|[x, y]| Complex::new(*x, *y)).collect();
+    let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
+    let found = distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)?;
+    Some(CurveErrorRecord { sum_sq: found.sum_sq, rms: rms(found.sum_sq, points.len()), max: found.max })
 }
 
 fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {

@@ -21,7 +21,8 @@
 //! | [`linkage`] | what a four-bar is and where it is: position, gradient, mobility, transmission, curve | |
 //! | [`task`] | what is wanted: paths, timing, errors, the referee | linkage |
 //! | [`solve`] | numbers only: populations, Levenberg-Marquardt, convex programs, non-negative least squares, random streams | |
-//! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve |
+//! | [`resampling`] | digitised points smoothed and spread evenly | |
+//! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`exact`] | every linkage through nine precision points | linkage, task |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
@@ -31,7 +32,7 @@
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
-//! | [`problem_file`], [`points_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
+//! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
@@ -55,12 +56,14 @@ pub mod problem_template;
 pub mod published;
 pub mod record;
 pub mod report;
+pub mod resampling;
 pub mod results_folder;
 pub mod run;
 pub mod schema;
 pub mod search;
 pub mod solve;
 pub mod suite;
+pub mod svg_file;
 pub mod task;
 mod toml_text;
 mod toml_values;

@@ -50,7 +50,7 @@ pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
 pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
-    let header = match table.next_row()? {
+    let header = match table.header()? {
         Some(row) => row,
         None => {
             return Err(
@@ -70,7 +70,10 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         warnings: columns.warnings,
     };
     while let Some(row) = table.next_row()? {
-        if row.cells.len() != header.cells.len() {
+        // Spreadsheets leave empty cells behind, and cells away that nobody reads.
+        let beyond = row.cells.iter().skip(header.cells.len()).any(|cell| !cell.is_empty());
+        let short = columns.place.iter().flatten().any(|place| *place >= row.cells.len());
+        if beyond || short {
             return Err(table.ragged(&row, header.cells.len()));
         }
         if out.points.len() == MAX_POINTS {
@@ -160,6 +163,17 @@ impl<'a> Rows<'a> {
         Rows { file, text, reader }
     }
 
+    /// The first row, after the line `sep=,` that some spreadsheets write above it.
+    fn header(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
+        let first = self.next_row()?;
+        match &first {
+            Some(row) if self.text.get(row.span.clone()).is_some_and(|line| line.trim() == "sep=,") => {
+                self.next_row()
+            }
+            _ => Ok(first),
+        }
+    }
+
     fn next_row(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
         let mut record = csv::StringRecord::new();
         loop {
@@ -176,7 +190,8 @@ impl<'a> Rows<'a> {
             if !blank && !comment {
                 let end = self.reader.position().byte() as usize;
                 let span = row_span(self.text, start, end);
-                return Ok(Some(Row { cells: record.iter().map(str::to_owned).collect(), span }));
+                let cells = record.iter().map(|cell| unquoted(cell).to_owned()).collect();
+                return Ok(Some(Row { cells, span }));
             }
         }
     }
@@ -247,6 +262,12 @@ fn row_span(text: &str, start: usize, end: usize) -> Range<usize> {
         }
         start += line.len();
     }
+}
+
+/// A cell without the quotes that blanks before them have kept: `1, "2"`.
+fn unquoted(cell: &str) -> &str {
+    let inner = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
+    inner.filter(|inner| !inner.contains('"')).map_or(cell, str::trim)
 }
 
 fn is_decimal_comma(cell: &str) -> bool {

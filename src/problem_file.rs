@@ -7,6 +7,7 @@ mod design;
 mod overrides;
 mod path;
 mod raw;
+mod target;
 
 pub(crate) use raw::RawProblem;
 
@@ -27,6 +28,7 @@ use crate::toml_text::TomlText;
 use crate::toml_values::{Corners, Count, OnlyTable};
 use raw::{RawExpect, RawRequire, RawSolve};
 use std::path::Path;
+use target::Whereabouts;
 
 /// The format of problem files that this program reads.
 pub const FORMAT: u64 = 1;
@@ -87,8 +89,26 @@ pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, 
     parse(&path.display().to_string(), &text, Some(folder_of(path)), overrides)
 }
 
+/// The problem of a file, or of a bare CSV of points or SVG drawing, told apart by the name's ending.
+///
+/// # Errors
+/// As [`load`] and [`from_points_file`].
+pub fn load_any(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
+    if is_bare_target(path) { from_points_file(path, overrides) } else { load(path, overrides) }
+}
+
+/// Whether a file is a target by itself: a CSV or an SVG.
+pub fn is_bare_target(path: &Path) -> bool {
+    is_drawing(path) || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
+}
+
+/// Whether a file is an SVG drawing, by the ending of its name.
+pub fn is_drawing(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"))
+}
+
 /// The problem of a text. `file_name` is shown in diagnostics and gives the default name; `folder` is where a
-/// points file is looked for, and without it `file = "..."` is refused.
+/// points file or a drawing is looked for, and without it `file = "..."` is refused.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at what is wrong.
@@ -96,6 +116,22 @@ pub fn parse(
     file_name: &str,
     text: &str,
     folder: Option<&Path>,
+    overrides: &[(String, String)],
+) -> Result<ProblemFile, Box<Diagnostic>> {
+    // What is typed may lead anywhere; what a file says may not.
+    let anywhere = ["file", "svg"].iter().any(|key| is_set(overrides, &format!("task.path.{key}")));
+    parse_at(file_name, text, &Whereabouts { folder, anywhere }, overrides)
+}
+
+/// Whether a key is among the overrides.
+fn is_set(overrides: &[(String, String)], key: &str) -> bool {
+    overrides.iter().any(|(set, _)| set == key)
+}
+
+fn parse_at(
+    file_name: &str,
+    text: &str,
+    whereabouts: &Whereabouts<'_>,
     overrides: &[(String, String)],
 ) -> Result<ProblemFile, Box<Diagnostic>> {
     let plain = TomlText { file: file_name, text: input_text::without_mark(text) };
@@ -111,10 +147,10 @@ pub fn parse(
         None => name::from_file(file_name, "problem"),
         given => checked_name(&toml, given, "problem")?,
     };
-    let mut warnings = Vec::new();
-    let tolerance_is_set = overrides.iter().any(|(key, _)| key == "task.path.tolerance");
+    let tolerance_is_set = is_set(overrides, "task.path.tolerance");
     let path = raw.task.take().and_then(|t| t.0.path).map(|p| p.0);
-    let (path, task) = path::path_of(&toml, path, folder, tolerance_is_set, &mut warnings)?;
+    let path::PathRead { spec: path, task, unit, mut warnings } =
+        path::path_of(&toml, path, whereabouts, raw.unit, tolerance_is_set)?;
     let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
@@ -127,10 +163,11 @@ pub fn parse(
     design.resolve(&task);
     let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
     warnings.extend(variables_of(&toml, &spec)?);
-    Ok(ProblemFile { name, source: raw.source, unit: raw.unit, spec, expect, warnings })
+    let unit = raw.unit.or(unit);
+    Ok(ProblemFile { name, source: raw.source, unit, spec, expect, warnings })
 }
 
-/// A bare file of points as a problem with every default; its name is the file's.
+/// A bare file of points, or a bare drawing, as a problem with every default; its name is the file's.
 ///
 /// # Errors
 /// A [`Diagnostic`] that points at what is wrong.
@@ -141,8 +178,11 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
             Diagnostic::new(shown, "", "the name of this file is not text").with_help("rename the file"),
         ));
     };
-    let text = format!("format = {FORMAT}\n[task.path]\nfile = {}\n", toml::Value::String(file.to_owned()));
-    parse(&shown, &text, Some(folder_of(path)), overrides)
+    let key = if is_drawing(path) { "svg" } else { "file" };
+    let value = toml::Value::String(file.to_owned());
+    let text = format!("format = {FORMAT}\n[task.path]\n{key} = {value}\n");
+    let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true };
+    parse_at(&shown, &text, &whereabouts, overrides)
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -13,8 +13,8 @@ closed = true                   # the path ends where it begins
 tolerance = 0.5                 # the largest error accepted at any point; remove to take the best there is
 ";
 
-/// The text of a problem file called `name`, with sample points or with those of a CSV file that lies beside
-/// it.
+/// The text of a problem file called `name`, with sample points or with those of a CSV file or an SVG drawing (told
+/// apart by the name's ending) that lies beside it.
 ///
 /// # Errors
 /// [`NameError`] when the name is none.
@@ -23,18 +23,38 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
     let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
     let points = match points_file {
         None => SAMPLE_POINTS.to_owned(),
+        Some(file) if crate::problem_file::is_drawing(std::path::Path::new(file)) => format!(
+            "# The curve to trace: the drawing's first path, polyline, polygon, circle or ellipse, as points.\n\
+             svg = {}\n\
+             # svg_id = \"leg\"                # the id of another shape of the drawing\n\
+             samples = 60                    # how many points, evenly by arc length\n\
+             # closed = true                 # where silent, as it is drawn\n\
+             # tolerance = 0.5               # the largest error accepted at any point\n",
+            quoted(file)
+        ),
         Some(file) => format!(
             "# The points to pass, in order: columns x,y and optionally crank_deg, weight, tolerance.\n\
              file = {}\n\
              closed = false                  # true: the path ends where it begins\n\
+             # samples = 60                  # take so many points instead, evenly along the path\n\
+             # smooth = 2                    # smooth digitised points over about this length of path\n\
              # tolerance = 0.5               # the largest error accepted at any point\n",
             quoted(file)
         ),
     };
-    Ok(HEAD.replace("NAME", &quoted(name)) + &points + TAIL)
+    // A drawing may tell its unit itself.
+    let head = match points_file.map(std::path::Path::new) {
+        Some(file) if crate::problem_file::is_drawing(file) => {
+            HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"")
+        }
+        _ => HEAD.to_owned(),
+    };
+    Ok(head.replace("NAME", &quoted(name)) + &points + TAIL)
 }
 
 const HEAD: &str = "\
+#:schema linkwright-problem.schema.json
+# (For editors that complete keys: `linkwright schema problem > linkwright-problem.schema.json` beside this file.)
 # A problem for linkwright: run it with `linkwright synth`, check it with `linkwright check`.
 # Lines that start with # are comments; remove the # to use a key.
 format = 1

@@ -204,6 +204,9 @@ pub struct ErrorRecord {
     pub rms_over_size: f64,
     /// Distances to the whole coupler curve of the circuit, whatever the timing.
     pub to_curve: CurveErrorRecord,
+    /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_raw: Option<CurveErrorRecord>,
 }
 
 /// Distances to the whole coupler curve.

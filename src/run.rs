@@ -1,5 +1,6 @@
 //! One run: a problem in, a record out. This is where the rooms meet.
 
+use crate::assess::to_raw;
 use crate::problem::Problem;
 use crate::problem::spec::ProblemSpec;
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
@@ -72,7 +73,10 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     let search_s = start.elapsed().as_secs_f64();
     costs::attach(&problem, &mut outcome, &budget);
     let explained = conflicts::explain(&problem, &mut outcome, &budget, context.observer)?;
-    let beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    let mut beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
+        candidate.error.to_raw = to_raw(&problem, candidate);
+    }
     let beside_s = start.elapsed().as_secs_f64() - search_s;
     let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
     let record = Record {

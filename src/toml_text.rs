@@ -27,15 +27,9 @@ struct KeyToCome {
 }
 
 const ONLY_PATH: &str = "a problem has one task, and [task.path] is the only kind that is supported";
-const SVG: &str = "a target from an SVG drawing";
-const NO_SVG: &str = "write the points as points = [[x, y], ...] or give file = \"points.csv\"";
-
-const KEYS_TO_COME: [KeyToCome; 5] = [
+const KEYS_TO_COME: [KeyToCome; 2] = [
     KeyToCome { key: "motion", beside: "path", what: "[task.motion]", instead: ONLY_PATH },
     KeyToCome { key: "function", beside: "path", what: "[task.function]", instead: ONLY_PATH },
-    KeyToCome { key: "svg", beside: "points", what: SVG, instead: NO_SVG },
-    KeyToCome { key: "svg_id", beside: "points", what: SVG, instead: NO_SVG },
-    KeyToCome { key: "samples", beside: "points", what: SVG, instead: NO_SVG },
 ];
 
 /// A value that is known and not read yet, and a value that stands beside it.

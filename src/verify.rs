@@ -1,6 +1,6 @@
 //! Is a record true? Every figure and verdict recomputed from its problem and its linkages.
 
-use crate::assess::{MET_TOLERANCE, assess};
+use crate::assess::{MET_TOLERANCE, assess, to_raw};
 use crate::linkage::mobility::wrapped;
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Objective};
@@ -83,12 +83,31 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
         );
     }
     explanation(record, &problem, &mut whole);
+    digitised(&problem, &mut whole);
     for candidate in &record.candidates {
         let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
         against.candidate(&problem, candidate);
     }
     extras::extras(&problem, record, &mut mismatches);
     Ok(mismatches)
+}
+
+/// The target's points are what smoothing and resampling make of the raw ones.
+fn digitised(problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
+    let path = &problem.spec().task.path;
+    let Some(raw) = &path.raw else { return };
+    let found = raw.target(path.closed);
+    let count = |points: &[[f64; 2]]| format!("{} points", points.len());
+    if found.len() != path.points.len() {
+        return differ("problem.resolved.task.path.points", count(&path.points), count(&found));
+    }
+    let reach = path.points.iter().flatten().fold(problem.task().size(), |reach, v| reach.max(v.abs()));
+    let apart = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]);
+    let worst = path.points.iter().zip(&found).map(apart).fold(0.0, f64::max);
+    if worst > RELATIVE * reach {
+        let recorded = "the raw points, smoothed and resampled".into();
+        differ("problem.resolved.task.path.points", recorded, format!("up to {worst:e} away from them"));
+    }
 }
 
 /// A conflict and its relaxations stand only where nothing is acceptable and speak of the problem as it is. (That
@@ -152,6 +171,8 @@ impl Against<'_> {
         let size = problem.task().size();
         // A sum of squares of errors near e changes by 2 e times the change of e.
         let sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (n as f64).sqrt();
+        let raws = problem.spec().task.path.raw.as_ref().map_or(0, |raw| raw.points.len());
+        let raw_sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (raws as f64).sqrt();
         let (r, f) = (&recorded.error, &found.error);
         let objective_scale = match problem.spec().solve.objective {
             Objective::SumOfSquares => sq(f.objective),
@@ -165,6 +186,18 @@ impl Against<'_> {
         self.number("error.to_curve.sum_sq", r.to_curve.sum_sq, f.to_curve.sum_sq, sq(f.to_curve.sum_sq));
         self.number("error.to_curve.rms", r.to_curve.rms, f.to_curve.rms, size);
         self.number("error.to_curve.max", r.to_curve.max, f.to_curve.max, size);
+        match (&r.to_raw, to_raw(problem, recorded)) {
+            (Some(r), Some(f)) => {
+                self.number("error.to_raw.sum_sq", r.sum_sq, f.sum_sq, raw_sq(f.sum_sq));
+                self.number("error.to_raw.rms", r.rms, f.rms, size);
+                self.number("error.to_raw.max", r.max, f.max, size);
+            }
+            (None, None) => {}
+            (r, f) => {
+                let word = |there: bool| if there { "there" } else { "absent" };
+                self.differ("error.to_raw", word(r.is_some()).into(), word(f.is_some()).into());
+            }
+        }
         if r.max_at != f.max_at {
             // Another point may stand in the place of an equal maximum.
             let angles = (&recorded.crank_deg, &recorded.t1_at);

@@ -24,7 +24,7 @@ pub struct Arguments {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Find linkages for problem files (or bare points CSV files): the main job
+    /// Find linkages for problem files (or bare CSV points and SVG drawings): the main job
     Synth(Synth),
     /// Check problem, linkage and points files without running anything
     Check(Check),
@@ -51,12 +51,17 @@ pub enum Command {
         /// Which shell
         shell: clap_complete::Shell,
     },
+    /// Print the manual page, for man: `linkwright man > linkwright.1`
+    Man {
+        /// The page of this command [default: of the program]
+        command: Option<String>,
+    },
 }
 
 /// Options of `synth`.
 #[derive(Debug, Args)]
 pub struct Synth {
-    /// Problem files (TOML) or points (CSV)
+    /// Problem files (TOML), points (CSV) or drawings (SVG)
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Where the results go (several files: a folder for each in it) [default: results/NAME]
@@ -85,7 +90,7 @@ pub struct Synth {
 /// Options of `check`.
 #[derive(Debug, Args)]
 pub struct Check {
-    /// Problem or linkage files (TOML) or points (CSV)
+    /// Problem or linkage files (TOML), points (CSV) or drawings (SVG)
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
 }
@@ -95,8 +100,8 @@ pub struct Check {
 pub struct New {
     /// The problem's name; NAME.toml is written here
     pub name: String,
-    /// Take the target from this points CSV
-    #[arg(long, value_name = "POINTS")]
+    /// Take the target from these points (CSV) or this drawing (SVG)
+    #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
 }
 

@@ -33,6 +33,16 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         let points = points_file::load(path)?;
         return Ok((format!("{} points", points.points.len()), points.warnings));
     }
+    if problem_file::is_drawing(path) {
+        let file = problem_file::from_points_file(path, &[])?;
+        let drawn = &file.spec.task.path;
+        let shape = if drawn.closed { "a closed" } else { "an open" };
+        let unit = file.unit.map_or("user units", |unit| unit.label());
+        let size = drawn.to_task().map_or(0.0, |task| task.size());
+        let summary =
+            format!("a drawing: {} points of {shape} curve, size {size:.6} {unit}", drawn.points.len());
+        return Ok((summary, file.warnings));
+    }
     if is_linkage_file(path) {
         let file = linkage_file::load_any(path)?;
         let what = match &file.linkage {

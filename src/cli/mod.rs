@@ -8,6 +8,7 @@ mod arguments;
 mod check;
 mod compare;
 mod interrupt;
+mod man;
 mod new;
 mod progress;
 mod suite;
@@ -80,5 +81,6 @@ fn dispatch(command: Command) -> Ended {
             terminal::answer(&String::from_utf8_lossy(&script));
             Ended::Good
         }
+        Command::Man { command } => man::run(command.as_deref()),
     }
 }

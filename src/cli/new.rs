@@ -20,7 +20,12 @@ pub fn run(options: &New) -> Ended {
         terminal::diagnose(ReportKind::Error, &diagnostic);
         return Ended::Refused;
     }
-    let from = options.from.as_ref().map(|path| path.display().to_string());
+    // A file below the folder that we are in is named from there: the problem file can be moved with it.
+    let from = options.from.as_ref().map(|path| {
+        let here = std::env::current_dir().ok();
+        let inside = here.as_deref().and_then(|here| path.strip_prefix(here).ok());
+        inside.unwrap_or(path).display().to_string()
+    });
     let text = match crate::problem_template::problem_template(name, from.as_deref()) {
         Ok(text) => text,
         Err(e) => {

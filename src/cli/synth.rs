@@ -108,13 +108,7 @@ fn load(options: &Synth) -> Option<Vec<ProblemFile>> {
     let mut problems = Vec::new();
     let mut refused = false;
     for path in &options.files {
-        let is_points = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
-        let loaded = if is_points {
-            problem_file::from_points_file(path, &overrides)
-        } else {
-            problem_file::load(path, &overrides)
-        };
-        match loaded {
+        match problem_file::load_any(path, &overrides) {
             Ok(problem) => {
                 for warning in &problem.warnings {
                     terminal::diagnose(ReportKind::Warning, warning);

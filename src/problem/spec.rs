@@ -4,6 +4,7 @@
 //! library caller and `verify` all arrive here. Angles in degrees, lengths in the file's unit.
 
 use crate::linkage::{LinkageType, MAX_MAGNITUDE};
+use crate::resampling::{resample, smooth};
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
 use crate::solve::genetic::GeneticParameters;
 use crate::task::{AngleOffset, Defect, PathOptions, PathTask, TaskError, Timing};
@@ -44,7 +45,8 @@ impl ProblemSpec {
     #[must_use]
     pub fn shifted(&self, by: [f64; 2]) -> Self {
         let mut spec = self.clone();
-        for point in &mut spec.task.path.points {
+        let path = &mut spec.task.path;
+        for point in path.points.iter_mut().chain(path.raw.iter_mut().flat_map(|raw| &mut raw.points)) {
             *point = [point[0] + by[0], point[1] + by[1]];
         }
         for pivot in [&mut spec.design.crank_pivot, &mut spec.design.follower_pivot].into_iter().flatten() {
@@ -82,6 +84,36 @@ pub struct PathSpec {
     /// Prescribed timing; absent: free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing: Option<TimingSpec>,
+    /// The points before they were smoothed or resampled; absent where `points` are what was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawPoints>,
+}
+
+/// Points as they were digitised, and what made the target's points of them: see [`crate::resampling`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RawPoints {
+    /// As they were given.
+    pub points: Vec<[f64; 2]>,
+    /// The standard deviation of the smoothing, a length along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smooth: Option<f64>,
+    /// How many points were taken evenly along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<usize>,
+}
+
+impl RawPoints {
+    /// The target's points: smoothed, then resampled.
+    pub fn target(&self, closed: bool) -> Vec<[f64; 2]> {
+        let smoothed = match self.smooth {
+            Some(deviation) => smooth(&self.points, closed, deviation),
+            None => self.points.clone(),
+        };
+        match self.samples {
+            Some(count) => resample(&smoothed, closed, count),
+            None => smoothed,
+        }
+    }
 }
 
 /// Prescribed crank angles.

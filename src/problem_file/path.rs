@@ -1,41 +1,21 @@
-//! `[task.path]`: the points, from the file itself or a CSV, and what stands beside them.
+//! `[task.path]`: the points, where they come from, and what stands beside them.
 
 use super::raw::RawPath;
+use super::target::{Source, Target, Whereabouts};
 use crate::diagnostic::Diagnostic;
-use crate::points_file::{self, MAX_POINTS, PointsFile};
-use crate::problem::spec::{PathSpec, TimingSpec};
+use crate::problem::spec::{PathSpec, RawPoints, TimingSpec};
+use crate::record::Unit;
+use crate::resampling::MAX_SMOOTHED;
 use crate::task::{AngleOffset, PathTask, TaskError};
 use crate::toml_text::TomlText;
-use std::path::{Component, Path};
 
-/// Points with what stands beside them, from the problem file or a CSV.
-struct Target {
-    points: Vec<[f64; 2]>,
-    csv: Option<PointsFile>,
-}
-
-impl Target {
-    /// A complaint about a point, where it is written.
-    fn at_point(&self, toml: &TomlText<'_>, index: usize, message: String) -> Diagnostic {
-        match &self.csv {
-            Some(csv) => {
-                let diagnostic = Diagnostic::new(csv.file.clone(), csv.text.clone(), message);
-                match csv.rows.get(index) {
-                    Some(row) => diagnostic.at(row.clone()),
-                    None => diagnostic,
-                }
-            }
-            None => toml.at(&format!("task.path.points.{index}"), message),
-        }
-    }
-
-    /// A complaint about all points.
-    fn at_all(&self, toml: &TomlText<'_>, message: String) -> Diagnostic {
-        match &self.csv {
-            Some(csv) => Diagnostic::new(csv.file.clone(), csv.text.clone(), message),
-            None => toml.at("task.path.points", message),
-        }
-    }
+/// What `[task.path]` says.
+pub(super) struct PathRead {
+    pub spec: PathSpec,
+    pub task: PathTask,
+    /// The unit of a drawing's physical lengths.
+    pub unit: Option<Unit>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 /// The path with what stands beside its points, and the task that it is. A tolerance that is set by hand takes the
@@ -43,21 +23,29 @@ impl Target {
 pub(super) fn path_of(
     toml: &TomlText<'_>,
     path: Option<RawPath>,
-    folder: Option<&Path>,
+    whereabouts: &Whereabouts<'_>,
+    unit: Option<Unit>,
     tolerance_is_set: bool,
-    warnings: &mut Vec<Diagnostic>,
-) -> Result<(PathSpec, PathTask), Box<Diagnostic>> {
+) -> Result<PathRead, Box<Diagnostic>> {
     let Some(path) = path else {
         return Err(Box::new(
             toml.at_key("task", "there is no task in this file")
                 .with_help("add a table [task.path] with points = [[x, y], ...] or file = \"points.csv\""),
         ));
     };
-    let mut target = target_of(toml, &path, folder)?;
+    let mut target = Target::of(toml, &path, whereabouts, unit)?;
+    let columns = match &mut target.source {
+        Source::Csv(csv) => (csv.crank_deg.take(), csv.weight.take(), csv.tolerance.take()),
+        Source::File | Source::Svg(_) => (None, None, None),
+    };
+    let (csv_crank, weight, csv_tolerance) = columns;
+    let beside = [
+        ("crank angles", csv_crank.is_some() || path.timing.is_some()),
+        ("weights", weight.is_some()),
+        ("tolerances", csv_tolerance.is_some() && !tolerance_is_set),
+    ];
+    let raw = raw_of(toml, &path, &mut target, beside)?;
     let n = target.points.len();
-    let columns =
-        target.csv.as_mut().map(|csv| (csv.crank_deg.take(), csv.weight.take(), csv.tolerance.take()));
-    let (csv_crank, weight, csv_tolerance) = columns.unwrap_or_default();
     let tolerance = match (path.tolerance, csv_tolerance) {
         (Some(_), Some(_)) if !tolerance_is_set => {
             return Err(twice(toml, "task.path.tolerance", "tolerance", &path));
@@ -90,10 +78,79 @@ pub(super) fn path_of(
     }
     let timing = crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset });
     let points = std::mem::take(&mut target.points);
-    let spec = PathSpec { points, closed: path.closed, weight, tolerance, timing };
+    let spec = PathSpec { points, closed: target.closed, weight, tolerance, timing, raw };
     let task = spec.to_task().map_err(|error| explain_task(toml, &target, &spec, &error))?;
-    warnings.extend(target.csv.into_iter().flat_map(|csv| csv.warnings));
-    Ok((spec, task))
+    let (unit, warnings) = match target.source {
+        Source::File => (None, Vec::new()),
+        Source::Csv(csv) => (None, csv.warnings),
+        Source::Svg(svg) => (svg.unit, svg.warnings),
+    };
+    Ok(PathRead { spec, task, unit, warnings })
+}
+
+/// Smooths and resamples the points where that is asked for; what they were then stands in the answer.
+fn raw_of(
+    toml: &TomlText<'_>,
+    path: &RawPath,
+    target: &mut Target,
+    beside: [(&str, bool); 3],
+) -> Result<Option<RawPoints>, Box<Diagnostic>> {
+    let refuse = |key: &str, message: String, help: &str| {
+        Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
+    };
+    let smooth = path.smooth.map(|s| s.0);
+    if let Some(deviation) = smooth {
+        let size = extent(&target.points);
+        if deviation <= 0.0 {
+            let help = "write a length along the path, a few times the distance of points; or remove the key";
+            return refuse("smooth", format!("smooth = {deviation} is not above 0"), help);
+        }
+        if deviation > size {
+            let message = format!("smooth = {deviation} is more than the size of the path, {size:.4}");
+            return refuse(
+                "smooth",
+                message,
+                "write a length along the path, a few times the distance of points",
+            );
+        }
+        if target.points.len() > MAX_SMOOTHED {
+            let message = format!("{} points; at most {MAX_SMOOTHED} are smoothed", target.points.len());
+            return refuse(
+                "smooth",
+                message,
+                "leave out points: a few hundred describe any path of a four-bar",
+            );
+        }
+    }
+    // A drawing has been sampled already.
+    let samples = match target.source {
+        Source::Svg(_) => None,
+        Source::File | Source::Csv(_) => target.samples,
+    };
+    if samples.is_some()
+        && let Some((what, _)) = beside.iter().find(|(_, there)| *there)
+    {
+        let message = format!("samples takes new points, and the {what} belong to the old ones");
+        return refuse("samples", message, "remove one of the two; smooth alone keeps the points");
+    }
+    if smooth.is_none() && samples.is_none() {
+        return Ok(None);
+    }
+    let raw = RawPoints { points: std::mem::take(&mut target.points), smooth, samples };
+    target.points = raw.target(target.closed);
+    target.resampled = samples.is_some();
+    Ok(Some(raw))
+}
+
+/// The diagonal of the points' box.
+fn extent(points: &[[f64; 2]]) -> f64 {
+    let span = |axis: usize| {
+        let (low, high) = points
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
+        high - low
+    };
+    span(0).hypot(span(1))
 }
 
 /// "3 points".
@@ -108,67 +165,6 @@ fn twice(toml: &TomlText<'_>, path: &str, what: &str, raw: &RawPath) -> Box<Diag
         toml.at(path, format!("{what} is given here and as a column of {file}"))
             .with_help("remove one of the two"),
     )
-}
-
-fn target_of(toml: &TomlText<'_>, path: &RawPath, folder: Option<&Path>) -> Result<Target, Box<Diagnostic>> {
-    match (&path.points, &path.file) {
-        (Some(_), Some(_)) => Err(Box::new(
-            toml.at_key("task.path.file", "two sources of points: points and file")
-                .with_help("keep one of the two"),
-        )),
-        (None, None) => Err(Box::new(
-            toml.at_key("task.path", "the path has no points")
-                .with_help("add points = [[x, y], ...] or file = \"points.csv\""),
-        )),
-        (Some(points), None) if points.len() > MAX_POINTS => Err(Box::new(
-            toml.at_key(
-                "task.path.points",
-                format!("{} points; at most {MAX_POINTS} are read", points.len()),
-            )
-            .with_help("leave out points: a few hundred describe any path that a four-bar can trace"),
-        )),
-        (Some(points), None) => {
-            Ok(Target { points: points.iter().map(|p| p.numbers()).collect(), csv: None })
-        }
-        (None, Some(file)) => {
-            let refuse = |message: String, help: &str| {
-                Err(Box::new(toml.at("task.path.file", message).with_help(help)))
-            };
-            let Some(folder) = folder else {
-                return refuse(
-                    "a points file cannot be read here: this text comes from no folder".into(),
-                    "write the points as points = [[x, y], ...]",
-                );
-            };
-            if !stays_inside(Path::new(file)) {
-                return refuse(
-                    "the points file lies outside the folder of the problem file".into(),
-                    "copy it beside the problem file and name it without a folder",
-                );
-            }
-            let place = folder.join(file);
-            if !place.exists() {
-                let beside = "it is looked for beside the problem file";
-                return refuse(format!("there is no points file {}", place.display()), beside);
-            }
-            let mut csv = points_file::load(&place)?;
-            Ok(Target { points: std::mem::take(&mut csv.points), csv: Some(csv) })
-        }
-    }
-}
-
-/// Whether a relative path leads nowhere above the folder that it starts from.
-fn stays_inside(path: &Path) -> bool {
-    let mut depth = 0_usize;
-    for part in path.components() {
-        match part {
-            Component::Normal(_) => depth += 1,
-            Component::CurDir => {}
-            Component::ParentDir if depth > 0 => depth -= 1,
-            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return false,
-        }
-    }
-    depth > 0
 }
 
 /// A task's error at the point that it is about.

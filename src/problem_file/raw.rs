@@ -52,18 +52,25 @@ pub(crate) struct RawTask {
     pub path: Option<OnlyTable<RawPath>>,
 }
 
-/// A path to trace: points, or a file of points.
+/// A path to trace: points, a file of points, or a drawing.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Path")]
 pub(crate) struct RawPath {
-    /// The target points, each [x, y]; this or file.
+    /// The target points, each [x, y]; this or file or svg.
     pub points: Option<Vec<XY>>,
     /// A CSV file beside the problem file, with columns x, y and optionally crank_deg, weight, tolerance.
     pub file: Option<String>,
-    /// Whether the target is a closed curve.
-    #[serde(default)]
-    pub closed: bool,
+    /// An SVG drawing beside the problem file: its first path, polyline, polygon, circle or ellipse.
+    pub svg: Option<String>,
+    /// The id of the drawing's shape, where it is not the first.
+    pub svg_id: Option<String>,
+    /// How many points are taken evenly by arc length: of a drawing (60 where silent), or along the points.
+    pub samples: Option<Count>,
+    /// Smooths digitised points: the standard deviation of the window, a length along the path.
+    pub smooth: Option<Number>,
+    /// Whether the target is a closed curve; absent: false, of a drawing: as it is drawn.
+    pub closed: Option<bool>,
     /// The largest error accepted at any point.
     pub tolerance: Option<Number>,
     /// Prescribed crank angles; absent: any.

@@ -8,6 +8,9 @@ use crate::linkage::FourBar;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Record, Unit};
 
+/// The candidates whose distances from the given points are told.
+const RAW_NAMED: usize = 3;
+
 /// The width that everything is laid out for.
 pub const COLUMNS: usize = 100;
 
@@ -43,6 +46,13 @@ fn heading(record: &Record, colour: Colour) -> String {
     facts.push(words::timing(record).to_owned());
     if path.closed {
         facts.push("closed".to_owned());
+    }
+    if let Some(raw) = &path.raw {
+        let unit = words::unit_suffix(record);
+        facts.extend(
+            raw.samples.map(|_| format!("taken along {} given points", grouped(raw.points.len() as u64))),
+        );
+        facts.extend(raw.smooth.map(|deviation| format!("smoothed over {}{unit}", brief(deviation, 4))));
     }
     out.push_str(&wrapped("  ", "  ", &facts.join(", "), COLUMNS));
     if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
@@ -115,6 +125,10 @@ fn notes(record: &Record) -> String {
         out.push('\n');
         out.push_str(&wrapped("  ", "  ", &tolerances, COLUMNS));
     }
+    if let Some(raw) = against_raw(record) {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", &raw, COLUMNS));
+    }
     // A hundred refusals for the same reason are one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
     for candidate in record.candidates.iter().filter(|c| !c.accepted) {
@@ -133,6 +147,25 @@ fn notes(record: &Record) -> String {
         out.push_str(&wrapped("    ", "      ", &format!("{lead}: {text}"), COLUMNS));
     }
     out
+}
+
+/// How near the curves come to the points as they were given, before smoothing and resampling.
+fn against_raw(record: &Record) -> Option<String> {
+    let raw = record.problem.resolved.task.path.raw.as_ref()?;
+    let unit = words::unit_suffix(record);
+    let of = |c: &Candidate| {
+        let error = c.error.to_raw?;
+        Some(format!(
+            "#{} rms {}{unit}, max {}{unit}",
+            c.rank,
+            significant(error.rms, 4),
+            significant(error.max, 4)
+        ))
+    };
+    let list: Vec<String> = record.candidates.iter().take(RAW_NAMED).filter_map(of).collect();
+    let points = count(raw.points.len(), "point");
+    (!list.is_empty())
+        .then(|| format!("From the {points} as given to the whole coupler curve: {}.", list.join("; ")))
 }
 
 /// The best linkage: its motion in words, its parameters as TOML.

@@ -82,14 +82,25 @@ impl PathTask {
         crank_angle: f64,
         assembly: AssemblyMode,
     ) -> Option<CurveError> {
-        let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
-        let mut error = CurveError { distances: Vec::new(), sum_sq: 0.0, max: 0.0 };
-        for &target in self.points() {
-            let distance = curve.nearest(target)?.distance;
-            error.distances.push(distance);
-            error.sum_sq += distance * distance;
-            error.max = error.max.max(distance);
-        }
-        Some(error)
+        distances_to_curve(self.points(), linkage, crank_angle, assembly)
     }
+}
+
+/// The distances from any points to the coupler curve of the circuit that holds the given position; `None` where
+/// that circuit has no point.
+pub fn distances_to_curve(
+    points: &[Complex],
+    linkage: &FourBar,
+    crank_angle: f64,
+    assembly: AssemblyMode,
+) -> Option<CurveError> {
+    let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
+    let mut error = CurveError { distances: Vec::new(), sum_sq: 0.0, max: 0.0 };
+    for &point in points {
+        let distance = curve.nearest(point)?.distance;
+        error.distances.push(distance);
+        error.sum_sq += distance * distance;
+        error.max = error.max.max(distance);
+    }
+    Some(error)
 }

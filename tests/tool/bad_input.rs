@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// What lies in tests/bad because bad files name it.
-const GOOD: [&str; 1] = ["good-points.csv"];
+const GOOD: [&str; 2] = ["good-points.csv", "good-drawing.svg"];
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bad")
@@ -20,7 +20,7 @@ fn refusal(path: &Path) -> Option<Box<Diagnostic>> {
     let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
     if name.starts_with("linkage-") {
         linkage_file::load(path).err()
-    } else if name.ends_with(".csv") {
+    } else if name.ends_with(".csv") || name.ends_with(".svg") {
         problem_file::from_points_file(path, &[]).err()
     } else {
         problem_file::load(path, &[]).err()
@@ -160,7 +160,33 @@ fn an_override_that_names_no_key_is_refused() {
 
 #[test]
 fn a_points_file_is_refused_where_there_is_no_folder() {
+    let svg = "format = 1\n[task.path]\nsvg = \"drawing.svg\"\n";
+    assert!(problem_file::parse("studio", svg, None, &[]).unwrap_err().message.contains("no folder"));
     let text = "format = 1\n[task.path]\nfile = \"points.csv\"\n";
     let diagnostic = problem_file::parse("studio", text, None, &[]).unwrap_err();
     assert!(diagnostic.message.contains("no folder"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_that_leaves_the_folder_is_refused_unless_it_is_typed() {
+    let outside = tempfile::tempdir().unwrap();
+    let secret = outside.path().join("secret.csv");
+    std::fs::write(&secret, "x,y\n0,0\n3,4\n").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let link = folder.path().join("points.csv");
+    std::os::unix::fs::symlink(&secret, &link).unwrap();
+    let problem = folder.path().join("arm.toml");
+    std::fs::write(&problem, "format = 1\n[task.path]\nfile = \"points.csv\"\n").unwrap();
+    let refused = problem_file::load(&problem, &[]).unwrap_err();
+    assert_eq!(refused.message, "the points file lies outside the folder of the problem file: it is a link");
+    // What a person types is meant.
+    let typed = [("task.path.file".to_string(), secret.display().to_string())];
+    assert_eq!(problem_file::load(&problem, &typed).unwrap().spec.task.path.points.len(), 2);
+    assert_eq!(problem_file::from_points_file(&link, &[]).unwrap().spec.task.path.points.len(), 2);
+    // A link that stays inside is a file like any other.
+    std::fs::write(folder.path().join("here.csv"), "x,y\n0,0\n3,4\n").unwrap();
+    std::fs::remove_file(&link).unwrap();
+    std::os::unix::fs::symlink("here.csv", &link).unwrap();
+    assert!(problem_file::load(&problem, &[]).is_ok());
 }

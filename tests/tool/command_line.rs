@@ -174,6 +174,94 @@ fn a_bare_points_file_runs_with_defaults() {
 }
 
 #[test]
+fn a_bare_drawing_runs_with_defaults_and_verifies() {
+    let folder = TempDir::new().expect("a folder");
+    let svg = "<svg width='100mm' viewBox='0 0 100 100'><ellipse cx='50' cy='50' rx='30' ry='8'/></svg>";
+    fs::write(folder.path().join("oval.svg"), svg).expect("written");
+    let short = ["--set", "task.path.samples=12", "--set", "solve.evaluations=5000"];
+    let run = answer(linkwright(folder.path()).args(["synth", "oval.svg", "--quiet"]).args(short));
+    assert!(run.code <= 1 && run.stderr.is_empty(), "{}", run.stderr);
+    assert!(run.stdout.contains("12 points") && run.stdout.contains("closed"), "{}", run.stdout);
+    assert_eq!(record(&folder.path().join("results/oval")).problem.unit, Some(linkwright::record::Unit::Mm));
+    assert_eq!(answer(linkwright(folder.path()).args(["verify", "results/oval"])).code, 0);
+    let check = answer(linkwright(folder.path()).args(["check", "oval.svg"]));
+    assert!(check.stdout.contains("60 points of a closed curve, size 62.0"), "{}", check.stdout);
+    let new = answer(linkwright(folder.path()).args(["new", "my-oval", "--from", "oval.svg"]));
+    assert_eq!(new.code, 0, "{}", new.stderr);
+    let text = fs::read_to_string(folder.path().join("my-oval.toml")).expect("written");
+    assert!(text.starts_with("#:schema ") && text.contains("svg = \"oval.svg\""), "{text}");
+    assert_eq!(answer(linkwright(folder.path()).args(["check", "my-oval.toml"])).code, 0);
+}
+
+#[test]
+fn smoothed_points_are_scored_against_the_raw_ones_and_verify_knows() {
+    let folder = TempDir::new().expect("a folder");
+    let mut csv = String::from("x,y\n");
+    for i in 0..48 {
+        let angle = std::f64::consts::TAU * f64::from(i) / 48.0;
+        let r = 1.0 + 0.02 * (f64::from(i) * 2.4).sin();
+        csv += &format!("{},{}\n", 30.0 * r * angle.cos(), 12.0 * r * angle.sin());
+    }
+    fs::write(folder.path().join("scan.csv"), csv).expect("written");
+    let mut synth = linkwright(folder.path());
+    synth.args([
+        "synth",
+        "scan.csv",
+        "--quiet",
+        "--set",
+        "task.path.closed=true",
+        "--set",
+        "task.path.samples=12",
+    ]);
+    let run = answer(synth.args(["--set", "task.path.smooth=8", "--set", "solve.evaluations=5000"]));
+    assert!(run.code <= 1, "{}", run.stderr);
+    assert!(run.stdout.contains("taken along 48 given points, smoothed over 8"), "{}", run.stdout);
+    assert!(run.stdout.contains("From the 48 points as given"), "{}", run.stdout);
+    let place = folder.path().join("results/scan");
+    assert_eq!(answer(linkwright(folder.path()).args(["verify", "results/scan"])).code, 0);
+    let honest = record(&place);
+    let error = honest.candidates[0].error.to_raw.expect("scored");
+    assert!((error.rms - (error.sum_sq / 48.0).sqrt()).abs() < 1e-12 && error.max >= error.rms);
+    type Lie = fn(&mut Record);
+    let lies: [(&str, Lie); 4] = [
+        ("error.to_raw.rms", |r| r.candidates[0].error.to_raw.as_mut().expect("there").rms *= 0.9),
+        ("error.to_raw is", |r| r.candidates[0].error.to_raw = None),
+        ("task.path.points", |r| {
+            r.problem.resolved.task.path.raw.as_mut().expect("there").smooth = Some(7.0)
+        }),
+        ("task.path.points", |r| r.problem.resolved.task.path.points[3][0] += 1e-3),
+    ];
+    for (what, lie) in lies {
+        let mut record = honest.clone();
+        lie(&mut record);
+        let text = serde_json::to_string(&record).expect("JSON");
+        fs::write(place.join("record.json"), text).expect("written");
+        let verify = answer(linkwright(folder.path()).args(["verify", "results/scan"]));
+        assert_eq!(verify.code, 1, "{what}: {}", verify.stdout);
+        assert!(verify.stdout.contains(what) || verify.stderr.contains(what), "{what}: {}", verify.stdout);
+    }
+}
+
+#[test]
+fn manual_pages_are_printed() {
+    let folder = TempDir::new().expect("a folder");
+    let page = |arguments: &[&str]| answer(linkwright(folder.path()).arg("man").args(arguments));
+    let program = page(&[]);
+    assert!(program.code == 0 && program.stdout.contains(".TH linkwright 1"), "{}", program.stdout);
+    let synth = page(&["synth"]);
+    assert!(
+        synth.stdout.contains(".TH linkwright\\-synth 1") || synth.stdout.contains(".TH linkwright-synth 1")
+    );
+    assert!(synth.stdout.contains("KEY=VALUE"), "{}", synth.stdout);
+    let unknown = page(&["nothing"]);
+    assert!(
+        unknown.code == 2 && unknown.stderr.contains("the commands are synth, check"),
+        "{}",
+        unknown.stderr
+    );
+}
+
+#[test]
 fn nothing_acceptable_is_exit_code_one_with_the_reason() {
     let folder = TempDir::new().expect("a folder");
     let args = [

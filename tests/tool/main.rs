@@ -12,4 +12,5 @@ mod report;
 mod rooms;
 mod seeds_document;
 mod shipped_problems;
+mod svg_in;
 mod text_in;

@@ -193,6 +193,10 @@ fn habits_of_spreadsheets_are_read() {
         "\"x\",\"y\"\n\"0\",\"0\"\n\"1.5\",\"-2e-3\"\n",
         "X,Y\n0,0\n1.5,-0.002\n,\n\n",
         "y,x\n0,0\n-2e-3,1.5\n",
+        "sep=,\r\nx,y\r\n0,0\r\n1.5,-2e-3\r\n",
+        "x, \"y\"\n0, \"0\"\n\"1.5\", \"-2e-3\"\n",
+        "x,y,\n0,0,\n1.5,-2e-3,,\n,,,\n",
+        "x,y\r0,0\r1.5,-2e-3\r",
     ] {
         let read = points_file::parse("p.csv", text).unwrap_or_else(|d| panic!("{d}"));
         assert_eq!(read.points, plain.points, "{text:?}");
@@ -234,6 +238,68 @@ fn a_points_file_gives_points_timing_weights_and_tolerances() {
     let offset = [("task.path.timing.offset".into(), "fixed".into())];
     let fixed = problem_file::load(&toml, &offset).unwrap();
     assert_eq!(fixed.spec.task.path.timing.unwrap().offset, AngleOffset::Fixed);
+}
+
+#[test]
+fn cells_that_nobody_reads_may_be_away() {
+    let read = points_file::parse("p.csv", "x,y,note\n0,0\n3,4,end\n").unwrap();
+    assert_eq!(read.points, [[0.0, 0.0], [3.0, 4.0]]);
+}
+
+#[test]
+fn digitised_points_are_smoothed_and_resampled_and_kept() {
+    let points: Vec<String> = (0..40)
+        .map(|i| {
+            let x = f64::from(i);
+            format!("[{x}, {}]", 0.02 * x * x + 0.1 * (2.4 * x).sin())
+        })
+        .collect();
+    let text = format!("format = 1\n[task.path]\npoints = [{}]\n", points.join(", "));
+    let plain = parsed(&text).spec.task.path;
+    assert!(plain.raw.is_none());
+    let smooth = parsed(&format!("{text}smooth = 4\n")).spec.task.path;
+    assert_eq!(smooth.points.len(), 40);
+    let raw = smooth.raw.clone().expect("kept");
+    assert_eq!((&raw.points, raw.smooth, raw.samples), (&plain.points, Some(4.0), None));
+    let off = |path: &[[f64; 2]]| {
+        let inner = path.iter().skip(3).take(34).map(|[x, y]| (y - 0.02 * x * x).powi(2));
+        inner.sum::<f64>().sqrt()
+    };
+    assert!(off(&smooth.points) < 0.2 * off(&plain.points), "{} {}", off(&smooth.points), off(&plain.points));
+
+    let both = parsed(&format!("{text}smooth = 4\nsamples = 15\n")).spec.task.path;
+    let steps: Vec<f64> =
+        both.points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).collect();
+    let mean = steps.iter().sum::<f64>() / 14.0;
+    assert_eq!(both.points.len(), 15);
+    assert!(steps.iter().all(|s| (s / mean - 1.0).abs() < 0.01), "{steps:?}");
+    assert_eq!(both.points, both.raw.expect("kept").target(false));
+}
+
+#[test]
+fn a_drawing_is_a_target_of_a_problem_and_by_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = folder.path().join("ring.svg");
+    let drawing =
+        "<svg width='10cm' viewBox='0 0 100 100'><circle id='big' r='10'/><circle id='small' r='5'/></svg>";
+    std::fs::write(&svg, drawing).unwrap();
+    let bare = problem_file::load_any(&svg, &[]).unwrap();
+    assert_eq!((bare.name.as_str(), bare.unit, bare.warnings.len()), ("ring", Some(Unit::Mm), 1));
+    assert!(bare.spec.task.path.closed && bare.spec.task.path.points.len() == 60);
+    let text = problem_template("my ring", Some("ring.svg")).unwrap();
+    let named =
+        problem_file::parse("r.toml", &text, Some(folder.path()), &[]).unwrap_or_else(|d| panic!("{d}"));
+    assert_eq!(named.spec.task, bare.spec.task);
+    let set = |pairs: &[(&str, &str)]| {
+        let pairs: Vec<(String, String)> =
+            pairs.iter().map(|(k, v)| (k.to_string(), v.to_string())).collect();
+        problem_file::load_any(&svg, &pairs).unwrap_or_else(|d| panic!("{d}"))
+    };
+    let small = set(&[("task.path.svg_id", "small"), ("task.path.samples", "4"), ("unit", "cm")]);
+    assert!(small.warnings.is_empty() && small.unit == Some(Unit::Cm));
+    let path = small.spec.task.path;
+    assert!(path.points.len() == 4 && (path.points[0][0] - 0.5).abs() < 1e-12, "{:?}", path.points);
+    assert!(!set(&[("task.path.closed", "false")]).spec.task.path.closed);
 }
 
 #[test]
@@ -290,7 +356,7 @@ fn the_schema_names_every_table_and_refuses_other_keys() {
     let path = "/properties/task/properties/path";
     for (table, keys) in [
         ("", &["format", "name", "unit", "expect"][..]),
-        (path, &["points", "file", "closed", "timing"]),
+        (path, &["points", "file", "svg", "svg_id", "samples", "smooth", "closed", "timing"]),
         ("/$defs/Timing", &["crank_deg", "offset"]),
         ("/$defs/Design", &["A", "B", "a", "ground_angle_deg", "coupler_y"]),
         ("/$defs/Require", &["type", "footprint_in", "branch"]),

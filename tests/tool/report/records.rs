@@ -97,6 +97,7 @@ pub fn candidate(
                 rms: rms(to_curve.sum_sq, task.len()),
                 max: to_curve.max,
             },
+            to_raw: None,
         },
         linkage_type: mobility.linkage_type.expect("can be joined"),
         grashof_margin: mobility.grashof_margin,
@@ -150,7 +151,7 @@ pub fn record(name: &str, path: PathSpec) -> Record {
 }
 
 pub fn path(points: &[[f64; 2]], closed: bool) -> PathSpec {
-    PathSpec { points: points.to_vec(), closed, weight: None, tolerance: None, timing: None }
+    PathSpec { points: points.to_vec(), closed, weight: None, tolerance: None, timing: None, raw: None }
 }
 
 /// K18 with its optimum and three worse answers, the last one refused.

@@ -1,0 +1,95 @@
+//! A curve by its arc length: s(t) = integral of |r'|, and the points at given s.
+
+use super::shape::Outline;
+use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Point};
+
+/// Ends nearer than this part of the size are one point: drawings are written with six digits.
+const SAME_END: f64 = 1e-5;
+/// The length of all segments is known to this part of the size.
+const ACCURACY: f64 = 1e-9;
+/// No segment is measured more finely: parameters have to stay apart from their neighbours in f64.
+const FINEST: f64 = 1e-12;
+
+/// Segments with their lengths.
+pub(super) struct Measured {
+    /// In the target's own coordinates.
+    segments: Vec<PathSeg>,
+    /// The same moved and scaled into the unit square, where no square overflows or vanishes.
+    unit: Vec<PathSeg>,
+    /// Where each segment starts on the unit curve; one more than segments.
+    starts: Vec<f64>,
+    accuracy: f64,
+    size: f64,
+    closed: bool,
+}
+
+impl Measured {
+    /// `None` where the curve has no extent.
+    pub fn new(outline: &Outline, closed: Option<bool>) -> Option<Measured> {
+        let mut segments = outline.segments.clone();
+        let corners = segments.iter().map(hull).reduce(|a, b| a.union(b))?;
+        let size = corners.width().hypot(corners.height());
+        if !(size.is_finite() && size > crate::task::SMALLEST_SIZE) {
+            return None;
+        }
+        let (first, last) = (segments.first()?.start(), segments.last()?.end());
+        let meets = last.distance(first) <= SAME_END * size;
+        let closed = closed.unwrap_or(outline.closed || meets);
+        if (closed || outline.closed) && !meets {
+            segments.push(PathSeg::Line(kurbo::Line::new(last, first)));
+        }
+        let into_unit = Affine::scale(1.0 / size) * Affine::translate(-corners.center().to_vec2());
+        let unit: Vec<PathSeg> = segments.iter().map(|s| into_unit * *s).collect();
+        let accuracy = (ACCURACY / unit.len() as f64).max(FINEST);
+        let mut starts = Vec::with_capacity(unit.len() + 1);
+        let mut length = 0.0;
+        starts.push(length);
+        for segment in &unit {
+            length += segment.arclen(accuracy);
+            starts.push(length);
+        }
+        let measured = Measured { segments, unit, starts, accuracy, size, closed };
+        (length.is_finite() && length > 0.0).then_some(measured)
+    }
+
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    fn unit_length(&self) -> f64 {
+        self.starts.last().copied().unwrap_or(0.0)
+    }
+
+    pub fn length(&self) -> f64 {
+        self.unit_length() * self.size
+    }
+
+    /// `count` points evenly by arc length: of a closed curve from its start, without its start again at the end.
+    pub fn samples(&self, count: usize) -> Vec<[f64; 2]> {
+        let intervals = if self.closed { count } else { count.saturating_sub(1) };
+        let step = self.unit_length() / intervals.max(1) as f64;
+        (0..count).map(|i| self.at(step * i as f64)).map(|p| [p.x, p.y]).collect()
+    }
+
+    /// The point at arc length s of the unit curve.
+    fn at(&self, s: f64) -> Point {
+        let after = self.starts.partition_point(|start| *start <= s);
+        let index = after.saturating_sub(1).min(self.segments.len() - 1);
+        let (start, end) = (self.starts[index], self.starts[index + 1]);
+        let t = match &self.unit[index] {
+            PathSeg::Line(_) if end > start => ((s - start) / (end - start)).clamp(0.0, 1.0),
+            segment => segment.inv_arclen(s - start, self.accuracy),
+        };
+        self.segments[index].eval(t)
+    }
+}
+
+/// The box of a segment's control points.
+pub(super) fn hull(segment: &PathSeg) -> kurbo::Rect {
+    let controls: &[Point] = match segment {
+        PathSeg::Line(line) => &[line.p0, line.p1],
+        PathSeg::Quad(quad) => &[quad.p0, quad.p1, quad.p2],
+        PathSeg::Cubic(cubic) => &[cubic.p0, cubic.p1, cubic.p2, cubic.p3],
+    };
+    controls.iter().fold(kurbo::Rect::from_points(controls[0], controls[0]), |b, p| b.union_pt(*p))
+}
