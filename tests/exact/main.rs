@@ -1,0 +1,4 @@
+//! Exact synthesis: every linkage through nine points.
+
+mod known;
+mod mechanisms;
