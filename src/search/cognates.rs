@@ -56,19 +56,21 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
 
 /// What tells linkages of the same curve and error apart, on a grid above rounding; the less, the better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Merit {
+pub(super) struct Merit {
     refused: bool,
+    defects: usize,
     unmet: usize,
     lack_of_transmission: i64,
     size: i64,
 }
 
 impl Merit {
-    fn of(candidate: &Candidate) -> Merit {
+    pub(super) fn of(candidate: &Candidate) -> Merit {
         // Near a change point the angle is rounded to the root of the lengths' rounding.
         let (degrees, logarithm) = (1e5, 1e9);
         Merit {
             refused: !candidate.accepted,
+            defects: if candidate.accepted { 0 } else { candidate.defects.len() },
             unmet: candidate.requirements.iter().filter(|r| !r.met).count(),
             lack_of_transmission: -(candidate.transmission_deg.worst * degrees).round() as i64,
             size: (size(candidate).ln() * logarithm).round() as i64,

@@ -69,6 +69,7 @@ struct Key {
     /// Whether more than the tolerances is missed, and how far the tolerances are, in parts of themselves.
     missed: (bool, f64),
     error: f64,
+    defects: usize,
     unmet: usize,
     worst: f64,
     size: f64,
@@ -81,6 +82,7 @@ impl Key {
             refused: !candidate.accepted,
             missed: missed(candidate),
             error: candidate.error.objective.max(floor),
+            defects: if candidate.accepted { 0 } else { candidate.defects.len() },
             unmet: if candidate.accepted { 0 } else { unmet(candidate) },
             worst: candidate.transmission_deg.worst,
             size: size(candidate),
@@ -108,6 +110,7 @@ impl Ord for Key {
             .then_with(|| self.missed.0.cmp(&other.missed.0))
             .then_with(|| self.missed.1.total_cmp(&other.missed.1))
             .then_with(|| self.error.total_cmp(&other.error))
+            .then_with(|| self.defects.cmp(&other.defects))
             .then_with(|| self.unmet.cmp(&other.unmet))
             .then_with(|| other.worst.total_cmp(&self.worst))
             .then_with(|| self.size.total_cmp(&other.size))

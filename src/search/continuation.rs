@@ -1,0 +1,173 @@
+//! `continuation`: every linkage through nine precision points, as candidates, and beside what `auto` approximates.
+//!
+//! The points are solved once ([`crate::exact`]); bounds and requirements do not enter the equations, they choose among the answers.
+//! Where `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate, and the exact
+//! linkages that some requirement forbids are starts for that too.
+
+use super::exact_linkages::{Class, classes};
+use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::plan::FAR;
+use super::rank::{count_distinct, divided, exact_sum_sq};
+use super::warm::start_at;
+use super::{Budget, Observer, SearchOutcome};
+use crate::exact::{Solution, Target};
+use crate::linkage::FourBar;
+use crate::problem::Problem;
+use crate::problem::precision::precision_points;
+use crate::problem::spec::Method;
+use crate::record::{Candidate, Census, Certified, Evaluations, ExactRecord, GENERIC_CLASSES, Reason};
+use rayon::prelude::*;
+
+/// How the record calls it.
+const NAME: &str = "continuation";
+
+/// Real classes that approximation starts from, the best first.
+const WARM: usize = 24;
+
+/// The exact answers of a problem.
+#[derive(Clone, Debug)]
+pub struct Exact {
+    /// Census and list, for the record.
+    pub record: ExactRecord,
+    /// The real classes, better first.
+    pub classes: Vec<Class>,
+}
+
+/// Counts what is listed into a census of paths and classes, and lists the classes.
+pub fn listed(problem: &Problem, target: &Target, census: Census, real: &[Solution]) -> Exact {
+    let classes = classes(problem, target, real);
+    let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
+    let census = Census {
+        degenerate: real.len() - classes.len(),
+        one_circuit: count(|c| c.one_circuit),
+        in_order: count(|c| c.in_order),
+        free_of_defects: count(|c| c.free_of_defects),
+        ..census
+    };
+    let linkages = classes.par_iter().map(|class| class.listed(certified(target, &class.best))).collect();
+    let generic = census.classes == GENERIC_CLASSES;
+    Exact { record: ExactRecord { census, generic, linkages }, classes }
+}
+
+impl Exact {
+    fn candidates(&self) -> Vec<Candidate> {
+        self.classes.iter().map(|class| class.best.clone()).collect()
+    }
+
+    /// Whether nothing else is to be looked for: exact answers alone were asked for, or there are enough of them.
+    pub fn suffices(&self, problem: &Problem) -> bool {
+        let solve = &problem.spec().solve;
+        let accepted: Vec<Candidate> = self.candidates().into_iter().filter(|c| c.accepted).collect();
+        solve.method == Method::Continuation
+            || count_distinct(problem, &accepted, solve.candidates) >= solve.candidates
+    }
+
+    /// The exact answers as the end of a search.
+    pub fn alone(self, problem: &Problem, budget: &Budget<'_>) -> SearchOutcome {
+        let (candidates, others) = divided(problem, self.candidates(), problem.spec().solve.candidates);
+        let exact = exact_sum_sq(problem);
+        let reached = candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+        let reason = if reached { Reason::TargetReached } else { Reason::Converged };
+        SearchOutcome {
+            candidates,
+            others,
+            used: vec![NAME.into()],
+            reason: budget.stop_reason().unwrap_or(reason),
+            evaluations: Evaluations::default(),
+            exact: Some(self.record),
+        }
+    }
+
+    /// The exact answers together with what a search by approximation found, and with what that finds from them
+    /// within what is left of the budget.
+    pub fn beside(self, problem: &Problem, mut outcome: SearchOutcome, budget: &Budget<'_>) -> SearchOutcome {
+        let limit = problem.spec().solve.evaluations.saturating_sub(outcome.evaluations.objective);
+        let (warm, spent) = self.approximated(problem, limit, budget);
+        outcome.evaluations.objective += spent;
+        outcome.evaluations.positions += spent * problem.task().len() as u64;
+        let mut found = self.candidates();
+        found.append(&mut outcome.candidates);
+        found.append(&mut outcome.others);
+        found.extend(warm);
+        (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+        let exact = exact_sum_sq(problem);
+        let reached = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+        if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
+            outcome.reason = Reason::TargetReached;
+        }
+        outcome.reason = budget.stop_reason().unwrap_or(outcome.reason);
+        outcome.used.insert(0, NAME.into());
+        outcome.exact = Some(self.record);
+        outcome
+    }
+
+    /// Fits of the requirements from exact linkages that do not meet them.
+    fn approximated(&self, problem: &Problem, limit: u64, budget: &Budget<'_>) -> (Vec<Candidate>, u64) {
+        // Far from the origin differences of coordinates have lost the digits that a fit needs.
+        let far = problem.task().centre().norm() > FAR * problem.task().size();
+        let starts: Vec<&Candidate> =
+            self.classes.iter().map(|class| &class.best).filter(|c| !c.accepted).take(WARM).collect();
+        let each = limit / WARM as u64;
+        if far || each < 2 || budget.stopped() {
+            return (Vec::new(), 0);
+        }
+        let fits: Vec<_> = starts
+            .into_par_iter()
+            .filter_map(|candidate| {
+                let start = start_at(problem, candidate)?;
+                let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, each, budget);
+                Some((fit.end.and_then(|end| judged(problem, &end)), fit.evaluations))
+            })
+            .collect();
+        let spent = fits.iter().map(|(_, evaluations)| evaluations).sum();
+        (fits.into_iter().filter_map(|(candidate, _)| candidate).collect(), spent)
+    }
+}
+
+/// Certificates and places of the final candidates: a cognate may have taken its candidate's place, and ranks are
+/// given anew. Nothing where there are no exact answers.
+pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
+    let Some(exact) = &mut outcome.exact else { return };
+    let Some(target) = target(problem) else { return };
+    let bar = 1e6 * exact_sum_sq(problem);
+    for candidate in outcome.candidates.iter_mut().filter(|c| c.error.sum_sq <= bar) {
+        candidate.certified = certified(&target, candidate);
+        for class in &mut exact.linkages {
+            let forms = std::iter::once(&class.linkage).chain(class.others.iter().map(|form| &form.linkage));
+            if forms.into_iter().any(|form| same(form, &candidate.linkage)) {
+                class.rank = candidate.rank;
+            }
+        }
+    }
+}
+
+/// Linkages that differ by less than this part of their longest link are the same.
+const SAME: f64 = 1e-7;
+
+fn same(one: &FourBar, other: &FourBar) -> bool {
+    let numbers = |l: &FourBar| {
+        let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
+        [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
+    };
+    let reach = SAME * one.longest_link().max(one.crank_side());
+    numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
+}
+
+/// The nine points of a problem that has exact answers.
+pub fn target(problem: &Problem) -> Option<Target> {
+    Target::new(precision_points(problem).ok()?).ok()
+}
+
+/// The proof that an exact linkage stands where a candidate does.
+pub fn certified(_target: &Target, _candidate: &Candidate) -> Option<Certified> {
+    None
+}
+
+/// The exact answers; `None` where the points have none or the method does not ask for them.
+pub fn solve(problem: &Problem, _budget: &Budget<'_>, _observer: &Observer<'_>) -> Option<Exact> {
+    if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
+        return None;
+    }
+    let _target = target(problem)?;
+    None
+}
