@@ -13,7 +13,7 @@
 //! that its transmission angle is the candidate's too; what it may have better is its size and its place.
 
 use super::multistart::unwrapped;
-use super::rank::{exact_sum_sq, size, sort};
+use super::rank::{exact_sum_sq, severity, size, sort};
 use crate::assess::{assess, assess_on_curve};
 use crate::linkage::cognate::{Cognate, OriginalLink};
 use crate::linkage::mobility::wrapped;
@@ -58,7 +58,7 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Merit {
     refused: bool,
-    defects: usize,
+    severity: usize,
     unmet: usize,
     lack_of_transmission: i64,
     size: i64,
@@ -70,7 +70,7 @@ impl Merit {
         let (degrees, logarithm) = (1e5, 1e9);
         Merit {
             refused: !candidate.accepted,
-            defects: if candidate.accepted { 0 } else { candidate.defects.len() },
+            severity: severity(candidate),
             unmet: candidate.requirements.iter().filter(|r| !r.met).count(),
             lack_of_transmission: -(candidate.transmission_deg.worst * degrees).round() as i64,
             size: (size(candidate).ln() * logarithm).round() as i64,

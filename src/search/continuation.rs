@@ -144,7 +144,8 @@ pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
 /// Linkages that differ by less than this part of their longest link are the same.
 const SAME: f64 = 1e-7;
 
-fn same(one: &FourBar, other: &FourBar) -> bool {
+/// Whether two linkages are the same but for rounding.
+pub fn same(one: &FourBar, other: &FourBar) -> bool {
     let numbers = |l: &FourBar| {
         let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
         [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]

@@ -1,13 +1,15 @@
 //! Real solutions as candidates: of each class the best of its six mechanisms, judged as every candidate is.
 //!
-//! The better first: accepted, then fewer defects, then fewer requirements unmet, the better worst transmission
+//! The better first: accepted, then lighter defects, then fewer requirements unmet, the better worst transmission
 //! angle, the smaller linkage. That is the order of ranks ([`super::rank`]), for exact errors are equal.
 
 use super::cognates::{Merit, not_met};
 use super::multistart::unwrapped;
 use super::rank::compare;
 use crate::assess::{assess, assess_on_curve};
+use crate::exact::mechanisms::solution_of;
 use crate::exact::{Mechanism, Solution, Target, mechanisms};
+use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::record::{Candidate, Certified, ExactForm, ExactLinkage};
 use rayon::prelude::*;
@@ -93,4 +95,39 @@ impl Class {
             others: self.others.clone(),
         }
     }
+}
+
+/// What is found again of a listed class.
+#[derive(Clone, Debug)]
+pub struct Recomputed {
+    /// The listed linkage, judged; `None` where it cannot be.
+    pub judged: Option<Candidate>,
+    /// On one circuit, in order, free of defects, by one of the six.
+    pub abilities: [bool; 3],
+    /// All mechanisms of the class.
+    pub forms: Vec<FourBar>,
+}
+
+/// The class of a linkage at its positions, found from these alone; `None` where it does not pass the points.
+pub fn class_at(
+    problem: &Problem,
+    target: &Target,
+    (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
+) -> Option<Recomputed> {
+    let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let given = solution_of(target, linkage, &angles, t1_at)?;
+    let list = mechanisms(problem.task(), target, &given);
+    let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
+    if !any(|m| m.passes) {
+        return None;
+    }
+    Some(Recomputed {
+        judged: assess(problem, linkage, crank_deg, t1_at),
+        abilities: [
+            any(Mechanism::on_one_circuit),
+            any(Mechanism::in_order),
+            any(Mechanism::is_free_of_defects),
+        ],
+        forms: list.iter().map(|m| m.linkage).collect(),
+    })
 }
