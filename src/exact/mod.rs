@@ -15,6 +15,7 @@
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
+pub mod double_double;
 pub mod target;
 
 pub use target::{Displacements, Solution, Target, TargetError};
