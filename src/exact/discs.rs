@@ -53,7 +53,7 @@ impl Upper {
 
     /// At least the quotient by a positive number that is a lower bound of the divisor.
     #[inline(always)]
-    fn over(self, least: f64) -> Self {
+    pub(super) fn over(self, least: f64) -> Self {
         Upper((self.0 / least).next_up())
     }
 
