@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 mod exact;
 mod extras;
 
-pub use exact::{Census, Certified, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
+pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, Warning, WarningKind};
 
 /// The format that this program writes and reads.

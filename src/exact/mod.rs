@@ -15,7 +15,14 @@
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
+pub mod certificate;
+pub mod conjugation;
+pub mod discs;
+pub mod distinct;
+pub mod double_double;
 pub mod mechanisms;
+mod polynomial;
+pub mod refinement;
 pub mod target;
 
 pub use mechanisms::{Driven, Mechanism, mechanisms};

@@ -18,26 +18,42 @@ pub struct ExactRecord {
     pub census: Census,
     /// Whether as many classes were found as points in general position have.
     pub generic: bool,
+    /// What may be said of the list as a whole.
+    pub completeness: Completeness,
     /// Every real class by its best linkage, better first.
     pub linkages: Vec<ExactLinkage>,
 }
 
+/// What may be said of the list of classes as a whole. None of it is proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Completeness {
+    /// As many as points in general position have: all, by the published count.
+    Complete,
+    /// Points that are not in general position: fewer isolated solutions, and no path was lost.
+    NonGeneric,
+    /// Paths were lost, or ended together: some classes may be missing.
+    Incomplete,
+    /// Stopped before the end.
+    Cancelled,
+}
+
 /// Counts of solutions up to cognates and labels. They add up:
 ///
-/// - tracked = classes + duplicate + at_infinity + singular + failed,
+/// - tracked = finite + singular + failed, finite = classes + duplicate,
 /// - classes = real + real_curve + complex = certified + not_certified,
 /// - real = degenerate + how many linkages are listed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Census {
     /// Solution paths that were followed.
     pub tracked: usize,
-    /// Different isolated solutions at their ends.
+    /// Paths that ended in an isolated solution.
+    pub finite: usize,
+    /// Different isolated solutions.
     pub classes: usize,
     /// Paths that ended where another one did, after all repeats.
     pub duplicate: usize,
-    /// Paths that went to infinity.
-    pub at_infinity: usize,
-    /// Paths that ended where solutions meet or are not isolated.
+    /// Paths that ended at infinity, where solutions meet, or in a whole family of them.
     pub singular: usize,
     /// Paths that were lost for no known reason.
     pub failed: usize,

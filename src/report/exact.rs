@@ -5,7 +5,7 @@ use super::table::COLUMNS;
 use super::text::{grouped, significant, wrapped};
 use super::words;
 use crate::linkage::AssemblyMode;
-use crate::record::{Census, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
+use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
 
 /// Rows where not all are asked for.
 const FEW: usize = 8;
@@ -48,26 +48,25 @@ fn count(n: usize) -> String {
 /// How many solutions there are, and what kind of points.
 fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
-    if exact.generic {
-        return format!(
-            "{} solutions up to cognates: as many as nine points in general position have.",
-            count(census.classes)
-        );
+    let found = count(census.classes);
+    let all = count(GENERIC_CLASSES);
+    match exact.completeness {
+        Completeness::Complete => {
+            format!("{found} solutions up to cognates: as many as nine points in general position have.")
+        }
+        Completeness::NonGeneric => format!(
+            "The points are non-generic: {found} isolated solutions up to cognates were found, where points in general \
+             position have {all}."
+        ),
+        Completeness::Incomplete => {
+            format!(
+                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost."
+            )
+        }
+        Completeness::Cancelled => {
+            format!("{found} of {all} solutions up to cognates were found until the search was stopped.")
+        }
     }
-    if census.failed > 0 {
-        return format!(
-            "{} of {} solutions found; {} paths were lost, so that some may be missing.",
-            count(census.classes),
-            count(GENERIC_CLASSES),
-            count(census.failed)
-        );
-    }
-    format!(
-        "The points are non-generic: {} isolated solutions up to cognates were found, where points in general position \
-         have {}.",
-        count(census.classes),
-        count(GENERIC_CLASSES)
-    )
 }
 
 fn real(census: &Census) -> String {
@@ -101,8 +100,7 @@ fn real(census: &Census) -> String {
 fn paths(census: &Census) -> String {
     let others = [
         (census.duplicate, "at an end found before"),
-        (census.at_infinity, "at infinity"),
-        (census.singular, "where solutions meet"),
+        (census.singular, "at infinity or where solutions meet"),
         (census.failed, "lost"),
     ];
     let parts: Vec<String> =

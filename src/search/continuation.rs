@@ -10,12 +10,16 @@ use super::plan::FAR;
 use super::rank::{count_distinct, divided, exact_sum_sq};
 use super::warm::start_at;
 use super::{Budget, Observer, SearchOutcome};
+use crate::exact::certificate::{Certificate, certify};
+use crate::exact::mechanisms::solution_of;
 use crate::exact::{Solution, Target};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
 use crate::problem::precision::precision_points;
 use crate::problem::spec::Method;
-use crate::record::{Candidate, Census, Certified, Evaluations, ExactRecord, GENERIC_CLASSES, Reason};
+use crate::record::{
+    Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, GENERIC_CLASSES, Reason,
+};
 use rayon::prelude::*;
 
 /// How the record calls it.
@@ -34,7 +38,13 @@ pub struct Exact {
 }
 
 /// Counts what is listed into a census of paths and classes, and lists the classes.
-pub fn listed(problem: &Problem, target: &Target, census: Census, real: &[Solution]) -> Exact {
+pub fn listed(
+    problem: &Problem,
+    target: &Target,
+    census: Census,
+    completeness: Completeness,
+    real: &[Solution],
+) -> Exact {
     let classes = classes(problem, target, real);
     let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
     let census = Census {
@@ -46,7 +56,7 @@ pub fn listed(problem: &Problem, target: &Target, census: Census, real: &[Soluti
     };
     let linkages = classes.par_iter().map(|class| class.listed(certified(target, &class.best))).collect();
     let generic = census.classes == GENERIC_CLASSES;
-    Exact { record: ExactRecord { census, generic, linkages }, classes }
+    Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
 }
 
 impl Exact {
@@ -159,16 +169,36 @@ pub fn target(problem: &Problem) -> Option<Target> {
     Target::new(precision_points(problem).ok()?).ok()
 }
 
-/// The proof that an exact linkage stands where a candidate does.
-pub fn certified(_target: &Target, _candidate: &Candidate) -> Option<Certified> {
-    None
+/// The proof that an exact linkage stands where a candidate does; `None` where it does not succeed.
+///
+/// The distance of the exact pivots and pins from those of the candidate: from it to the refined solution, plus what
+/// that may be off by ([`certify`]), plus what computing that distance rounds.
+pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
+    let linkage = &candidate.linkage;
+    let angles: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let given = solution_of(target, linkage, &angles, &candidate.t1_at)?;
+    let proof = certify(target, &given).ok().filter(Certificate::is_real)?;
+    let joints = linkage.position_with(*angles.first()?, *candidate.t1_at.first()?).joints()?;
+    let recorded = [linkage.crank_pivot(), linkage.follower_pivot(), joints.crank_pin, joints.follower_pin];
+    let refined = proof.refined.grounds.into_iter().chain(proof.refined.pins);
+    let apart = recorded.into_iter().zip(refined).map(|(recorded, refined)| {
+        let exact = target.points[0] + refined * target.scale;
+        let rounded = recorded.norm() + target.points[0].norm() + (refined * target.scale).norm();
+        (recorded - exact).norm() + ROUNDINGS * f64::EPSILON * rounded
+    });
+    // Outward: the sums below are rounded as well.
+    let radius = (apart.fold(0.0, f64::max) + proof.radius * target.scale) * (1.0 + ROUNDINGS * f64::EPSILON);
+    radius.is_finite().then_some(Certified { radius })
 }
 
+/// More roundings than a sum of three points and its length take.
+const ROUNDINGS: f64 = 16.0;
+
 /// The exact answers; `None` where the points have none or the method does not ask for them.
-pub fn solve(problem: &Problem, _budget: &Budget<'_>, _observer: &Observer<'_>) -> Option<Exact> {
+pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) -> Option<Exact> {
     if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
         return None;
     }
-    let _target = target(problem)?;
+    let target = target(problem)?;
     None
 }

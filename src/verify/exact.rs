@@ -3,7 +3,7 @@
 
 use super::{Against, Mismatch};
 use crate::problem::Problem;
-use crate::record::{Candidate, Certified, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
+use crate::record::{Candidate, Certified, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
 use crate::search::continuation::{certified, same, target};
 use crate::search::exact_linkages::class_at;
 
@@ -73,7 +73,8 @@ fn census(exact: &ExactRecord, whole: &mut dyn FnMut(&str, String, String)) {
     let list = &exact.linkages;
     let many = |of: fn(&ExactLinkage) -> bool| list.iter().filter(|l| of(l)).count();
     let sums = [
-        ("tracked", c.tracked, c.classes + c.duplicate + c.at_infinity + c.singular + c.failed),
+        ("tracked", c.tracked, c.finite + c.singular + c.failed),
+        ("finite", c.finite, c.classes + c.duplicate),
         ("classes", c.classes, c.real + c.real_curve + c.complex),
         ("certified", c.certified, c.classes.saturating_sub(c.not_certified)),
         ("real", c.real, c.degenerate + list.len()),
@@ -83,6 +84,15 @@ fn census(exact: &ExactRecord, whole: &mut dyn FnMut(&str, String, String)) {
     ];
     for (name, recorded, found) in sums {
         whole(&format!("exact.census.{name}"), recorded.to_string(), found.to_string());
+    }
+    let complete = exact.completeness == Completeness::Complete;
+    whole("exact.completeness", format!("complete: {complete}"), format!("complete: {}", exact.generic));
+    if exact.completeness == Completeness::NonGeneric && c.failed + c.duplicate > 0 {
+        whole(
+            "exact.completeness",
+            "non-generic".into(),
+            "incomplete: paths were lost or ended together".into(),
+        );
     }
     whole("exact.generic", exact.generic.to_string(), (c.classes == GENERIC_CLASSES).to_string());
 }

@@ -1,23 +1,13 @@
-//! Known answers: every real linkage of two nine-point problems, from an independent complete solution.
+//! Solutions of known targets: published ones, random real and random complex four-bars.
 
-use linkwright::exact::{Solution, Target};
-use linkwright::linkage::{Complex, point};
-use nalgebra::{SMatrix, SVector};
+use crate::random;
+use linkwright::exact::target::STEPS;
+use linkwright::exact::{Displacements, Solution, Target};
+use linkwright::linkage::Complex;
+use linkwright::solve::streams::{Stream, normal, uniform, unit};
+use std::f64::consts::PI;
 
-/// A row of `data/*-real.csv`.
-#[derive(Debug)]
-pub struct Known {
-    /// A, B.
-    pub grounds: [Complex; 2],
-    /// Their pins at the first point.
-    pub pins: [Complex; 2],
-    /// The third pivot.
-    pub third: Complex,
-    /// grashof, one_circuit, in_order, one_branch.
-    pub flags: [bool; 4],
-}
-
-/// Problem 3 of Wampler, Morgan and Sommese.
+/// Problem 3 of Wampler, Morgan and Sommese (1992).
 pub const WMS3: [[f64; 2]; 9] = [
     [0.25, 0.0],
     [0.52, 0.1],
@@ -29,8 +19,7 @@ pub const WMS3: [[f64; 2]; 9] = [
     [0.2, 1.0],
     [0.02, 0.4],
 ];
-
-/// Nine points drawn from a normal distribution.
+/// Nine points of a normal distribution.
 pub const GAUSSIAN: [[f64; 2]; 9] = [
     [0.563696, 0.819245],
     [-0.407692, -1.159878],
@@ -43,87 +32,130 @@ pub const GAUSSIAN: [[f64; 2]; 9] = [
     [0.321842, 1.703739],
 ];
 
-pub fn wms3() -> (Target, Vec<Known>) {
-    (target(WMS3), read(include_str!("data/wms3-real.csv")))
-}
-
-pub fn gaussian() -> (Target, Vec<Known>) {
-    (target(GAUSSIAN), read(include_str!("data/gaussian-real.csv")))
-}
-
 pub fn target(points: [[f64; 2]; 9]) -> Target {
-    Target::new(points.map(point)).expect("nine different points")
+    Target::new(points.map(|[x, y]| Complex::new(x, y))).expect("nine points")
 }
 
-fn read(text: &str) -> Vec<Known> {
-    let rows = text.lines().filter(|line| !line.starts_with('#')).skip(1);
-    rows.map(|line| {
-        let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-        let at = |i: usize| Complex::new(numbers[2 * i], numbers[2 * i + 1]);
-        Known {
-            grounds: [at(0), at(1)],
-            pins: [at(2), at(3)],
-            third: at(4),
-            flags: std::array::from_fn(|i| numbers[10 + i] == 1.0),
-        }
-    })
-    .collect()
+/// A real linkage of the data file.
+pub struct Known {
+    pub class: usize,
+    pub solution: Solution,
 }
 
-impl Known {
-    /// The solution: the turns T_j from |x T_j + delta_j - a| = |x - a|, which has two roots for each link (the one
-    /// that they share), then Newton's method on the sixteen real equations.
-    pub fn solution(&self, target: &Target) -> Solution {
-        let relative = |z: Complex| (z - target.points[0]) / target.scale;
-        let mut pins = self.pins.map(relative);
-        let mut grounds = self.grounds.map(relative);
-        let delta = target.displacements.delta;
-        let length_sq = |k: usize, x: [Complex; 2], a: [Complex; 2]| (x[k] - a[k]).norm_sqr();
-        let lack = |k: usize, j: usize, t: Complex, x: [Complex; 2], a: [Complex; 2]| {
-            (x[k] * t + delta[j] - a[k]).norm_sqr() - length_sq(k, x, a)
+/// All real linkages through the points of a problem, three cognates a class.
+pub fn real_linkages(problem: &str, target: &Target) -> Vec<Known> {
+    include_str!("data/real_linkages.csv")
+        .lines()
+        .filter_map(|line| line.strip_prefix(problem)?.strip_prefix(','))
+        .map(|line| {
+            let numbers: Vec<f64> = line.split(',').map(|n| n.parse().expect("a number")).collect();
+            let place = |i: usize| Complex::new(numbers[i], numbers[i + 1]);
+            let solution = with_rotations(target, [place(2), place(4)], [place(6), place(8)]);
+            Known { class: numbers[0] as usize, solution }
+        })
+        .collect()
+}
+
+/// The real solution with ground pivots A, B and moving pins D, C: at each point the coupler's rotation of the two that
+/// keep |A D| which keeps |B C| better.
+///
+/// With w = delta - a: |x T + w| = |x - a|  <=>  2 Re(x T conj w) = |x - a|^2 - |x|^2 - |w|^2.
+fn with_rotations(target: &Target, grounds: [Complex; 2], pins: [Complex; 2]) -> Solution {
+    let inside = |p: Complex| (p - target.points[0]) / target.scale;
+    let (grounds, pins) = (grounds.map(inside), pins.map(inside));
+    let rotations = target.displacements.delta.map(|delta| {
+        let w = delta - grounds[0];
+        let side = (pins[0] - grounds[0]).norm_sqr() - pins[0].norm_sqr() - w.norm_sqr();
+        let toward = pins[0] * w.conj();
+        let turn = (side / (2.0 * toward.norm())).clamp(-1.0, 1.0).acos();
+        let miss = |t: Complex| {
+            let moved = pins[1] * t + delta - grounds[1];
+            (moved.norm_sqr() - (pins[1] - grounds[1]).norm_sqr()).abs()
         };
-        let mut turns = delta.map(|_| 0.0);
-        for j in 0..8 {
-            // Re(T w) = m with w = x conj(delta - a).
-            let w = pins[0] * (delta[j] - grounds[0]).conj();
-            let m =
-                (length_sq(0, pins, grounds) - pins[0].norm_sqr() - (delta[j] - grounds[0]).norm_sqr()) / 2.0;
-            let half = (m / w.norm()).clamp(-1.0, 1.0).acos();
-            let roots = [half - w.arg(), -half - w.arg()];
-            let off = |angle: f64| lack(1, j, Complex::from_polar(1.0, angle), pins, grounds).abs();
-            turns[j] = if off(roots[1]) < off(roots[0]) { roots[1] } else { roots[0] };
+        let both = [turn, -turn].map(|turn| Complex::from_polar(1.0, turn - toward.arg()));
+        if miss(both[0]) < miss(both[1]) { both[0] } else { both[1] }
+    });
+    real(pins, grounds, rotations)
+}
+
+/// A solution whose twins are conjugates.
+pub fn real(pins: [Complex; 2], grounds: [Complex; 2], rotations: [Complex; STEPS]) -> Solution {
+    let conj = |both: [Complex; 2]| both.map(|z| z.conj());
+    Solution { pins, grounds, pins_starred: conj(pins), grounds_starred: conj(grounds), rotations }
+}
+
+/// A random real four-bar and nine points of its curve; `None` where the loop does not close at one of them.
+pub fn random_real(stream: &mut Stream) -> Option<(Target, Solution)> {
+    let kind = random::one_of(stream, &random::TYPES);
+    let linkage = random::linkage(stream, kind);
+    let traced = random::trace(stream, &linkage, STEPS + 1, None)?;
+    let target = Target::new(traced.points.clone().try_into().expect("nine points")).ok()?;
+    let inside = |p: Complex| (p - target.points[0]) / target.scale;
+    let joints: Vec<_> = traced
+        .positions
+        .iter()
+        .map(|&(angle, assembly)| traced.linkage.position_with(angle, assembly).joints())
+        .collect::<Option<_>>()?;
+    let coupler = |i: usize| joints[i].follower_pin - joints[i].crank_pin;
+    let pins = [joints[0].crank_pin, joints[0].follower_pin].map(inside);
+    let grounds = [traced.linkage.crank_pivot(), traced.linkage.follower_pivot()].map(inside);
+    let rotations = std::array::from_fn(|j| coupler(j + 1) / coupler(0));
+    Some((target, real(pins, grounds, rotations)))
+}
+
+/// Nine real points on a real curve whose linkages are complex: x* = conj y, a* = conj b, |T| = 1. `None` where the
+/// random numbers allow no such points.
+///
+/// With u = x T + delta - a, v = y T + delta - b and d = u - v the equation u conj(v) = k is u = d (p + i q) with |d|^2
+/// q = -Im k and |d|^2 (p^2 - p + q^2) = Re k.
+pub fn random_real_curve(stream: &mut Stream) -> Option<(Target, Solution)> {
+    let [x, y, a, b] = [(); 4].map(|()| gaussian(stream));
+    let k = (x - a) * (y - b).conj();
+    let (mut points, mut rotations) = ([Complex::ZERO; STEPS + 1], [Complex::ZERO; STEPS]);
+    for j in 0..STEPS {
+        let t = Complex::from_polar(1.0, uniform(stream, -PI, PI));
+        let d = (x - y) * t - (a - b);
+        let (q, re) = (-k.im / d.norm_sqr(), k.re / d.norm_sqr());
+        let under = 0.25 - q * q + re;
+        if under < 0.0 {
+            return None;
         }
-        for _ in 0..4 {
-            let mut rows = SMatrix::<f64, 16, 16>::zeros();
-            let mut rest = SVector::<f64, 16>::zeros();
-            for k in 0..2 {
-                for j in 0..8 {
-                    let (row, t) = (8 * k + j, Complex::from_polar(1.0, turns[j]));
-                    let (link, first) = (pins[k] * t + delta[j] - grounds[k], pins[k] - grounds[k]);
-                    let by_pin = (link * t.conj() - first) * 2.0;
-                    let by_ground = (first - link) * 2.0;
-                    let by_turn = link.conj() * pins[k] * t * Complex::new(0.0, 1.0) * 2.0;
-                    rest[row] = lack(k, j, t, pins, grounds);
-                    (rows[(row, 4 * k)], rows[(row, 4 * k + 1)]) = (by_pin.re, by_pin.im);
-                    (rows[(row, 4 * k + 2)], rows[(row, 4 * k + 3)]) = (by_ground.re, by_ground.im);
-                    rows[(row, 8 + j)] = by_turn.re;
-                }
-            }
-            let step = rows.lu().solve(&rest).expect("a regular solution");
-            for k in 0..2 {
-                pins[k] -= Complex::new(step[4 * k], step[4 * k + 1]);
-                grounds[k] -= Complex::new(step[4 * k + 2], step[4 * k + 3]);
-            }
-            for j in 0..8 {
-                turns[j] -= step[8 + j];
-            }
-        }
-        Solution {
-            pins,
-            grounds,
-            pins_starred: pins.map(|z| z.conj()),
-            grounds_starred: grounds.map(|z| z.conj()),
-            rotations: turns.map(|angle| Complex::from_polar(1.0, angle)),
-        }
+        let root = if unit(stream) < 0.5 { under.sqrt() } else { -under.sqrt() };
+        points[j + 1] = d * Complex::new(0.5 + root, q) - x * t + a;
+        rotations[j] = t;
     }
+    let target = Target::new(points).ok()?;
+    let scaled = |both: [Complex; 2]| both.map(|z| z / target.scale);
+    let (pins, grounds) = (scaled([x, y]), scaled([a, b]));
+    let exchanged = |[one, two]: [Complex; 2]| [two.conj(), one.conj()];
+    let (pins_starred, grounds_starred) = (exchanged(pins), exchanged(grounds));
+    Some((target, Solution { pins, grounds, pins_starred, grounds_starred, rotations }))
+}
+
+fn gaussian(stream: &mut Stream) -> Complex {
+    Complex::new(normal(stream, 0.0, 1.0), normal(stream, 0.0, 1.0))
+}
+
+/// Random complex pivots and rotations, and displacements that they solve to rounding.
+///
+/// With alpha_k = p_k T - g_k, beta_k = p*_k / T - g*_k and K_k = (p_k - g_k)(p*_k - g*_k) the difference of the two
+/// equations (delta + alpha_k)(delta* + beta_k) = K_k is linear: delta* = e - f delta. The first is then a quadratic.
+pub fn random_complex(stream: &mut Stream) -> (Displacements, Solution) {
+    let mut two = || [gaussian(stream), gaussian(stream)];
+    let (pins, grounds, pins_starred, grounds_starred) = (two(), two(), two(), two());
+    let rotations: [Complex; STEPS] = std::array::from_fn(|_| gaussian(stream));
+    let both = rotations.map(|t| {
+        let alpha = [0, 1].map(|k| pins[k] * t - grounds[k]);
+        let beta = [0, 1].map(|k| pins_starred[k] / t - grounds_starred[k]);
+        let k = [0, 1].map(|k| (pins[k] - grounds[k]) * (pins_starred[k] - grounds_starred[k]));
+        let across = alpha[0] - alpha[1];
+        let e = (k[0] - k[1] - alpha[0] * beta[0] + alpha[1] * beta[1]) / across;
+        let f = (beta[0] - beta[1]) / across;
+        // (delta + alpha)(e + beta - f delta) = K: f delta^2 - (e + beta - f alpha) delta + K - alpha (e + beta) = 0.
+        let (linear, constant) = (e + beta[0] - f * alpha[0], k[0] - alpha[0] * (e + beta[0]));
+        let delta = (linear + (linear * linear - f * constant * 4.0).sqrt()) / (f * 2.0);
+        (delta, e - f * delta)
+    });
+    let displacements = Displacements { delta: both.map(|b| b.0), starred: both.map(|b| b.1) };
+    (displacements, Solution { pins, grounds, pins_starred, grounds_starred, rotations })
 }

@@ -1,10 +1,11 @@
 //! Known solutions as the record lists them.
 
-use crate::known::{self, Known};
+use crate::known::{GAUSSIAN, WMS3, target};
+use crate::verdicts::verdicts;
 use linkwright::exact::{Solution, Target};
 use linkwright::problem::Problem;
 use linkwright::problem_file;
-use linkwright::record::{Census, ExactLinkage};
+use linkwright::record::{Census, Completeness, ExactLinkage};
 use linkwright::search::continuation::{Exact, listed};
 
 fn problem(target: &Target, more: &str) -> Problem {
@@ -19,6 +20,7 @@ fn problem(target: &Target, more: &str) -> Problem {
 fn census(real: usize, real_curve: usize) -> Census {
     Census {
         tracked: 1442,
+        finite: 1442,
         classes: 1442,
         real,
         real_curve,
@@ -28,9 +30,10 @@ fn census(real: usize, real_curve: usize) -> Census {
     }
 }
 
-fn listing((target, known): &(Target, Vec<Known>), real_curve: usize, more: &str) -> Exact {
-    let real: Vec<Solution> = known.iter().map(|class| class.solution(target)).collect();
-    listed(&problem(target, more), target, census(real.len(), real_curve), &real)
+fn listing(name: &str, points: [[f64; 2]; 9], real_curve: usize, more: &str) -> Exact {
+    let target = target(points);
+    let real: Vec<Solution> = verdicts(name, &target).iter().map(|class| class.solution).collect();
+    listed(&problem(&target, more), &target, census(real.len(), real_curve), Completeness::Complete, &real)
 }
 
 fn free(list: &[ExactLinkage]) -> usize {
@@ -39,7 +42,7 @@ fn free(list: &[ExactLinkage]) -> usize {
 
 #[test]
 fn problem_3_lists_64_linkages_and_the_one_without_defects_first() {
-    let exact = listing(&known::wms3(), 116, "");
+    let exact = listing("wms3", WMS3, 116, "");
     let (census, list) = (exact.record.census, &exact.record.linkages);
     assert!(exact.record.generic);
     assert_eq!((census.one_circuit, census.in_order, census.free_of_defects), (30, 3, 1));
@@ -56,8 +59,8 @@ fn problem_3_lists_64_linkages_and_the_one_without_defects_first() {
 #[test]
 fn what_is_required_orders_the_list_and_takes_nothing_from_it() {
     let any = "[require]\norder = \"any\"\nbranch = \"any\"\nlink_ratio_max = 1000";
-    let loose = listing(&known::wms3(), 116, any);
-    let strict = listing(&known::wms3(), 116, "");
+    let loose = listing("wms3", WMS3, 116, any);
+    let strict = listing("wms3", WMS3, 116, "");
     assert_eq!((loose.record.linkages.len(), strict.record.linkages.len()), (64, 64));
     assert_eq!(loose.record.census, strict.record.census);
     let accepted = |exact: &Exact| exact.record.linkages.iter().filter(|l| l.accepted).count();
@@ -66,7 +69,7 @@ fn what_is_required_orders_the_list_and_takes_nothing_from_it() {
 
 #[test]
 fn the_gaussian_points_have_nothing_to_build() {
-    let exact = listing(&known::gaussian(), 122, "");
+    let exact = listing("gaussian", GAUSSIAN, 122, "");
     let census = exact.record.census;
     assert_eq!((census.one_circuit, census.in_order, census.free_of_defects), (6, 0, 0));
     assert!(exact.record.linkages.iter().all(|l| !l.accepted));
