@@ -15,6 +15,11 @@
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
+pub mod classes;
+pub mod equations;
+pub mod lanes;
+pub mod monodromy;
 pub mod target;
+pub mod tracker;
 
 pub use target::{Displacements, Solution, Target, TargetError};
