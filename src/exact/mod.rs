@@ -19,6 +19,8 @@ pub mod classes;
 pub mod equations;
 pub mod lanes;
 pub mod monodromy;
+pub mod solve;
+pub mod start;
 pub mod target;
 pub mod tracker;
 

@@ -48,6 +48,8 @@ impl Default for Limits {
     }
 }
 
+/// Fewer solutions than this, and a loop may well bring no new one.
+const FEW: usize = 50;
 /// Classes nearer than this are one.
 const SAME: f64 = 1e-6;
 
@@ -98,16 +100,25 @@ fn rescaled(of: &Solution, by: Complex, by_starred: Complex) -> Solution {
     }
 }
 
+/// Random displacements of moderate size.
+fn random_displacements(uniform: Uniform) -> Displacements {
+    Displacements {
+        delta: [(); STEPS].map(|()| ring(uniform)),
+        starred: [(); STEPS].map(|()| ring(uniform)),
+    }
+}
+
 /// Walks loops until `limits` say stop.
+///
+/// The first solution is carried from the target that its linkage happens to answer to one of moderate size.
 pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
-    let (home, first) = random_answer(uniform);
-    let mut orbit = Orbit { displacements: home, solutions: vec![first], loops: 0, idle: 0 };
+    let (from, first) = random_answer(uniform);
+    let home = random_displacements(uniform);
+    let solutions = arrived(&[first], &Segment { from, to: home }, cancel);
+    let mut orbit = Orbit { displacements: home, solutions, loops: 0, idle: 0 };
     let stay = Segment { from: home, to: home };
     while orbit.loops < limits.loops && orbit.idle < limits.idle && orbit.solutions.len() < limits.enough {
-        let away: Displacements = Displacements {
-            delta: [(); STEPS].map(|()| ring(uniform)),
-            starred: [(); STEPS].map(|()| ring(uniform)),
-        };
+        let away = random_displacements(uniform);
         let [v, v_s] = [(); 2].map(|()| ring(uniform));
         let out = Segment { from: home, to: away };
         let back = Segment { from: scaled(&away, v, v_s), to: home };
@@ -126,7 +137,9 @@ pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
         let mut firsts = first_of_class(&foci, SAME).into_iter().enumerate();
         orbit.solutions.retain(|_| firsts.next().is_some_and(|(at, first)| at == first));
         orbit.loops += 1;
-        orbit.idle = if orbit.solutions.len() == known { orbit.idle + 1 } else { 0 };
+        // A loop that carries few solutions tells nothing when it brings no new one.
+        let new = orbit.solutions.len() > known;
+        orbit.idle = if new || known < FEW { 0 } else { orbit.idle + 1 };
     }
     orbit
 }

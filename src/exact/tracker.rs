@@ -44,7 +44,7 @@ impl Default for Parameters {
             aim: 1e-3,
             first_step: 0.01,
             longest_step: 0.1,
-            shortest_step: 1e-3,
+            shortest_step: 1e-7,
             most_steps: 600,
         }
     }
