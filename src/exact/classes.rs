@@ -64,6 +64,17 @@ impl Solution {
         }
     }
 
+    /// The solution when delta is multiplied by `by` and delta* by `by_starred`.
+    pub fn in_other_units(&self, by: Complex, by_starred: Complex) -> Solution {
+        Solution {
+            pins: self.pins.map(|z| z * by),
+            grounds: self.grounds.map(|z| z * by),
+            pins_starred: self.pins_starred.map(|z| z * by_starred),
+            grounds_starred: self.grounds_starred.map(|z| z * by_starred),
+            rotations: self.rotations,
+        }
+    }
+
     /// The three foci, each with its starred twin: the two ground pivots and the third of the cognates.
     pub fn foci(&self) -> [[Complex; 2]; 3] {
         let third = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| (b * x - a * y) / (x - y);
@@ -111,7 +122,7 @@ pub fn class_distance(one: &[[Complex; 2]; 3], other: &[[Complex; 2]; 3]) -> f64
 
 /// A number that the images of a solution share and that stays of moderate size when foci go to infinity:
 /// sum 1 / (focus - z0) over the foci and their twins, z0 in general position.
-fn key(foci: &[[Complex; 2]; 3]) -> f64 {
+pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
     const POLES: [Complex; 2] =
         [Complex::new(0.372_119_4, 1.719_302_7), Complex::new(-1.130_472_1, -0.926_381_2)];
     foci.iter().map(|[a, b]| ((a - POLES[0]).inv() + (b - POLES[1]).inv()).re).sum()

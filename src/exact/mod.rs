@@ -16,12 +16,19 @@
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
 pub mod classes;
+pub mod discs;
+pub mod double_double;
 pub mod equations;
 pub mod lanes;
+pub mod live;
 pub mod monodromy;
+mod polynomial;
+pub mod refinement;
 pub mod solve;
 pub mod start;
 pub mod target;
 pub mod tracker;
 
+pub use live::{Moved, resolve_from};
+pub use solve::{Census, Class, Completeness, Options, Reality, Solved, solve};
 pub use target::{Displacements, Solution, Target, TargetError};

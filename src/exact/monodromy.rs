@@ -90,16 +90,6 @@ fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements
     Displacements { delta: of.delta.map(|d| d * by), starred: of.starred.map(|d| d * by_starred) }
 }
 
-fn rescaled(of: &Solution, by: Complex, by_starred: Complex) -> Solution {
-    Solution {
-        pins: of.pins.map(|z| z * by),
-        grounds: of.grounds.map(|z| z * by),
-        pins_starred: of.pins_starred.map(|z| z * by_starred),
-        grounds_starred: of.grounds_starred.map(|z| z * by_starred),
-        rotations: of.rotations,
-    }
-}
-
 /// Random displacements of moderate size.
 fn random_displacements(uniform: Uniform) -> Displacements {
     Displacements {
@@ -124,7 +114,7 @@ pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
         let back = Segment { from: scaled(&away, v, v_s), to: home };
         let there: Vec<Solution> = arrived(&orbit.solutions, &out, cancel)
             .iter()
-            .map(|solution| rescaled(solution, v, v_s))
+            .map(|solution| solution.in_other_units(v, v_s))
             .collect();
         let returned = arrived(&there, &back, cancel);
         let known = orbit.solutions.len();

@@ -13,6 +13,7 @@
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
 //! | 272.. | n times x, a, x*, a*, y, b, y*, b*: real and imaginary part, f32 |
 
+use super::classes::first_of_class;
 use super::equations::{UNKNOWNS, residuals, solution, unknowns};
 use super::lanes::ORDER;
 use super::target::{Displacements, STEPS, Solution};
@@ -118,6 +119,24 @@ impl StartSet {
         }
     }
 
+    /// How many classes of this set the other has not, both being sets of the same target; their own duplicates count
+    /// as well.
+    pub fn distinct_from(&self, other: &StartSet) -> usize {
+        let foci: Vec<_> = other.solutions.iter().chain(&self.solutions).map(Solution::foci).collect();
+        let others = other.solutions.len();
+        let first = first_of_class(&foci, SAME);
+        let mut met = vec![false; others];
+        let mut new = 0;
+        for &first in &first[others..] {
+            if first < others && !met[first] {
+                met[first] = true;
+            } else {
+                new += 1;
+            }
+        }
+        new
+    }
+
     /// The file's bytes.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
@@ -137,6 +156,9 @@ impl StartSet {
         bytes
     }
 }
+
+/// Classes nearer than this are one.
+const SAME: f64 = 1e-7;
 
 /// From single precision, a few steps are enough.
 const NEWTON_STEPS: usize = 5;
