@@ -1,12 +1,7 @@
 //! From a real solution to linkages: the six ways to build one class, each with its motion through the points.
 //!
 //! A class of solutions is one coupler curve. Three Roberts cognates draw it, and in each of them either of the two
-//! links on the ground can be driven: six mechanisms. With the pins x, y, their ground pivots a, b and the coupler's
-//! turns T_j the next cognate is (Wampler, Morgan, Sommese 1992)
-//!
-//! ```text
-//! (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a),   T_j -> (x T_j + delta_j - a) / (x - a)
-//! ```
+//! links on the ground can be driven: six mechanisms ([`Solution::cognate`], [`Solution::swapped`]).
 //!
 //! The driven link (x, a) has its pivot at A = P_0 + a and its pin at C_j = P_j + T_j x when the coupler point is at
 //! P_j: the crank angles and the assembly at each point are read off, nothing is searched.
@@ -39,7 +34,7 @@ pub enum Driven {
 /// One of the six ways to build a class, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// Which cognate: 0 is the solution itself, 1 and 2 follow by the map of the module.
+    /// Which cognate: 0 is the solution itself, 1 and 2 follow by [`Solution::cognate`].
     pub cognate: usize,
     /// Which of that cognate's links is the crank.
     pub driven: Driven,
@@ -91,20 +86,6 @@ impl Real {
             pins: mean(solution.pins, solution.pins_starred),
             grounds: mean(solution.grounds, solution.grounds_starred),
             rotations: solution.rotations.map(|t| t / t.norm()),
-        }
-    }
-
-    fn next_cognate(&self, target: &Target) -> Real {
-        let ([x, y], [a, b]) = (self.pins, self.grounds);
-        let delta = &target.displacements.delta;
-        let turned = std::array::from_fn(|j| {
-            let t = (x * self.rotations[j] + delta[j] - a) / (x - a);
-            t / t.norm()
-        });
-        Real {
-            pins: [(x - a) * y / (x - y), a - x],
-            grounds: [(b * x - a * y) / (x - y), a],
-            rotations: turned,
         }
     }
 
@@ -160,12 +141,13 @@ impl Real {
 /// The six mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer where
 /// one has a link of no length. `task` is the path of the nine points of `target`.
 pub fn mechanisms(task: &PathTask, target: &Target, solution: &Solution) -> Vec<Mechanism> {
-    let mut form = Real::of(solution);
+    let mut form = *solution;
     let mut list = Vec::with_capacity(6);
     for cognate in 0..3 {
         let both = [Driven::First, Driven::Second];
-        list.extend(both.into_iter().filter_map(|driven| form.mechanism(task, target, cognate, driven)));
-        form = form.next_cognate(target);
+        let real = Real::of(&form);
+        list.extend(both.into_iter().filter_map(|driven| real.mechanism(task, target, cognate, driven)));
+        form = form.cognate(&target.displacements);
     }
     list
 }

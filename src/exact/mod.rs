@@ -16,14 +16,24 @@
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
 pub mod certificate;
+pub mod classes;
 pub mod conjugation;
 pub mod discs;
 pub mod distinct;
 pub mod double_double;
+pub mod equations;
+pub mod lanes;
+pub mod live;
 pub mod mechanisms;
+pub mod monodromy;
 mod polynomial;
 pub mod refinement;
+pub mod solve;
+pub mod start;
 pub mod target;
+pub mod tracker;
 
+pub use live::{Moved, resolve_from};
 pub use mechanisms::{Driven, Mechanism, mechanisms};
+pub use solve::{Census, Class, Completeness, Options, Reality, Solved, solve};
 pub use target::{Displacements, Solution, Target, TargetError};

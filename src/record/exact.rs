@@ -69,6 +69,8 @@ pub struct Census {
     pub certified: usize,
     /// Classes for which the proof did not succeed.
     pub not_certified: usize,
+    /// Pairs of certified classes that are not proved to be different ones.
+    pub not_told_apart: usize,
     /// Real classes that pass all points on one circuit, by some cognate and crank.
     pub one_circuit: usize,
     /// Of these, those that pass them in order.

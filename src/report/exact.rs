@@ -117,13 +117,17 @@ fn proof(exact: &ExactRecord) -> String {
         (n, 0) => format!("Proved: each of the {} exists", count(n)),
         (n, without) => format!("Proved: {} of them exist ({} without a proof)", count(n), count(without)),
     };
-    text.push_str(
-        ", alone within its radius, and the real ones are real. Not proved: that there are no others; ",
-    );
+    text.push_str(", alone within its radius");
+    text.push_str(&match census.not_told_apart {
+        0 => ", and no two are the same".to_owned(),
+        1 => ", and no two are the same but for 1 pair that may be".to_owned(),
+        n => format!(", and no two are the same but for {} pairs that may be", count(n)),
+    });
+    text.push_str(". Not proved: that there are no others; ");
     text.push_str(if exact.generic {
         "that rests on the count published by Wampler, Morgan and Sommese (1992)."
     } else {
-        "nor are solutions that are not isolated listed."
+        "and solutions that are not isolated are not listed."
     });
     text
 }

@@ -9,10 +9,11 @@ use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
 use super::plan::FAR;
 use super::rank::{count_distinct, divided, exact_sum_sq};
 use super::warm::start_at;
-use super::{Budget, Observer, SearchOutcome};
-use crate::exact::certificate::{Certificate, certify};
+use super::{Budget, Observer, Progress, SearchOutcome};
+use crate::exact::certificate::{Certificate, certify, certify_all};
+use crate::exact::distinct::not_proved_distinct;
 use crate::exact::mechanisms::solution_of;
-use crate::exact::{Solution, Target};
+use crate::exact::{self, Options, Reality, Solution, Target};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
 use crate::problem::precision::precision_points;
@@ -200,5 +201,43 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
         return None;
     }
     let target = target(problem)?;
-    None
+    let progress = |ended: usize, of: usize| {
+        let (evaluations, budget) = (ended as u64, of as u64);
+        observer(&Progress { phase: NAME, evaluations, budget, best_sum_sq: None, accepted: false });
+    };
+    let solved = exact::solve(&target, &Options::default(), &progress, budget.cancel);
+    let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();
+    let proofs = certify_all(&target, &solutions);
+    let certificates: Vec<Certificate> = proofs.iter().flatten().copied().collect();
+    // Real ones as the proof has refined them.
+    let real: Vec<Solution> = solved
+        .classes
+        .iter()
+        .zip(&proofs)
+        .filter(|(class, _)| class.reality == Reality::Linkage)
+        .map(|(class, proof)| proof.as_ref().map_or(class.solution, |proof| proof.refined))
+        .collect();
+    let paths = &solved.census;
+    let census = Census {
+        tracked: paths.tracked,
+        finite: paths.finite,
+        classes: paths.distinct,
+        duplicate: paths.duplicates,
+        singular: paths.singular,
+        failed: paths.failed,
+        real: paths.real,
+        real_curve: paths.curve_only,
+        complex: paths.complex,
+        certified: certificates.len(),
+        not_certified: paths.distinct - certificates.len(),
+        not_told_apart: not_proved_distinct(&certificates).len(),
+        ..Census::default()
+    };
+    let completeness = match solved.completeness() {
+        exact::Completeness::Complete => Completeness::Complete,
+        exact::Completeness::NonGeneric { .. } => Completeness::NonGeneric,
+        exact::Completeness::Incomplete { .. } => Completeness::Incomplete,
+        exact::Completeness::Cancelled => Completeness::Cancelled,
+    };
+    Some(listed(problem, &target, census, completeness, &real))
 }
