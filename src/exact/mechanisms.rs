@@ -22,6 +22,9 @@ pub const POINTS: usize = STEPS + 1;
 /// the sine of the transmission angle there: the loop's closure magnifies rounding by that much.
 pub const PASSES: f64 = 1e-10;
 
+/// A link shorter than this part of the span is none: what is left of it is rounding.
+pub const NO_LENGTH: f64 = 1e-9;
+
 /// One of the two links on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Driven {
@@ -121,6 +124,9 @@ impl Real {
         let linkage = FourBar::with_coupler_offset(pivots, links, offset, assemblies[0]).ok()?;
         linkage.linkage_type()?;
         let span = linkage.longest_link().max(linkage.crank_side()).max(scale);
+        if linkage.links().iter().any(|link| *link <= NO_LENGTH * span) {
+            return None;
+        }
         let (mut miss, mut passes) = (0.0_f64, true);
         for j in 0..POINTS {
             let Some(joints) = linkage.position_with(crank_angles[j], assemblies[j]).joints() else {

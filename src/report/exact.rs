@@ -54,10 +54,18 @@ fn found(exact: &ExactRecord) -> String {
         Completeness::Complete => {
             format!("{found} solutions up to cognates: as many as nine points in general position have.")
         }
-        Completeness::NonGeneric => format!(
-            "The points are non-generic: {found} isolated solutions up to cognates were found, where points in general \
-             position have {all}."
-        ),
+        Completeness::NonGeneric => {
+            let isolated = count(census.certified);
+            let mut text = format!(
+                "The points are non-generic: {isolated} isolated solutions up to cognates were found, where points in \
+                 general position have {all}."
+            );
+            if census.not_certified > 0 {
+                let rest = count(census.not_certified);
+                text.push_str(&format!(" {rest} more may be members of whole families of solutions."));
+            }
+            text
+        }
         Completeness::Incomplete => {
             format!(
                 "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost."
@@ -113,11 +121,11 @@ fn paths(census: &Census) -> String {
 fn proof(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let mut text = match (census.certified, census.not_certified) {
-        (0, _) => return "Nothing is proved of them.".to_owned(),
+        (0, _) => return "No solution is proved to exist, or to be isolated.".to_owned(),
         (n, 0) => format!("Proved: each of the {} exists", count(n)),
         (n, without) => format!("Proved: {} of them exist ({} without a proof)", count(n), count(without)),
     };
-    text.push_str(", alone within its radius");
+    text.push_str(", each alone within its radius");
     text.push_str(&match census.not_told_apart {
         0 => ", and no two are the same".to_owned(),
         1 => ", and no two are the same but for 1 pair that may be".to_owned(),

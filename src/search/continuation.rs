@@ -195,6 +195,12 @@ pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
 /// More roundings than a sum of three points and its length take.
 const ROUNDINGS: f64 = 16.0;
 
+/// The proof of a class by another of its cognates: what is badly conditioned in one may be well in the next.
+fn of_a_cognate(target: &Target, solution: &Solution) -> Option<Certificate> {
+    let images = solution.images(&target.displacements);
+    images[1..3].iter().filter(|image| image.is_finite()).find_map(|image| certify(target, image).ok())
+}
+
 /// The exact answers; `None` where the points have none or the method does not ask for them.
 pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) -> Option<Exact> {
     if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
@@ -207,7 +213,11 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
     };
     let solved = exact::solve(&target, &Options::default(), &progress, budget.cancel);
     let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();
-    let proofs = certify_all(&target, &solutions);
+    let proofs: Vec<Option<Certificate>> = certify_all(&target, &solutions)
+        .into_par_iter()
+        .zip(&solutions)
+        .map(|(proof, solution)| proof.ok().or_else(|| of_a_cognate(&target, solution)))
+        .collect();
     let certificates: Vec<Certificate> = proofs.iter().flatten().copied().collect();
     // Real ones as the proof has refined them.
     let real: Vec<Solution> = solved
