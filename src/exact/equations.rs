@@ -1,12 +1,16 @@
 //! The sixteen equations, their derivatives, and the 8x8 system that is left when the rotations are eliminated.
 //!
-//! With L = x T + delta - a, R = x* / T + delta* - a*, U = x - a, V = x* - a* the equation of one leg at one point is
-//! f = L R - U V, and
+//! With u = x - a and tau = T - 1 in place of a and T, M = x tau + delta, sigma = 1 / T - 1 = -tau / T and
+//! M* = x* sigma + delta* the equation of one leg at one point is
 //!
 //! ```text
-//! df/dx = T R - V      df/da = V - R      df/dx* = L / T - U      df/da* = U - L
-//! p = df/dlog T = x T R - (x* / T) L      df/ddelta = R           df/ddelta* = L
+//! f = (u + M)(u* + M*) - u u* = u M* + u* M + M M*
+//! df/dx = tau R    df/du = M*    df/dx* = sigma L    df/du* = M        L = u + M,  R = u* + M*
+//! p = df/dlog T = x T R - (x* / T) L      df/ddelta = R      df/ddelta* = L
 //! ```
+//!
+//! No large terms cancel in this form: it serves links of ten thousand times the points' extent, whose u is large or
+//! whose tau is small, as well as others.
 //!
 //! T_j stands in two equations, one a leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight rows
 //! in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest entry of
@@ -20,10 +24,11 @@ use crate::linkage::lane::Lane;
 
 /// Unknowns in all.
 pub const UNKNOWNS: usize = ORDER + STEPS;
-/// Unknowns of one leg: x, a, x*, a*.
+/// Unknowns of one leg: x, u, x*, u*.
 const LEG: usize = 4;
 
-/// Sixteen numbers, eight paths each: [x, a, x*, a*, y, b, y*, b*, T_1 .. T_8], or their changes.
+/// Sixteen numbers, eight paths each: [x, u, x*, u*, y, v, y*, v*, tau_1 .. tau_8] with u = x - a, v = y - b,
+/// tau = T - 1, or their changes.
 pub type Unknowns = [ComplexLanes; UNKNOWNS];
 
 /// The unknowns of a solution in the order of [`Unknowns`].
@@ -32,24 +37,25 @@ pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
     for leg in 0..2 {
         all[LEG * leg..LEG * (leg + 1)].copy_from_slice(&[
             of.pins[leg],
-            of.grounds[leg],
+            of.pins[leg] - of.grounds[leg],
             of.pins_starred[leg],
-            of.grounds_starred[leg],
+            of.pins_starred[leg] - of.grounds_starred[leg],
         ]);
     }
-    all[ORDER..].copy_from_slice(&of.rotations);
+    all[ORDER..].copy_from_slice(&of.rotations.map(|t| t - 1.0));
     all
 }
 
 /// The solution with these unknowns.
 pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
-    let pair = |place: usize| [of[place], of[LEG + place]];
+    let pins = |place: usize| [of[place], of[LEG + place]];
+    let grounds = |place: usize| [of[place] - of[place + 1], of[LEG + place] - of[LEG + place + 1]];
     Solution {
-        pins: pair(0),
-        grounds: pair(1),
-        pins_starred: pair(2),
-        grounds_starred: pair(3),
-        rotations: std::array::from_fn(|j| of[ORDER + j]),
+        pins: pins(0),
+        grounds: grounds(0),
+        pins_starred: pins(2),
+        grounds_starred: grounds(2),
+        rotations: std::array::from_fn(|j| of[ORDER + j] + 1.0),
     }
 }
 
@@ -96,23 +102,16 @@ struct Linearised {
 }
 
 #[inline(always)]
-fn linearised(
-    z: &Unknowns,
-    at: &DisplacementLanes,
-    leg: usize,
-    j: usize,
-    inverse: ComplexLanes,
-) -> Linearised {
-    let [x, a, x_s, a_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
-    let t = z[ORDER + j];
-    let (turned, turned_s) = (x * t, x_s * inverse);
-    let l = turned + at.delta[j] - a;
-    let r = turned_s + at.starred[j] - a_s;
-    let (u, v) = (x - a, x_s - a_s);
+fn linearised(z: &Unknowns, at: &DisplacementLanes, leg: usize, j: usize, inverse: ComplexLanes) -> Linearised {
+    let [x, u, x_s, u_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
+    let tau = z[ORDER + j];
+    let sigma = -tau * inverse;
+    let (m, m_s) = (x * tau + at.delta[j], x_s * sigma + at.starred[j]);
+    let (l, r) = (u + m, u_s + m_s);
     Linearised {
-        row: [t * r - v, v - r, inverse * l - u, u - l],
-        p: turned * r - turned_s * l,
-        value: l * r - u * v,
+        row: [tau * r, m_s, sigma * l, m],
+        p: (x + x * tau) * r - (x_s * inverse) * l,
+        value: u * m_s + m * r,
         by_delta: r,
         by_starred: l,
     }
@@ -124,16 +123,17 @@ fn size(z: ComplexLanes) -> F64x8 {
     larger(z.re, -z.re) + larger(z.im, -z.im)
 }
 
-/// Solves the linearised equations; the changes of T_j are dT_j (not dlog T_j).
+/// Solves the linearised equations; the changes of tau_j are dT_j (not dlog T_j).
 ///
 /// The first right-hand side is Newton's, -f. With R = 2 the second is Davidenko's, -(df/ddelta delta' + df/ddelta*
 /// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so.
+/// With them comes the smallest pivot, squared.
 #[inline(always)]
 pub fn steps<const R: usize>(
     z: &Unknowns,
     at: &DisplacementLanes,
     velocity: &DisplacementLanes,
-) -> [Unknowns; R] {
+) -> ([Unknowns; R], F64x8) {
     let zero = ComplexLanes::ZERO;
     let mut matrix = [[zero; ORDER]; ORDER];
     let mut right = [[zero; R]; ORDER];
@@ -141,7 +141,8 @@ pub fn steps<const R: usize>(
     let mut sides = [[[zero; R]; STEPS]; 2];
     let mut turns = [[zero; STEPS]; 2];
     for j in 0..STEPS {
-        let inverse = z[ORDER + j].recip();
+        let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
+        let inverse = t.recip();
         for leg in 0..2 {
             let at_leg = linearised(z, at, leg, j, inverse);
             legs[leg][j] = at_leg.row;
@@ -167,7 +168,7 @@ pub fn steps<const R: usize>(
             right[j][r] = (p * sides[0][j][r] + q * sides[1][j][r]).scale(scale);
         }
     }
-    solve(&mut matrix, &mut right);
+    let smallest = solve(&mut matrix, &mut right);
     let mut answer = [[zero; UNKNOWNS]; R];
     for (r, answer) in answer.iter_mut().enumerate() {
         for i in 0..ORDER {
@@ -183,8 +184,9 @@ pub fn steps<const R: usize>(
             let (one, other) = (turns[0][j].norm_sq(), turns[1][j].norm_sq());
             let above = ComplexLanes::where_at_least(one, other, left[0], left[1]);
             let below = ComplexLanes::where_at_least(one, other, turns[0][j], turns[1][j]);
-            answer[ORDER + j] = z[ORDER + j] * above * below.recip();
+            let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
+            answer[ORDER + j] = t * above * below.recip();
         }
     }
-    answer
+    (answer, smallest)
 }

@@ -126,12 +126,14 @@ pub const ORDER: usize = 8;
 /// Solves A x = b for `R` right-hand sides a lane by elimination with row pivoting, each lane with its own pivots.
 ///
 /// `matrix[i][j]` is a_ij and `right[i][r]` is b_i of the r-th side; x_i replaces b_i. A lane whose matrix is
-/// singular gets numbers that are not finite.
+/// singular gets numbers that are not finite. The answer is the smallest pivot of each lane, squared: with rows whose
+/// largest entry is about one a measure of how far the matrix is from a singular one.
 #[inline(always)]
 pub fn solve<const R: usize>(
     matrix: &mut [[ComplexLanes; ORDER]; ORDER],
     right: &mut [[ComplexLanes; R]; ORDER],
-) {
+) -> F64x8 {
+    let mut smallest = F64x8::splat(f64::INFINITY);
     for k in 0..ORDER {
         // The row with the largest entry in this column, and that entry's inverse.
         let mut best = matrix[k][k].norm_sq();
@@ -141,6 +143,7 @@ pub fn solve<const R: usize>(
             place = best.at_least(size, place, F64x8::splat(i as f64));
             best = best.at_least(size, best, size);
         }
+        smallest = smallest.min(best);
         let (old, old_right) = (matrix[k], right[k]);
         let mut pivot = old;
         let mut pivot_right = old_right;
@@ -183,4 +186,5 @@ pub fn solve<const R: usize>(
             }
         }
     }
+    smallest
 }

@@ -172,6 +172,7 @@ const REAL: f64 = 1e-8;
 
 /// The fate of one end.
 fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
+    if std::env::var("DBG").is_ok() { println!("END {:?} {} newton {:e} speed {:e} pivot {:e} size {:e}", end.ending, end.steps, corrected.newton_step, corrected.speed, corrected.pivot, super::equations::unknowns(&end.solution).iter().map(|z|z.norm()).fold(0.,f64::max)); }
     match end.ending {
         Ending::Cancelled => return Fate::Lost,
         Ending::Stalled { t } | Ending::OutOfSteps { t } => {

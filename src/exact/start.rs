@@ -11,7 +11,7 @@
 //! | 8..12 | number of classes n, u32 |
 //! | 12..16 | zero |
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
-//! | 272.. | n times x, a, x*, a*, y, b, y*, b*: real and imaginary part, f32 |
+//! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::classes::first_of_class;
 use super::equations::{UNKNOWNS, residuals, solution, unknowns};

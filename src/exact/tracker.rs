@@ -143,11 +143,14 @@ fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
     (of_value, of_tangent)
 }
 
-/// The relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR). Not finite where a step is not.
+/// The relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR), with T_j in place of tau_j.
+/// Not finite where a step is not.
 #[inline(always)]
 fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
+    let one = ComplexLanes::splat(Complex::ONE);
     let mut sum = F64x8([0.0; LANES]);
-    for (step, z) in step.iter().zip(of) {
+    for (i, (step, z)) in step.iter().zip(of).enumerate() {
+        let z = if i < ORDER { *z } else { *z + one };
         sum = sum + step.norm_sq() * (z.norm_sq() + F64x8([FLOOR; LANES])).recip();
     }
     sum
@@ -229,7 +232,7 @@ impl State {
         let t = &mut self.t[lane];
         self.steps[lane] += 1;
         let first = self.nodes[lane] == 0;
-        let good = e[0] <= with.accept && (e[1] <= with.contraction * e[0] || e[1] <= ROUNDING);
+        let good = e[0] <= with.accept && (first || e[1] <= with.contraction * e[0] || e[1] <= ROUNDING);
         if good {
             if !first {
                 *t = [to, t[0], t[1]];
@@ -265,8 +268,8 @@ impl State {
     }
 }
 
-/// Relative changes below this are rounding.
-const ROUNDING: f64 = 1e-10;
+/// A second Newton step below this needs not be smaller than the first: near infinity rounding keeps both at this level.
+const ROUNDING: f64 = 1e-6;
 
 /// Displacements and their velocity at each lane's t.
 #[inline(always)]
@@ -332,10 +335,10 @@ fn worker(
     while state.path.iter().any(Option::is_some) && !cancel.load(Ordering::Relaxed) {
         let (mut z, to) = state.predicted();
         let at = displaced(&from, &velocity, F64x8(to));
-        let [first] = steps::<1>(&z, &at, &velocity);
+        let ([first], _) = steps::<1>(&z, &at, &velocity);
         let e_1 = change_sq(&first, &z);
         add(&mut z, &first);
-        let [second, tangent] = steps::<2>(&z, &at, &velocity);
+        let ([second, tangent], _) = steps::<2>(&z, &at, &velocity);
         let e_2 = change_sq(&second, &z);
         add(&mut z, &second);
         let mut keep = F64x8([0.0; LANES]);
@@ -376,6 +379,8 @@ pub struct Corrected {
     pub newton_step: f64,
     /// The relative size of dz/dt along `velocity`: infinite or huge where the solution is singular.
     pub speed: f64,
+    /// The smallest pivot of the elimination: near rounding where the solution is singular.
+    pub pivot: f64,
 }
 
 /// Newton steps at t = 1 of the segment: at most `most`, ended when the last is below 1e-15 for all or grows no more.
@@ -392,17 +397,19 @@ pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected
                     z.set(lane, from);
                 }
             }
-            let (mut change, mut speed) = (F64x8([f64::INFINITY; LANES]), F64x8([f64::INFINITY; LANES]));
+            let [mut change, mut speed, mut pivot] = [F64x8([f64::INFINITY; LANES]); 3];
             for _ in 0..most.max(1) {
-                let [step, tangent] = steps::<2>(&z, &at, &velocity);
+                let ([step, tangent], smallest) = steps::<2>(&z, &at, &velocity);
                 add(&mut z, &step);
                 change = change_sq(&step, &z);
                 speed = change_sq(&tangent, &z);
+                pivot = smallest;
             }
             let corrected = |lane: usize| Corrected {
                 solution: solution(&std::array::from_fn(|i| z[i].get(lane))),
                 newton_step: change.0[lane].sqrt(),
                 speed: speed.0[lane].sqrt(),
+                pivot: pivot.0[lane].sqrt(),
             };
             (0..chunk.len()).map(corrected).collect::<Vec<_>>()
         })
