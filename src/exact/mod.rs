@@ -12,6 +12,9 @@
 //! are unknowns of their own; in a real linkage they are the conjugates and |T_j| = 1. Generic points have 8652
 //! solutions: 1442 classes of six, three Roberts cognates times two labels of the links.
 //!
+//! [`refinement`] brings a solution to the last digit, [`certificate`] proves that it exists and is alone, [`conjugation`]
+//! that it is real, [`distinct`] that two are of different classes. They stand on [`double_double`] and [`discs`].
+//!
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
@@ -24,4 +27,7 @@ mod polynomial;
 pub mod refinement;
 pub mod target;
 
+pub use certificate::{Certificate, Refused, certify, certify_all};
+pub use conjugation::Reality;
+pub use refinement::{Refined, refine};
 pub use target::{Displacements, Solution, Target, TargetError};
