@@ -22,6 +22,7 @@ pub mod certificate;
 pub mod conjugation;
 pub mod discs;
 pub mod distinct;
+mod double_discs;
 pub mod double_double;
 mod polynomial;
 pub mod refinement;
