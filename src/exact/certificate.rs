@@ -93,8 +93,8 @@ pub enum Refused {
     /// Newton's method finds no solution from it.
     #[error(transparent)]
     NotRefined(#[from] NotRefined),
-    /// Newton's method finds a solution, but another one.
-    #[error("Newton's method ends {moved:.1e} away, another solution")]
+    /// Newton's method finds a solution, but so far away that it is another one or the one given was poor.
+    #[error("Newton's method ends {moved:.1e} away: that is not the solution given")]
     Moved {
         /// In weights.
         moved: f64,

@@ -23,7 +23,7 @@
 //! from that component of the enclosure, w is certainly not fixed.
 
 use super::discs::{Disc, Upper};
-use super::double_double::{DoubleComplex, RELATIVE_ERROR};
+use super::double_discs::DoubleDisc;
 use super::polynomial::{ExactDisplacements, PIVOTS, UNKNOWNS};
 use super::refinement::Midpoint;
 use super::target::STEPS;
@@ -42,6 +42,9 @@ pub enum Reality {
     Undecided,
 }
 
+/// A disc for each unknown.
+type Enclosure = [DoubleDisc; UNKNOWNS];
+
 /// What a map does to the solution, as far as it is proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Image {
@@ -57,36 +60,29 @@ pub(super) fn reality(
     errors: &[Upper; UNKNOWNS],
     radii: &[f64; UNKNOWNS],
 ) -> Reality {
-    let offsets = |exchanged: bool| {
-        let mut offsets = [Disc::point(Complex::ZERO); UNKNOWNS];
-        for (i, offset) in offsets.iter_mut().enumerate() {
-            *offset = if i < PIVOTS {
-                let other = twin(i, 4, exchanged);
-                distance(midpoint[other].conj() - midpoint[i], errors[other])
-            } else {
-                rotation_distance(midpoint[i], errors[i])?
-            };
-        }
-        Some(offsets)
+    let enclosure = std::array::from_fn(|i| DoubleDisc { mid: midpoint[i], radius: errors[i] });
+    let image_of = |of: Option<Enclosure>, exchanged: bool| {
+        let offsets = of.and_then(|of| conjugate_offsets(&of, midpoint, exchanged));
+        offsets.map_or(Image::Unknown, |offsets| image(&offsets, errors, radii))
     };
-    let image =
-        |offsets: Option<[Disc; UNKNOWNS]>| offsets.map_or(Image::Unknown, |o| image(&o, errors, radii));
-    if image(offsets(false)) == Image::Itself {
+    let by_identity = image_of(Some(enclosure), false);
+    if by_identity == Image::Itself {
         return Reality::Real;
     }
-    let mut proved = image(offsets(false)) == Image::Another;
-    let enclosure = std::array::from_fn(|i| Disc::about(midpoint[i], errors[i]));
-    let along = |of: [Disc; UNKNOWNS], exchanged: bool| {
-        roberts(displacements, &of).and_then(|image| conjugate_distance(&image, midpoint, exchanged))
-    };
-    for offsets in [offsets(true), along(enclosure, true), along(exchange(&enclosure), false)] {
-        match image(offsets) {
-            Image::Itself => return if proved { Reality::RealCurve } else { Reality::Undecided },
-            Image::Another => {}
-            Image::Unknown => proved = false,
-        }
+    let by_exchanges = [
+        image_of(Some(enclosure), true),
+        image_of(roberts(displacements, &enclosure), true),
+        image_of(roberts(displacements, &exchange(&enclosure)), false),
+    ];
+    if by_identity == Image::Unknown {
+        Reality::Undecided
+    } else if by_exchanges.contains(&Image::Itself) {
+        Reality::RealCurve
+    } else if by_exchanges.contains(&Image::Unknown) {
+        Reality::Undecided
+    } else {
+        Reality::Complex
     }
-    if proved { Reality::Complex } else { Reality::Undecided }
 }
 
 /// From discs that hold (image - midpoint).
@@ -102,24 +98,8 @@ fn image(offsets: &[Disc; UNKNOWNS], errors: &[Upper; UNKNOWNS], radii: &[f64; U
     }
 }
 
-/// A disc that holds the difference of two double-doubles, one of them known to `error`.
-fn distance(difference: DoubleComplex, error: Upper) -> Disc {
-    let rounding = Upper::exactly(2.0 * RELATIVE_ERROR) * Upper::magnitude_of_double(difference);
-    Disc::about(difference, error + rounding)
-}
-
-/// A disc that holds 1 / conj(t) - m for every t within `error` of m: (1 - |m|^2 - conj(t - m) m) / conj(t).
-fn rotation_distance(m: DoubleComplex, error: Upper) -> Option<Disc> {
-    let one = DoubleComplex::from(Complex::ONE);
-    let size = Upper::magnitude_of_double(m);
-    // 4 e |m|^2 for the product, e (1 + |m|^2) for the difference.
-    let rounding = Upper::exactly(8.0 * RELATIVE_ERROR) * (Upper::exactly(1.0) + size * size);
-    let above = Disc::about(one - m * m.conj(), error * size + rounding);
-    Some(above * Disc::about(m, error).conj().inverse()?)
-}
-
 /// e of the discs.
-fn exchange(of: &[Disc; UNKNOWNS]) -> [Disc; UNKNOWNS] {
+fn exchange(of: &Enclosure) -> Enclosure {
     std::array::from_fn(|i| of[twin(i, 0, true)])
 }
 
@@ -129,22 +109,18 @@ fn twin(i: usize, starred: usize, exchanged: bool) -> usize {
 }
 
 /// sigma of the discs, or sigma e, less the midpoint.
-fn conjugate_distance(
-    of: &[Disc; UNKNOWNS],
-    midpoint: &Midpoint,
-    exchanged: bool,
-) -> Option<[Disc; UNKNOWNS]> {
-    let mut offsets = *of;
+fn conjugate_offsets(of: &Enclosure, midpoint: &Midpoint, exchanged: bool) -> Option<[Disc; UNKNOWNS]> {
+    let mut offsets = [Disc::point(Complex::ZERO); UNKNOWNS];
     for (i, offset) in offsets.iter_mut().enumerate() {
         let conjugate = of[twin(i, 4, exchanged)].conj();
         let image = if i < PIVOTS { conjugate } else { conjugate.inverse()? };
-        *offset = image - Disc::about(midpoint[i], Upper::ZERO);
+        *offset = (image - DoubleDisc::point(midpoint[i])).rounded();
     }
     Some(offsets)
 }
 
 /// r of the discs; `None` where x = y or x = a cannot be excluded.
-fn roberts(displacements: &ExactDisplacements, of: &[Disc; UNKNOWNS]) -> Option<[Disc; UNKNOWNS]> {
+fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosure> {
     let mut image = *of;
     for first in [0, 4] {
         let [x, y, a, b] = [0, 1, 2, 3].map(|i| of[first + i]);
@@ -155,7 +131,7 @@ fn roberts(displacements: &ExactDisplacements, of: &[Disc; UNKNOWNS]) -> Option<
     let (x, a) = (of[0], of[2]);
     let per_crank = (x - a).inverse()?;
     for j in 0..STEPS {
-        let delta = Disc::about(displacements.delta[j], Upper::ZERO);
+        let delta = DoubleDisc::point(displacements.delta[j]);
         image[PIVOTS + j] = (x * of[PIVOTS + j] + delta - a) * per_crank;
     }
     Some(image)

@@ -205,16 +205,10 @@ pub(super) fn settle(
     let mut open: Vec<usize> = (0..starts.len()).collect();
     let mut again = 0;
     for round in 0..=options.retries {
-        let images: Vec<Solution> =
-            open.iter()
-                .map(|&path| {
-                    if round == 0 {
-                        starts[path]
-                    } else {
-                        starts[path].images(&along.from)[round as usize % 3]
-                    }
-                })
-                .collect();
+        let images: Vec<Solution> = open
+            .iter()
+            .map(|&path| if round == 0 { starts[path] } else { starts[path].images(&along.from)[round as usize % 3] })
+            .collect();
         let ends = track(&images, along, &options.parameters.tightened(round), cancel);
         let arrived: Vec<Solution> = ends.iter().map(|end| end.solution).collect();
         let corrected = correct(&arrived, along, CORRECTIONS);
@@ -246,8 +240,7 @@ fn unsettled(fates: &[Fate], tracked: &[usize], round: u32) -> Vec<usize> {
     if round == 0 {
         open.extend(tracked.iter().filter(|&&path| fates[path] == Fate::Singular));
     }
-    let (paths, foci): (Vec<usize>, Vec<_>) =
-        isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
+    let (paths, foci): (Vec<usize>, Vec<_>) = isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
     let first = first_of_class(&foci, SAME);
     let mut shared = vec![false; paths.len()];
     for (at, &first) in first.iter().enumerate() {

@@ -74,20 +74,18 @@ fn the_published_real_linkages_are_proved_real_and_their_classes_distinct() {
 #[test]
 fn the_linkage_that_drew_the_points_is_proved_real() {
     // The points are the kernel's, rounded: an exact solution lies near, as far as its condition carries the rounding.
-    let (mut certified, mut drawn) = (0, 0);
+    let mut certified = 0;
     for index in 0..150 {
         let Some((target, solution)) = random_real(&mut stream(11, index)) else { continue };
-        drawn += 1;
         match certify(&target, &solution) {
             Ok(certificate) => {
                 assert!(certificate.is_real(), "{index}: {certificate:?}");
                 certified += 1;
             }
-            Err(refused) => println!("{index}: {refused}"),
+            Err(refused) => panic!("{index}: {refused}"),
         }
     }
-    println!("{certified} of {drawn}");
-    assert!(drawn > 140 && certified == drawn, "{certified} of {drawn}");
+    assert!(certified > 140, "{certified}");
 }
 
 #[test]
@@ -216,16 +214,27 @@ fn a_real_curve_of_complex_linkages_is_told_from_a_real_linkage_at_every_cognate
     assert!(found > 30, "{found}");
 }
 
-/// Follows a solution from one target to another by small steps; `None` where Newton's method loses it.
+/// Follows a solution from one target to another, in steps that Newton's method follows closely.
 fn carried(mut solution: Solution, from: &Displacements, to: &Displacements) -> Option<Solution> {
-    const PARTS: usize = 100;
-    for part in 1..=PARTS {
-        let share = part as f64 / PARTS as f64;
-        let between =
-            |a: [Complex; 8], b: [Complex; 8]| std::array::from_fn(|j| a[j] + (b[j] - a[j]) * share);
-        let delta = if part == PARTS { to.delta } else { between(from.delta, to.delta) };
-        let starred = if part == PARTS { to.starred } else { between(from.starred, to.starred) };
-        solution = refine(&Displacements { delta, starred }, &solution).ok()?.solution;
+    let (mut done, mut step) = (0.0, 0.01);
+    while done < 1.0 {
+        let share = if done + step < 1.0 { done + step } else { 1.0 };
+        let between = |a: [Complex; 8], b: [Complex; 8]| {
+            std::array::from_fn(|j| if share < 1.0 { a[j] + (b[j] - a[j]) * share } else { b[j] })
+        };
+        let there = Displacements {
+            delta: between(from.delta, to.delta),
+            starred: between(from.starred, to.starred),
+        };
+        match refine(&there, &solution) {
+            Ok(refined) if refined.moved < 0.05 => {
+                (solution, done, step) = (refined.solution, share, 1.5 * step);
+            }
+            _ => step *= 0.5,
+        }
+        if step < 1e-6 {
+            return None;
+        }
     }
     Some(solution)
 }
@@ -235,9 +244,14 @@ fn solutions_that_are_not_their_own_conjugates_are_proved_complex() {
     // A real solution carried around a triangle of complex targets comes back as another one, mostly complex.
     let target = target(WMS3);
     let mut counts = [0; 3];
-    for (index, known) in real_linkages("wms3", &target).iter().step_by(3).enumerate() {
-        let corners = [0, 1].map(|i| random_complex(&mut stream(16, 2 * index as u64 + i)).0);
-        let [start, one, two] = [target.displacements, corners[0], corners[1]];
+    for (index, known) in real_linkages("wms3", &target).iter().step_by(9).enumerate() {
+        let start = target.displacements;
+        let mut stream = stream(16, index as u64);
+        let mut near = |of: [Complex; 8]| {
+            of.map(|z| z + Complex::new(normal(&mut stream, 0.0, 0.4), normal(&mut stream, 0.0, 0.4)))
+        };
+        let [one, two] =
+            [(); 2].map(|()| Displacements { delta: near(start.delta), starred: near(start.starred) });
         let around = carried(known.solution, &start, &one)
             .and_then(|solution| carried(solution, &one, &two))
             .and_then(|solution| carried(solution, &two, &start));
@@ -261,7 +275,6 @@ fn solutions_that_are_not_their_own_conjugates_are_proved_complex() {
             Reality::Undecided => panic!("{certificate:?}"),
         }] += 1;
     }
-    println!("{counts:?}");
     assert!(counts[2] > 10, "{counts:?}");
 }
 
