@@ -69,6 +69,8 @@ pub struct Census {
     pub certified: usize,
     /// Classes for which the proof did not succeed.
     pub not_certified: usize,
+    /// Certified classes that are also proved to be what they are counted as: real, a real curve, or complex.
+    pub reality_proved: usize,
     /// Pairs of certified classes that are not proved to be different ones.
     pub not_told_apart: usize,
     /// Real classes that pass all points on one circuit, by some cognate and crank.

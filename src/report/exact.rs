@@ -131,6 +131,11 @@ fn proof(exact: &ExactRecord) -> String {
         1 => ", and no two are the same but for 1 pair that may be".to_owned(),
         n => format!(", and no two are the same but for {} pairs that may be", count(n)),
     });
+    if census.reality_proved == census.certified {
+        text.push_str("; and each is real or not as counted");
+    } else {
+        text.push_str(&format!("; {} are proved to be real or not as counted", count(census.reality_proved)));
+    }
     text.push_str(". Not proved: that there are no others; ");
     text.push_str(if exact.generic {
         "that rests on the count published by Wampler, Morgan and Sommese (1992)."

@@ -77,6 +77,7 @@ fn census(exact: &ExactRecord, whole: &mut dyn FnMut(&str, String, String)) {
         ("finite", c.finite, c.classes + c.duplicate),
         ("classes", c.classes, c.real + c.real_curve + c.complex),
         ("certified", c.certified, c.classes.saturating_sub(c.not_certified)),
+        ("reality_proved", c.reality_proved, c.reality_proved.min(c.certified)),
         ("real", c.real, c.degenerate + list.len()),
         ("one_circuit", c.one_circuit, many(|l| l.one_circuit)),
         ("in_order", c.in_order, many(|l| l.in_order)),

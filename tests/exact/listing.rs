@@ -7,6 +7,7 @@ use linkwright::problem::Problem;
 use linkwright::problem_file;
 use linkwright::record::{Census, Completeness, ExactLinkage};
 use linkwright::search::continuation::{Exact, listed};
+use linkwright::task::Defect;
 
 fn problem(target: &Target, more: &str) -> Problem {
     let points: Vec<String> = target.points.iter().map(|p| format!("[{}, {}]", p.re, p.im)).collect();
@@ -51,7 +52,13 @@ fn problem_3_lists_64_linkages_and_the_one_without_defects_first() {
     assert!(list[0].defects.is_empty(), "{:?}", list[0]);
     assert!(list.iter().all(|l| l.others.len() == 5 && l.t1_at.len() == 9));
     for pair in list.windows(2) {
-        let key = |l: &ExactLinkage| (!l.accepted, l.defects.len(), l.not_met.len());
+        let grave = |defect: &Defect| match defect {
+            Defect::Branch { .. } => 1,
+            Defect::Order { .. } => 2,
+            Defect::Circuit { .. } => 4,
+        };
+        let severity = |l: &ExactLinkage| l.defects.iter().map(grave).sum::<usize>();
+        let key = |l: &ExactLinkage| (!l.accepted, severity(l), l.not_met.len());
         assert!(key(&pair[0]) <= key(&pair[1]), "{pair:?}");
     }
 }
