@@ -3,8 +3,9 @@
 use super::classes::{class_distance, first_of_class, key};
 use super::refinement::refine;
 use super::start::{CLASSES, StartSet};
-use super::target::{Solution, Target};
+use super::target::{Displacements, Solution, Target};
 use super::tracker::{Corrected, Ending, Parameters, Segment, Tracked, correct, track};
+use crate::linkage::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -20,7 +21,7 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { parameters: Parameters::default(), retries: 4 }
+        Options { parameters: Parameters::default(), retries: 7 }
     }
 }
 
@@ -172,7 +173,6 @@ const REAL: f64 = 1e-8;
 
 /// The fate of one end.
 fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
-    if std::env::var("DBG").is_ok() { println!("END {:?} {} newton {:e} speed {:e} pivot {:e} size {:e}", end.ending, end.steps, corrected.newton_step, corrected.speed, corrected.pivot, super::equations::unknowns(&end.solution).iter().map(|z|z.norm()).fold(0.,f64::max)); }
     match end.ending {
         Ending::Cancelled => return Fate::Lost,
         Ending::Stalled { t } | Ending::OutOfSteps { t } => {
@@ -193,7 +193,8 @@ fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
     Fate::Isolated(Class { solution, reality: Reality::Complex, newton_step, speed: corrected.speed })
 }
 
-/// Tracks `starts` along the segment; lost and coinciding paths again, more carefully, from other images.
+/// Tracks `starts` along the segment; lost and coinciding paths again, more carefully, from other images, and lost ones
+/// in the end around what was in their way.
 pub(super) fn settle(
     starts: &[Solution],
     along: &Segment,
@@ -203,22 +204,30 @@ pub(super) fn settle(
 ) -> Fates {
     let mut fates = vec![Fate::Lost; starts.len()];
     let mut open: Vec<usize> = (0..starts.len()).collect();
+    let mut obstructed = vec![false; starts.len()];
     let mut again = 0;
     for round in 0..=options.retries {
-        let images: Vec<Solution> = open
-            .iter()
-            .map(|&path| if round == 0 { starts[path] } else { starts[path].images(&along.from)[round as usize % 3] })
-            .collect();
-        let ends = track(&images, along, &options.parameters.tightened(round), cancel);
+        let image = |path: usize| match round {
+            0 => starts[path],
+            _ => starts[path].images(&along.from)[round as usize % 3],
+        };
+        let (around, straight): (Vec<usize>, Vec<usize>) =
+            open.iter().partition(|&&path| round >= 2 && obstructed[path]);
+        let images: Vec<Solution> = straight.iter().map(|&path| image(path)).collect();
+        let with = options.parameters.tightened(round.min(3));
+        let mut ends = track(&images, along, &with, cancel);
+        let images: Vec<Solution> = around.iter().map(|&path| image(path)).collect();
+        ends.extend(track_around(&images, along, round, &options.parameters.tightened(1), cancel));
+        let paths: Vec<usize> = straight.into_iter().chain(around).collect();
         let arrived: Vec<Solution> = ends.iter().map(|end| end.solution).collect();
         let corrected = correct(&arrived, along, CORRECTIONS);
         let judged: Vec<Fate> =
             ends.par_iter().zip(&corrected).map(|(end, corrected)| fate(end, corrected, along)).collect();
-        for (&path, fate) in open.iter().zip(judged) {
+        for (&path, fate) in paths.iter().zip(judged) {
             fates[path] = fate;
+            obstructed[path] |= fate == Fate::Lost;
         }
-        let previous = open;
-        open = unsettled(&fates, &previous, round);
+        open = unsettled(&fates, round);
         progress(starts.len() - open.len(), starts.len());
         if round == 0 {
             again = open.len();
@@ -233,14 +242,52 @@ pub(super) fn settle(
 /// Newton steps on arrival.
 const CORRECTIONS: usize = 2;
 
+/// Through t = 1/2 + i e instead of straight, e small and another one each round: around a place close to the straight
+/// path where the solution is all but infinite. Should a branch point lie between the two routes, the path ends where
+/// another one does, which shows.
+fn track_around(
+    starts: &[Solution],
+    along: &Segment,
+    round: u32,
+    with: &Parameters,
+    cancel: &AtomicBool,
+) -> Vec<Tracked> {
+    let e = ASIDE * f64::from(round / 2) * if round % 2 == 0 { 1.0 } else { -1.0 };
+    let t = Complex::new(0.5, e);
+    let middle = Displacements {
+        delta: std::array::from_fn(|j| along.from.delta[j] * (-t + 1.0) + along.to.delta[j] * t),
+        starred: std::array::from_fn(|j| along.from.starred[j] * (-t + 1.0) + along.to.starred[j] * t),
+    };
+    let mut ends = track(starts, &Segment { from: along.from, to: middle }, with, cancel);
+    let arrived: Vec<usize> = (0..ends.len()).filter(|&at| ends[at].ending == Ending::Arrived).collect();
+    for end in &mut ends {
+        // Where the first leg stopped counts as its half of the way.
+        end.ending = match end.ending {
+            Ending::Stalled { t } => Ending::Stalled { t: 0.5 * t },
+            Ending::OutOfSteps { t } => Ending::OutOfSteps { t: 0.5 * t },
+            other => other,
+        };
+    }
+    let there: Vec<Solution> = arrived.iter().map(|&at| ends[at].solution).collect();
+    let seconds = track(&there, &Segment { from: middle, to: along.to }, with, cancel);
+    for (&at, second) in arrived.iter().zip(seconds) {
+        ends[at] = Tracked { steps: ends[at].steps + second.steps, ..second };
+    }
+    ends
+}
+
+/// How far from the straight path the first way around leads, in t.
+const ASIDE: f64 = 0.02;
+
 /// Paths that another round may help: lost ones, those that share a class, and after the first round also those that
 /// seemed to end in singular solutions.
-fn unsettled(fates: &[Fate], tracked: &[usize], round: u32) -> Vec<usize> {
+fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
     let mut open: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Lost).collect();
     if round == 0 {
-        open.extend(tracked.iter().filter(|&&path| fates[path] == Fate::Singular));
+        open.extend((0..fates.len()).filter(|&path| fates[path] == Fate::Singular));
     }
-    let (paths, foci): (Vec<usize>, Vec<_>) = isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
+    let (paths, foci): (Vec<usize>, Vec<_>) =
+        isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
     let first = first_of_class(&foci, SAME);
     let mut shared = vec![false; paths.len()];
     for (at, &first) in first.iter().enumerate() {
