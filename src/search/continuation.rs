@@ -1,14 +1,12 @@
 //! `continuation`: every linkage through nine precision points, as candidates, and beside what `auto` approximates.
 //!
 //! The points are solved once ([`crate::exact`]); bounds and requirements do not enter the equations, they choose among the answers.
-//! Where `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate, and the exact
-//! linkages that some requirement forbids are starts for that too.
+//! Where `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate. Exact linkages
+//! that a requirement forbids are no starts for that: they led to no better answer than those that are drawn, at a
+//! tenth to a third more evaluations.
 
 use super::exact_linkages::{Class, classes};
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
-use super::plan::FAR;
 use super::rank::{count_distinct, divided, exact_sum_sq};
-use super::warm::start_at;
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::exact::certificate::{Certificate, certify, certify_all};
 use crate::exact::distinct::not_proved_distinct;
@@ -25,9 +23,6 @@ use rayon::prelude::*;
 
 /// How the record calls it.
 const NAME: &str = "continuation";
-
-/// Real classes that approximation starts from, the best first.
-const WARM: usize = 24;
 
 /// The exact answers of a problem.
 #[derive(Clone, Debug)]
@@ -89,17 +84,11 @@ impl Exact {
         }
     }
 
-    /// The exact answers together with what a search by approximation found, and with what that finds from them
-    /// within what is left of the budget.
+    /// The exact answers together with what a search by approximation found.
     pub fn beside(self, problem: &Problem, mut outcome: SearchOutcome, budget: &Budget<'_>) -> SearchOutcome {
-        let limit = problem.spec().solve.evaluations.saturating_sub(outcome.evaluations.objective);
-        let (warm, spent) = self.approximated(problem, limit, budget);
-        outcome.evaluations.objective += spent;
-        outcome.evaluations.positions += spent * problem.task().len() as u64;
         let mut found = self.candidates();
         found.append(&mut outcome.candidates);
         found.append(&mut outcome.others);
-        found.extend(warm);
         (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
         let exact = exact_sum_sq(problem);
         let reached = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
@@ -110,28 +99,6 @@ impl Exact {
         outcome.used.insert(0, NAME.into());
         outcome.exact = Some(self.record);
         outcome
-    }
-
-    /// Fits of the requirements from exact linkages that do not meet them.
-    fn approximated(&self, problem: &Problem, limit: u64, budget: &Budget<'_>) -> (Vec<Candidate>, u64) {
-        // Far from the origin differences of coordinates have lost the digits that a fit needs.
-        let far = problem.task().centre().norm() > FAR * problem.task().size();
-        let starts: Vec<&Candidate> =
-            self.classes.iter().map(|class| &class.best).filter(|c| !c.accepted).take(WARM).collect();
-        let each = limit / WARM as u64;
-        if far || each < 2 || budget.stopped() {
-            return (Vec::new(), 0);
-        }
-        let fits: Vec<_> = starts
-            .into_par_iter()
-            .filter_map(|candidate| {
-                let start = start_at(problem, candidate)?;
-                let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, each, budget);
-                Some((fit.end.and_then(|end| judged(problem, &end)), fit.evaluations))
-            })
-            .collect();
-        let spent = fits.iter().map(|(_, evaluations)| evaluations).sum();
-        (fits.into_iter().filter_map(|(candidate, _)| candidate).collect(), spent)
     }
 }
 
