@@ -118,6 +118,7 @@ pub fn candidate(
             met: true,
         }],
         accepted,
+        certified: None,
         costs: Vec::new(),
     }
 }
@@ -147,6 +148,7 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         candidates: Vec::new(),
         conflict: None,
         relaxations: Vec::new(),
+        exact: None,
     }
 }
 

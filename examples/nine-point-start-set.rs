@@ -1,0 +1,40 @@
+//! Makes the start set of exact synthesis from nothing and writes it to a file.
+//!
+//! ```text
+//! cargo run --release --example nine-point-start-set -- src/exact/start-set.bin [SEED]
+//! ```
+//!
+//! Monodromy from one random complex four-bar until four loops in a row find no new class. It refuses to write a set
+//! that has not 1442 classes or does not come back whole from the file.
+
+#![expect(clippy::print_stdout, reason = "it says what it found")]
+
+use linkwright::exact::monodromy::{Limits, orbit};
+use linkwright::exact::start::{CLASSES, StartSet};
+use linkwright::solve::streams::{stream, unit};
+use std::sync::atomic::AtomicBool;
+
+/// The embedded set's.
+const SEED: u64 = 1;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let path = arguments.next().ok_or("which file shall the start set be written to?")?;
+    let seed: u64 = arguments.next().map_or(Ok(SEED), |word| word.parse())?;
+    let mut numbers = stream(seed, 0);
+    let orbit = orbit(&mut || unit(&mut numbers), &Limits::default(), &AtomicBool::new(false));
+    let found = orbit.solutions.len();
+    println!("{found} classes in {} loops; the last {} found none", orbit.loops, orbit.idle);
+    if found != CLASSES {
+        return Err(format!("{found} classes, not {CLASSES}: try another seed").into());
+    }
+    let set = StartSet { displacements: orbit.displacements, solutions: orbit.solutions };
+    let bytes = set.to_bytes();
+    let back = StartSet::parse(&bytes)?;
+    if back.distinct_from(&set) > 0 {
+        return Err("the set does not survive single precision: try another seed".into());
+    }
+    std::fs::write(&path, &bytes)?;
+    println!("{} bytes to {path}", bytes.len());
+    Ok(())
+}

@@ -1,0 +1,158 @@
+//! The six images of a solution, and which solutions are images of one another.
+//!
+//! The equations keep their form when the legs change places, (x, a) <-> (y, b), and when a linkage is replaced by a
+//! Roberts cognate,
+//!
+//! ```text
+//! (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a),    T_j -> (x T_j + delta_j - a) / (x - a)
+//! ```
+//!
+//! starred alike: a group of order six. All six stand on two of the same three foci a, b, c = (b x - a y) / (x - y), so
+//! that the set of the three pairs (focus, starred focus) tells a class.
+
+use super::target::{Displacements, STEPS, Solution};
+use crate::linkage::Complex;
+
+/// The orders in which three foci can stand.
+const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+
+impl Solution {
+    /// The same linkage with its legs named the other way round.
+    pub fn swapped(&self) -> Solution {
+        let swap = |[one, other]: [Complex; 2]| [other, one];
+        Solution {
+            pins: swap(self.pins),
+            grounds: swap(self.grounds),
+            pins_starred: swap(self.pins_starred),
+            grounds_starred: swap(self.grounds_starred),
+            rotations: self.rotations,
+        }
+    }
+
+    /// A Roberts cognate. Three times in a row give the solution again; not finite where a leg or the coupler has no
+    /// length.
+    pub fn cognate(&self, at: &Displacements) -> Solution {
+        let image = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| {
+            let coupler = (x - y).inv();
+            ([(x - a) * y * coupler, a - x], [(b * x - a * y) * coupler, a])
+        };
+        let (pins, grounds) = image(self.pins, self.grounds);
+        let (pins_starred, grounds_starred) = image(self.pins_starred, self.grounds_starred);
+        let (x, a) = (self.pins[0], self.grounds[0]);
+        let length = (x - a).inv();
+        let rotations: [Complex; STEPS] =
+            std::array::from_fn(|j| (x * self.rotations[j] + at.delta[j] - a) * length);
+        Solution { pins, grounds, pins_starred, grounds_starred, rotations }
+    }
+
+    /// The six solutions of the class: this one, its two cognates, and the three with their legs swapped.
+    pub fn images(&self, at: &Displacements) -> [Solution; 6] {
+        let first = self.cognate(at);
+        let second = first.cognate(at);
+        [*self, first, second, self.swapped(), first.swapped(), second.swapped()]
+    }
+
+    /// The conjugate solution: of the same target where that is real.
+    pub fn conjugate(&self) -> Solution {
+        let conj = |pair: [Complex; 2]| pair.map(|z| z.conj());
+        Solution {
+            pins: conj(self.pins_starred),
+            grounds: conj(self.grounds_starred),
+            pins_starred: conj(self.pins),
+            grounds_starred: conj(self.grounds),
+            rotations: self.rotations.map(|t| t.inv().conj()),
+        }
+    }
+
+    /// The solution when delta is multiplied by `by` and delta* by `by_starred`.
+    pub fn in_other_units(&self, by: Complex, by_starred: Complex) -> Solution {
+        Solution {
+            pins: self.pins.map(|z| z * by),
+            grounds: self.grounds.map(|z| z * by),
+            pins_starred: self.pins_starred.map(|z| z * by_starred),
+            grounds_starred: self.grounds_starred.map(|z| z * by_starred),
+            rotations: self.rotations,
+        }
+    }
+
+    /// The three foci, each with its starred twin: the two ground pivots and the third of the cognates.
+    pub fn foci(&self) -> [[Complex; 2]; 3] {
+        let third = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| (b * x - a * y) / (x - y);
+        let (a, b) = (self.grounds, self.grounds_starred);
+        [[a[0], b[0]], [a[1], b[1]], [third(self.pins, a), third(self.pins_starred, b)]]
+    }
+
+    /// Whether every number is finite.
+    pub fn is_finite(&self) -> bool {
+        super::equations::unknowns(self).iter().all(|z| z.re.is_finite() && z.im.is_finite())
+    }
+
+    /// How far the solution is from a real linkage: the largest of |x* - conj x| and so on, and of |1 - |T_j||, each
+    /// against 1 + its size.
+    pub fn imaginary_part(&self) -> f64 {
+        let pair = |one: [Complex; 2], starred: [Complex; 2]| {
+            (0..2).map(|i| distance(one[i].conj(), starred[i])).fold(0.0, f64::max)
+        };
+        let turns = self.rotations.iter().map(|t| (1.0 - t.norm()).abs()).fold(0.0, f64::max);
+        pair(self.pins, self.pins_starred).max(pair(self.grounds, self.grounds_starred)).max(turns)
+    }
+}
+
+/// |one - other| against 1 + the smaller size; NaN counts as far.
+fn distance(one: Complex, other: Complex) -> f64 {
+    let distance = (one - other).norm() / (1.0 + one.norm().min(other.norm()));
+    if distance.is_nan() { f64::INFINITY } else { distance }
+}
+
+/// The smallest over all orders of the largest distance between the foci of one and those of the other, each against
+/// 1 + its size: zero for two images of one solution.
+pub fn class_distance(one: &[[Complex; 2]; 3], other: &[[Complex; 2]; 3]) -> f64 {
+    ORDERS
+        .iter()
+        .map(|order| {
+            (0..3)
+                .map(|i| {
+                    let ([p, q], [r, s]) = (one[i], other[order[i]]);
+                    distance(p, r).max(distance(q, s))
+                })
+                .fold(0.0, f64::max)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// A number that the images of a solution share and that stays of moderate size when foci go to infinity:
+/// sum 1 / (focus - z0) over the foci and their twins, z0 in general position.
+pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
+    const POLES: [Complex; 2] =
+        [Complex::new(0.372_119_4, 1.719_302_7), Complex::new(-1.130_472_1, -0.926_381_2)];
+    foci.iter().map(|[a, b]| ((a - POLES[0]).inv() + (b - POLES[1]).inv()).re).sum()
+}
+
+/// Groups of equal classes: for each solution the number of the first one of its class.
+///
+/// Two are of one class where their [`class_distance`] is at most `tolerance`. The answer does not depend on more
+/// than the solutions and their order.
+pub fn first_of_class(foci: &[[[Complex; 2]; 3]], tolerance: f64) -> Vec<usize> {
+    let keys: Vec<f64> = foci.iter().map(key).collect();
+    let mut order: Vec<usize> = (0..foci.len()).collect();
+    order.sort_by(|&i, &j| keys[i].total_cmp(&keys[j]).then(i.cmp(&j)));
+    let mut first: Vec<usize> = (0..foci.len()).collect();
+    for (at, &i) in order.iter().enumerate() {
+        // The key's own error: its derivative by a focus is at most |key|^2, roughly.
+        let window = 100.0 * tolerance * (1.0 + keys[i] * keys[i]);
+        for &j in order[at + 1..].iter().take_while(|&&j| keys[j] - keys[i] <= window) {
+            if class_distance(&foci[i], &foci[j]) <= tolerance {
+                let (one, other) = (root(&first, i), root(&first, j));
+                first[one.max(other)] = one.min(other);
+            }
+        }
+    }
+    (0..foci.len()).map(|i| root(&first, i)).collect()
+}
+
+fn root(first: &[usize], mut at: usize) -> usize {
+    while first[at] != at {
+        at = first[at];
+    }
+    at
+}

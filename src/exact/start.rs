@@ -1,0 +1,198 @@
+//! The start set: one solution of each of the 1442 classes at a fixed complex target in general position.
+//!
+//! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
+//! root) and Newton's method restores full precision. `cargo run --release --example nine-point-start-set -- FILE`
+//! makes it anew from nothing (see [`super::monodromy`]).
+//!
+//! | bytes | what (little endian) |
+//! |---|---|
+//! | 0..4 | "LWNP" |
+//! | 4..8 | version, u32: 1 |
+//! | 8..12 | number of classes n, u32 |
+//! | 12..16 | zero |
+//! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
+//! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
+
+use super::classes::first_of_class;
+use super::equations::{UNKNOWNS, residuals, solution, unknowns};
+use super::lanes::ORDER;
+use super::target::{Displacements, STEPS, Solution};
+use super::tracker::{Segment, correct};
+use crate::linkage::Complex;
+use std::sync::OnceLock;
+use thiserror::Error;
+
+/// Classes of a target in general position: 8652 solutions (Wampler, Morgan & Sommese 1992) over the six images.
+pub const CLASSES: usize = 1442;
+
+/// The embedded file.
+pub const EMBEDDED: &[u8] = include_bytes!("start-set.bin");
+
+const MAGIC: &[u8; 4] = b"LWNP";
+const VERSION: u32 = 1;
+const HEADER: usize = 16;
+const PIVOTS: usize = HEADER + 32 * 8;
+const ENTRY: usize = 2 * ORDER * 4;
+
+/// Solutions of one target, a start for paths to any other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartSet {
+    /// The target.
+    pub displacements: Displacements,
+    /// One solution a class.
+    pub solutions: Vec<Solution>,
+}
+
+/// Why bytes are no start set.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum StartSetError {
+    /// They do not begin as such a file does.
+    #[error("this is no nine-point start set of version {VERSION}")]
+    Header,
+    /// Too few bytes or too many.
+    #[error("a start set of {classes} classes has {wanted} bytes, not {found}")]
+    Length {
+        /// As the header says.
+        classes: usize,
+        /// Bytes for them.
+        wanted: usize,
+        /// Bytes that are there.
+        found: usize,
+    },
+    /// An entry is no solution, and Newton's method makes none of it.
+    #[error("entry {0} of the start set is no solution")]
+    Entry(usize),
+}
+
+impl StartSet {
+    /// The embedded set, read once. A test holds that the file is whole.
+    pub fn embedded() -> &'static StartSet {
+        static SET: OnceLock<StartSet> = OnceLock::new();
+        SET.get_or_init(|| {
+            StartSet::parse(EMBEDDED).unwrap_or(StartSet {
+                displacements: Displacements {
+                    delta: [Complex::default(); STEPS],
+                    starred: [Complex::default(); STEPS],
+                },
+                solutions: Vec::new(),
+            })
+        })
+    }
+
+    /// # Errors
+    ///
+    /// When the bytes are no such file or an entry is no solution.
+    pub fn parse(bytes: &[u8]) -> Result<StartSet, StartSetError> {
+        let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..at + 4)?.first_chunk()?));
+        if bytes.get(..4) != Some(MAGIC) || word(4) != Some(VERSION) || word(12) != Some(0) {
+            return Err(StartSetError::Header);
+        }
+        let classes = word(8).ok_or(StartSetError::Header)? as usize;
+        let wanted = PIVOTS + classes * ENTRY;
+        if bytes.len() != wanted {
+            return Err(StartSetError::Length { classes, wanted, found: bytes.len() });
+        }
+        let doubles: Vec<f64> =
+            bytes[HEADER..PIVOTS].as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+        let singles: Vec<f64> =
+            bytes[PIVOTS..].as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect();
+        let number = |from: &[f64], at: usize| Complex::new(from[2 * at], from[2 * at + 1]);
+        let displacements = Displacements {
+            delta: std::array::from_fn(|j| number(&doubles, j)),
+            starred: std::array::from_fn(|j| number(&doubles, STEPS + j)),
+        };
+        let rough: Vec<Solution> = singles
+            .chunks_exact(2 * ORDER)
+            .map(|entry| {
+                let mut all = [Complex::default(); UNKNOWNS];
+                for (i, z) in all.iter_mut().take(ORDER).enumerate() {
+                    *z = number(entry, i);
+                }
+                with_rotations(solution(&all), &displacements)
+            })
+            .collect();
+        let stay = Segment { from: displacements, to: displacements };
+        let exact = correct(&rough, &stay, NEWTON_STEPS);
+        match exact.iter().position(|c| !(c.newton_step < 1e-9 && c.solution.is_finite())) {
+            Some(entry) => Err(StartSetError::Entry(entry)),
+            None => Ok(StartSet { displacements, solutions: exact.iter().map(|c| c.solution).collect() }),
+        }
+    }
+
+    /// How many classes of this set the other has not, both being sets of the same target; their own duplicates count
+    /// as well.
+    pub fn distinct_from(&self, other: &StartSet) -> usize {
+        let foci: Vec<_> = other.solutions.iter().chain(&self.solutions).map(Solution::foci).collect();
+        let others = other.solutions.len();
+        let first = first_of_class(&foci, SAME);
+        let mut met = vec![false; others];
+        let mut new = 0;
+        for &first in &first[others..] {
+            if first < others && !met[first] {
+                met[first] = true;
+            } else {
+                new += 1;
+            }
+        }
+        new
+    }
+
+    /// The file's bytes.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        for word in [VERSION, self.solutions.len() as u32, 0] {
+            bytes.extend(word.to_le_bytes());
+        }
+        for z in self.displacements.delta.iter().chain(&self.displacements.starred) {
+            bytes.extend(z.re.to_le_bytes());
+            bytes.extend(z.im.to_le_bytes());
+        }
+        for solution in &self.solutions {
+            for z in &unknowns(solution)[..ORDER] {
+                bytes.extend((z.re as f32).to_le_bytes());
+                bytes.extend((z.im as f32).to_le_bytes());
+            }
+        }
+        bytes
+    }
+}
+
+/// Classes nearer than this are one.
+const SAME: f64 = 1e-7;
+
+/// From single precision, a few steps are enough.
+const NEWTON_STEPS: usize = 5;
+
+/// The T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with alpha = delta_j - a,
+/// beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to being one is taken.
+pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
+    let mut answer = pivots;
+    for j in 0..STEPS {
+        let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
+            let (x, a) = (pivots.pins[leg], pivots.grounds[leg]);
+            let (x_s, a_s) = (pivots.pins_starred[leg], pivots.grounds_starred[leg]);
+            let (alpha, beta) = (at.delta[j] - a, at.starred[j] - a_s);
+            let (square, half, constant) =
+                (x * beta, (x * x_s + alpha * beta - (x - a) * (x_s - a_s)) * 0.5, alpha * x_s);
+            let root = (half * half - square * constant).sqrt();
+            let sum = if (half.conj() * root).re >= 0.0 { -(half + root) } else { root - half };
+            [sum / square, constant / sum]
+        });
+        let mut nearest = f64::INFINITY;
+        for one in roots[0] {
+            for other in roots[1] {
+                let gap = (one - other).norm() / (one.norm() + other.norm());
+                if gap < nearest {
+                    nearest = gap;
+                    answer.rotations[j] = (one + other) * 0.5;
+                }
+            }
+        }
+    }
+    answer
+}
+
+/// The largest |f| of the sixteen equations.
+pub fn largest_residual(of: &Solution, at: &Displacements) -> f64 {
+    residuals(of, at).iter().flatten().map(|f| f.norm()).fold(0.0, f64::max)
+}

@@ -1,0 +1,419 @@
+//! Paths of solutions while the displacements move along a straight line: predictor, corrector, step control.
+//!
+//! ```text
+//! F(z(t), delta(t)) = 0,    delta(t) = (1 - t) from + t to,    0 <= t <= 1,    the twins alike
+//! ```
+//!
+//! One step: the polynomial through the last three (z, dz/dt), degree five, is continued to t + h; two full Newton
+//! steps e_1, e_2 correct it; dz/dt comes out of the elimination of the second. The step stands when e_1 is small and
+//! e_2 much smaller still. The next h follows from e_1 ~ h^6. Eight paths go abreast, each with its own t and h; a
+//! lane whose path has ended takes the next one. What becomes of a path depends on that path alone.
+
+use super::equations::{DisplacementLanes, UNKNOWNS, Unknowns, solution, steps, unknowns};
+use super::lanes::{ComplexLanes, ORDER};
+use super::target::{Displacements, STEPS, Solution};
+use crate::linkage::Complex;
+use crate::linkage::dispatch::vectorised;
+use crate::linkage::lane::{F64x8, LANES, Lane};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// What decides whether a step stands and how long the next one is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    /// The first Newton step of an accepted step is at most this, relative to the unknowns.
+    pub accept: f64,
+    /// The second is at most this part of the first.
+    pub contraction: f64,
+    /// The first Newton step that the step control aims at.
+    pub aim: f64,
+    /// The first step, and the longest one, in t.
+    pub first_step: f64,
+    /// See there.
+    pub longest_step: f64,
+    /// A path whose step falls below this part of what is left of it, or below 1e-13, has met a singularity.
+    pub shortest_step: f64,
+    /// Steps, accepted or not, after which a path is given up.
+    pub most_steps: u32,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Parameters {
+            accept: 1e-2,
+            contraction: 0.1,
+            aim: 1e-3,
+            first_step: 0.01,
+            longest_step: 0.1,
+            shortest_step: 1e-7,
+            most_steps: 600,
+        }
+    }
+}
+
+impl Parameters {
+    /// For paths that were lost, or came too near one another, at the tolerances before: `round` = 1, 2, ..
+    pub fn tightened(&self, round: u32) -> Parameters {
+        let factor = 0.05_f64.powi(round as i32);
+        Parameters {
+            accept: self.accept * factor,
+            aim: self.aim * factor,
+            first_step: self.first_step * 0.3_f64.powi(round as i32),
+            longest_step: self.longest_step * 0.5_f64.powi(round as i32),
+            shortest_step: self.shortest_step * 0.1_f64.powi(round as i32),
+            most_steps: self.most_steps * (1 << round),
+            ..*self
+        }
+    }
+}
+
+/// A straight line in the space of displacements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// t = 0.
+    pub from: Displacements,
+    /// t = 1.
+    pub to: Displacements,
+}
+
+/// How a path ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending {
+    /// At t = 1.
+    Arrived,
+    /// Its steps became too short at `t`.
+    Stalled {
+        /// There.
+        t: f64,
+    },
+    /// Too many steps; it got as far as `t`.
+    OutOfSteps {
+        /// There.
+        t: f64,
+    },
+    /// Someone asked for the end.
+    Cancelled,
+}
+
+/// The end of one path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tracked {
+    /// How it ended.
+    pub ending: Ending,
+    /// Where.
+    pub solution: Solution,
+    /// Steps, accepted or not.
+    pub steps: u32,
+}
+
+/// Nodes that the predictor remembers.
+const NODES: usize = 3;
+
+/// What the predictor knows of eight paths, the newest node first.
+struct State {
+    values: [Unknowns; NODES],
+    tangents: [Unknowns; NODES],
+    /// Where the nodes are.
+    t: [[f64; NODES]; LANES],
+    /// How many of them there are.
+    nodes: [usize; LANES],
+    /// The next step.
+    h: [f64; LANES],
+    steps: [u32; LANES],
+    /// The path in each lane.
+    path: [Option<usize>; LANES],
+}
+
+/// Weights of values and tangents that continue the Hermite polynomial through `nodes` to t.
+#[inline(always)]
+fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
+    let (mut of_value, mut of_tangent) = ([0.0; NODES], [0.0; NODES]);
+    for (i, &node) in nodes.iter().enumerate() {
+        let (mut lagrange, mut slope) = (1.0, 0.0);
+        for (k, &other) in nodes.iter().enumerate() {
+            if k != i {
+                let gap = 1.0 / (node - other);
+                lagrange *= (t - other) * gap;
+                slope += gap;
+            }
+        }
+        let square = lagrange * lagrange;
+        of_value[i] = (1.0 - 2.0 * slope * (t - node)) * square;
+        of_tangent[i] = (t - node) * square;
+    }
+    (of_value, of_tangent)
+}
+
+/// The relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR), with T_j in place of tau_j.
+/// Not finite where a step is not.
+#[inline(always)]
+fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
+    let one = ComplexLanes::splat(Complex::ONE);
+    let mut sum = F64x8([0.0; LANES]);
+    for (i, (step, z)) in step.iter().zip(of).enumerate() {
+        let z = if i < ORDER { *z } else { *z + one };
+        sum = sum + step.norm_sq() * (z.norm_sq() + F64x8([FLOOR; LANES])).recip();
+    }
+    sum
+}
+
+/// Unknowns below the root of this are not asked for relative accuracy.
+const FLOOR: f64 = 1e-4;
+
+impl State {
+    fn new() -> Self {
+        let zero = [ComplexLanes::ZERO; UNKNOWNS];
+        State {
+            values: [zero; NODES],
+            tangents: [zero; NODES],
+            t: [[0.0; NODES]; LANES],
+            nodes: [0; LANES],
+            h: [0.0; LANES],
+            steps: [0; LANES],
+            path: [None; LANES],
+        }
+    }
+
+    /// Puts a path into a lane. Until its first step, of length zero, it has no tangent.
+    fn start(&mut self, lane: usize, path: usize, at: &Solution) {
+        for (value, z) in self.values[0].iter_mut().zip(unknowns(at)) {
+            value.set(lane, z);
+        }
+        for tangent in &mut self.tangents[0] {
+            tangent.set(lane, Complex::default());
+        }
+        self.t[lane] = [0.0; NODES];
+        (self.nodes[lane], self.h[lane], self.steps[lane]) = (0, 0.0, 0);
+        self.path[lane] = Some(path);
+    }
+
+    /// The point that the next step predicts, and its t.
+    #[inline(always)]
+    fn predicted(&self) -> (Unknowns, [f64; LANES]) {
+        let mut weights = [[F64x8([0.0; LANES]); NODES]; 2];
+        let mut to = [0.0; LANES];
+        for lane in 0..LANES {
+            to[lane] = self.t[lane][0] + self.h[lane];
+            let (values, tangents) = continuation(to[lane], &self.t[lane][..self.nodes[lane].max(1)]);
+            for node in 0..NODES {
+                weights[0][node].0[lane] = values[node];
+                weights[1][node].0[lane] = tangents[node];
+            }
+        }
+        let mut z = [ComplexLanes::ZERO; UNKNOWNS];
+        for (i, z) in z.iter_mut().enumerate() {
+            for node in 0..NODES {
+                *z = *z + self.values[node][i].scale(weights[0][node])
+                    + self.tangents[node][i].scale(weights[1][node]);
+            }
+        }
+        (z, to)
+    }
+
+    /// Takes the new node in the lanes where `keep` is one.
+    #[inline(always)]
+    fn remember(&mut self, keep: F64x8, z: &Unknowns, tangent: &Unknowns) {
+        let half = F64x8([0.5; LANES]);
+        for i in 0..UNKNOWNS {
+            for (nodes, new) in [(&mut self.values, z[i]), (&mut self.tangents, tangent[i])] {
+                nodes[2][i] = ComplexLanes::where_at_least(keep, half, nodes[1][i], nodes[2][i]);
+                nodes[1][i] = ComplexLanes::where_at_least(keep, half, nodes[0][i], nodes[1][i]);
+                nodes[0][i] = ComplexLanes::where_at_least(keep, half, new, nodes[0][i]);
+            }
+        }
+    }
+
+    fn solution(&self, lane: usize) -> Solution {
+        solution(&std::array::from_fn(|i| self.values[0][i].get(lane)))
+    }
+
+    /// Judges a lane's step and chooses the next: whether the step stands, and how the path ended if it did.
+    fn judge(&mut self, lane: usize, to: f64, e: [f64; 2], with: &Parameters) -> (bool, Option<Ending>) {
+        let t = &mut self.t[lane];
+        self.steps[lane] += 1;
+        let first = self.nodes[lane] == 0;
+        let good = e[0] <= with.accept && (first || e[1] <= with.contraction * e[0] || e[1] <= ROUNDING);
+        if good {
+            if !first {
+                *t = [to, t[0], t[1]];
+            }
+            self.nodes[lane] = (self.nodes[lane] + 1).min(NODES);
+            if to >= 1.0 {
+                return (true, Some(Ending::Arrived));
+            }
+        }
+        let order = 2 * self.nodes[lane].max(1);
+        let wanted = (with.aim / e[0].max(1e-12)).powf(1.0 / order as f64);
+        self.h[lane] = if first {
+            if good { with.first_step } else { 0.0 }
+        } else if good {
+            (self.h[lane] * wanted.clamp(0.4, 2.5)).min(with.longest_step)
+        } else {
+            self.h[lane] * if wanted.is_finite() { wanted.clamp(0.2, 0.6) } else { 0.3 }
+        };
+        let left = 1.0 - self.t[lane][0];
+        let h = self.h[lane];
+        if self.steps[lane] >= with.most_steps {
+            return (good, Some(Ending::OutOfSteps { t: self.t[lane][0] }));
+        }
+        if h < with.shortest_step * left || h < 1e-13 {
+            return (good, Some(Ending::Stalled { t: self.t[lane][0] }));
+        }
+        if h >= left {
+            self.h[lane] = left;
+        } else if 2.0 * h > left {
+            self.h[lane] = 0.5 * left;
+        }
+        (good, None)
+    }
+}
+
+/// A second Newton step below this needs not be smaller than the first: near infinity rounding keeps both at this level.
+const ROUNDING: f64 = 1e-6;
+
+/// Displacements and their velocity at each lane's t.
+#[inline(always)]
+fn displaced(from: &DisplacementLanes, velocity: &DisplacementLanes, t: F64x8) -> DisplacementLanes {
+    let mut at = *from;
+    for j in 0..STEPS {
+        at.delta[j] = from.delta[j] + velocity.delta[j].scale(t);
+        at.starred[j] = from.starred[j] + velocity.starred[j].scale(t);
+    }
+    at
+}
+
+fn velocity(along: &Segment) -> Displacements {
+    Displacements {
+        delta: std::array::from_fn(|j| along.to.delta[j] - along.from.delta[j]),
+        starred: std::array::from_fn(|j| along.to.starred[j] - along.from.starred[j]),
+    }
+}
+
+/// Tracks every start along the segment on the threads of the current pool; the answers in the order of the starts.
+///
+/// Deterministic: a path's digits do not depend on threads or lanes. When `cancel` is set the rest is
+/// [`Ending::Cancelled`].
+pub fn track(starts: &[Solution], along: &Segment, with: &Parameters, cancel: &AtomicBool) -> Vec<Tracked> {
+    let next = AtomicUsize::new(0);
+    let workers = rayon::current_num_threads().min(starts.len().div_ceil(LANES)).max(1);
+    let work = || vectorised(|| worker(starts, along, with, &next, cancel));
+    let parts: Vec<Vec<(usize, Tracked)>> = if workers == 1 {
+        vec![work()]
+    } else {
+        use rayon::prelude::*;
+        (0..workers).into_par_iter().map(|_| work()).collect()
+    };
+    let lost = |solution: &Solution| Tracked { ending: Ending::Cancelled, solution: *solution, steps: 0 };
+    let mut all: Vec<Tracked> = starts.iter().map(lost).collect();
+    for (path, tracked) in parts.into_iter().flatten() {
+        all[path] = tracked;
+    }
+    all
+}
+
+/// One thread's eight lanes: takes paths until none is left.
+#[inline(always)]
+fn worker(
+    starts: &[Solution],
+    along: &Segment,
+    with: &Parameters,
+    next: &AtomicUsize,
+    cancel: &AtomicBool,
+) -> Vec<(usize, Tracked)> {
+    let mut done = Vec::new();
+    let mut state = Box::new(State::new());
+    let take = || Some(next.fetch_add(1, Ordering::Relaxed)).filter(|&path| path < starts.len());
+    let refill = |state: &mut State, lane: usize| match take() {
+        Some(path) => state.start(lane, path, &starts[path]),
+        None => state.path[lane] = None,
+    };
+    for lane in 0..LANES {
+        refill(&mut state, lane);
+    }
+    let from = DisplacementLanes::splat(&along.from);
+    let velocity = DisplacementLanes::splat(&velocity(along));
+    while state.path.iter().any(Option::is_some) && !cancel.load(Ordering::Relaxed) {
+        let (mut z, to) = state.predicted();
+        let at = displaced(&from, &velocity, F64x8(to));
+        let ([first], _) = steps::<1>(&z, &at, &velocity);
+        let e_1 = change_sq(&first, &z);
+        add(&mut z, &first);
+        let ([second, tangent], _) = steps::<2>(&z, &at, &velocity);
+        let e_2 = change_sq(&second, &z);
+        add(&mut z, &second);
+        let mut keep = F64x8([0.0; LANES]);
+        let mut endings = [None; LANES];
+        for lane in 0..LANES {
+            if state.path[lane].is_some() {
+                let (good, ending) =
+                    state.judge(lane, to[lane], [e_1.0[lane].sqrt(), e_2.0[lane].sqrt()], with);
+                keep.0[lane] = if good { 1.0 } else { 0.0 };
+                endings[lane] = ending;
+            }
+        }
+        state.remember(keep, &z, &tangent);
+        for lane in 0..LANES {
+            if let (Some(path), Some(ending)) = (state.path[lane], endings[lane]) {
+                let solution = state.solution(lane);
+                done.push((path, Tracked { ending, solution, steps: state.steps[lane] }));
+                refill(&mut state, lane);
+            }
+        }
+    }
+    done
+}
+
+#[inline(always)]
+fn add(z: &mut Unknowns, step: &Unknowns) {
+    for (z, step) in z.iter_mut().zip(step) {
+        *z = *z + *step;
+    }
+}
+
+/// A solution corrected at fixed displacements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corrected {
+    /// After the last Newton step.
+    pub solution: Solution,
+    /// The relative size of the last Newton step.
+    pub newton_step: f64,
+    /// The relative size of dz/dt along `velocity`: infinite or huge where the solution is singular.
+    pub speed: f64,
+    /// The smallest pivot of the elimination: near rounding where the solution is singular.
+    pub pivot: f64,
+}
+
+/// Newton steps at t = 1 of the segment: at most `most`, ended when the last is below 1e-15 for all or grows no more.
+pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected> {
+    use rayon::prelude::*;
+    let correct = |chunk: &[Solution]| {
+        vectorised(|| {
+            let at = DisplacementLanes::splat(&along.to);
+            let velocity = DisplacementLanes::splat(&velocity(along));
+            let mut z = [ComplexLanes::ZERO; UNKNOWNS];
+            for lane in 0..LANES {
+                let from = unknowns(&chunk[lane.min(chunk.len() - 1)]);
+                for (z, from) in z.iter_mut().zip(from) {
+                    z.set(lane, from);
+                }
+            }
+            let [mut change, mut speed, mut pivot] = [F64x8([f64::INFINITY; LANES]); 3];
+            for _ in 0..most.max(1) {
+                let ([step, tangent], smallest) = steps::<2>(&z, &at, &velocity);
+                add(&mut z, &step);
+                change = change_sq(&step, &z);
+                speed = change_sq(&tangent, &z);
+                pivot = smallest;
+            }
+            let corrected = |lane: usize| Corrected {
+                solution: solution(&std::array::from_fn(|i| z[i].get(lane))),
+                newton_step: change.0[lane].sqrt(),
+                speed: speed.0[lane].sqrt(),
+                pivot: pivot.0[lane].sqrt(),
+            };
+            (0..chunk.len()).map(corrected).collect::<Vec<_>>()
+        })
+    };
+    ends.par_chunks(LANES).flat_map_iter(correct).collect()
+}
+
+const _: () = assert!(ORDER == STEPS);
