@@ -27,6 +27,7 @@
 //! | [`exact`] | every linkage through nine precision points | linkage, task |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
+//! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
@@ -41,6 +42,7 @@
 
 pub mod analysis;
 pub mod assess;
+pub mod checkpoint;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod diagnostic;

@@ -2,12 +2,14 @@
 
 use crate::record::Record;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 const LOCK: &str = ".lock";
 const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
+/// The file of a search half done.
+pub const CHECKPOINT: &str = "checkpoint.json";
 /// What stands in the place of a rank in the names of the buildable answer's files.
 pub const BUILDABLE: &str = "buildable";
 /// The largest record that is read.
@@ -82,6 +84,15 @@ pub struct ResultsFolder {
     lock: Option<File>,
     /// The folders that were made for it, the innermost first; taken away again when nothing is written.
     created: Vec<PathBuf>,
+    /// Whether the checkpoint stays when the rest is replaced.
+    half_done: bool,
+}
+
+/// Whether a file begins as a checkpoint does: enough to tell it from one that linkwright did not write.
+fn begins_as_a_checkpoint(path: &Path) -> bool {
+    let mut start = [0; 64];
+    let read = File::open(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
+    start[..read].starts_with(b"{\"format\":") && start[..read].windows(12).any(|w| w == b"\"linkwright\"")
 }
 
 /// Whether a file of this name is one that a run writes.
@@ -94,7 +105,7 @@ fn is_ours(name: &str) -> bool {
     matches!(
         name,
         LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
-    ) || name == "checkpoint.json"
+    ) || name == CHECKPOINT
         || name.starts_with(TEMPORARY)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")
@@ -129,7 +140,9 @@ impl ResultsFolder {
             return Err(FolderError::Foreign { path: shown(), foreign: foreign.clone() });
         }
         let has_record = names.iter().any(|name| name == RECORD);
-        let of_a_record = |name: &&String| !name.starts_with('.') && *name != RECORD;
+        let half_done = begins_as_a_checkpoint(&path.join(CHECKPOINT));
+        let of_a_record =
+            |name: &&String| !name.starts_with('.') && *name != RECORD && !(half_done && *name == CHECKPOINT);
         if let Some(orphan) = names.iter().find(of_a_record).filter(|_| !has_record) {
             return Err(FolderError::Foreign {
                 path: shown(),
@@ -152,12 +165,34 @@ impl ResultsFolder {
             Err(TryLockError::WouldBlock) => return Err(FolderError::Locked { path: shown() }),
             Err(TryLockError::Error(e)) => return Err(FolderError::io(&lock_path, e)),
         }
-        Ok(ResultsFolder { path: path.to_path_buf(), lock: Some(lock), created })
+        Ok(ResultsFolder { path: path.to_path_buf(), lock: Some(lock), created, half_done: false })
     }
 
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Whether a search half done has left a checkpoint here.
+    pub fn has_checkpoint(&self) -> bool {
+        self.path.join(CHECKPOINT).is_file()
+    }
+
+    /// From now on the checkpoint stays when the rest is replaced: the result is of a search half done.
+    pub fn keep_checkpoint(&mut self) {
+        self.half_done = true;
+    }
+
+    /// Removes the checkpoint of a search that is over, if there is one.
+    ///
+    /// # Errors
+    /// [`FolderError::Io`] where it cannot be removed.
+    pub fn remove_checkpoint(&self) -> Result<(), FolderError> {
+        let path = self.path.join(CHECKPOINT);
+        match fs::remove_file(&path) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(FolderError::io(&path, e)),
+            _ => Ok(()),
+        }
     }
 
     /// Replaces what the folder holds by `files`, each written to a temporary file first and renamed; the
@@ -173,7 +208,8 @@ impl ResultsFolder {
         self.created.clear();
         for entry in fs::read_dir(&self.path).map_err(|e| FolderError::io(&self.path, e))?.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            if is_ours(&name) && name != LOCK && files.iter().all(|(kept, _)| *kept != name) {
+            let stays = name == LOCK || (self.half_done && name == CHECKPOINT);
+            if is_ours(&name) && !stays && files.iter().all(|(kept, _)| *kept != name) {
                 fs::remove_file(entry.path()).map_err(|e| FolderError::io(&entry.path(), e))?;
             }
         }

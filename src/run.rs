@@ -5,6 +5,7 @@ use crate::problem::Problem;
 use crate::problem::precision::{Refusal, precision_points};
 use crate::problem::spec::{Method, ProblemSpec};
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
+use crate::search::keeper::Keeper;
 use crate::search::{Budget, Observer, answers, cognates, conflicts, continuation, costs, plan};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
@@ -69,13 +70,22 @@ pub struct Finished {
 /// [`RunError`] when the job makes no search; a search that finds nothing is a record with no accepted
 /// candidate, not an error.
 pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
+    run_kept(job, context, None)
+}
+
+/// As [`run`], with a keeper of where its search stands: the search begins where the keeper says, and ends in the
+/// same record as one from the beginning.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -> Result<Finished, RunError> {
     let start = Instant::now();
     let problem = Problem::new(job.spec.clone())?;
     if job.spec.solve.method == Method::Continuation {
         precision_points(&problem)?;
     }
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
-    let mut outcome = plan::search(&problem, &budget, context.observer)?;
+    let mut outcome = plan::search_kept(&problem, &budget, context.observer, keeper)?;
     cognates::offer(&problem, &mut outcome.candidates);
     continuation::finish(&problem, &mut outcome);
     let search_s = start.elapsed().as_secs_f64();

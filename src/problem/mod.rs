@@ -18,6 +18,7 @@ use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::task::{AngleOffset, PathTask, TaskError, Timing};
 use design_space::DesignSpace;
 use requirements::Requirements;
+use serde::{Deserialize, Serialize};
 use spec::{DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec};
 
 /// A problem that has been checked.
@@ -29,7 +30,7 @@ pub struct Problem {
 }
 
 /// What a search chooses besides the design vector.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// The type aimed at; `None`: any.
     pub aim: Option<LinkageType>,

@@ -7,6 +7,9 @@
 //! optimum with probability P and another with probability p, that other one is believed in its stead with a
 //! probability below (p / (p + P))^HITS.
 
+use crate::solve::exact_float;
+use serde::{Deserialize, Serialize};
+
 /// The best objective has to come from this many batches.
 pub const HITS: usize = 4;
 /// Or within a thousandth from this many.
@@ -17,10 +20,11 @@ const SAME: f64 = 1e-6;
 const NEAR: f64 = 1e-3;
 
 /// What is believed of the best objective.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Belief {
     /// Objectives up to this are exact, and equal.
     exact: f64,
+    #[serde(with = "exact_float")]
     best: f64,
     hits: usize,
     near_hits: usize,

@@ -19,6 +19,7 @@
 
 use super::atlas::Matches;
 use super::coarse::Coarse;
+use super::keeper::{Keeper, spared};
 use super::multistart::{fit_with, judged, promise};
 use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
@@ -32,7 +33,12 @@ use crate::problem::torus::TorusFit;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::solve::streams::{Stream, normal, stream, uniform};
 use rayon::prelude::*;
+use state::{Counts, Resumed};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+mod state;
+
+pub use state::FreeState;
 
 /// Starts drawn and screened in a round.
 const SCREEN: usize = 160;
@@ -456,6 +462,7 @@ pub(super) fn search(
     patience: u64,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Local {
     let wanted = basins_wanted(problem);
     let coarse = Coarse::of(problem);
@@ -479,10 +486,31 @@ pub(super) fn search(
     };
     let mut ends: Vec<End> = Vec::new();
     let mut best_merits: Vec<f64> = Vec::new();
-    let (mut known, mut quiet) = (0, 0);
-    let (mut batch, mut draws) = (0, 0);
+    let mut count = Counts::default();
+    let points = coarse.as_ref().map_or(problem.task().len(), |coarse| coarse.problem.task().len());
+    let earlier = keeper.and_then(|keeper| keeper.earlier().free.as_ref());
+    if let Some((state, begun)) = earlier.and_then(|state| Some((state, state.stages(problem, points)?))) {
+        if begun > stages.len() {
+            stages.push(stage(None, &whole));
+        }
+        Resumed { counts: count, evaluations: local.evaluations, best_merits, ends } =
+            state.resume(problem, &mut stages);
+    }
+    let keep = |stopped, count, evaluations, merits: &[f64], stages: &[Stage<'_>], ends: &[End]| {
+        if let Some(keeper) = keeper {
+            keeper.keep(stopped, |at| {
+                at.free = Some(FreeState::of(count, evaluations, merits, stages, ends));
+            });
+        }
+    };
+    // No round so far came near to what it was allowed.
+    let mut ample = true;
     loop {
-        if let Some(reason) = budget.stop_reason() {
+        let stop = budget.stop_reason();
+        if ample {
+            keep(stop.is_some(), count, local.evaluations, &best_merits, &stages, &ends);
+        }
+        if let Some(reason) = stop {
             local.reason = reason;
             break;
         }
@@ -490,16 +518,16 @@ pub(super) fn search(
         let left = limit.saturating_sub(local.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
         // What grouping blurs is looked for on all points, in turn with the groups.
-        if stages.len() == 1 && batch == WHOLE_FROM && coarse.is_some() && problem.task().len() <= WHOLE_MOST
-        {
+        let dense = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
+        if stages.len() == 1 && count.batch == WHOLE_FROM && dense {
             stages.push(stage(None, &whole));
         }
-        let turn = batch as usize % stages.len();
-        let Stage { setup, bar, leading, finished, index } = &mut stages[turn];
+        let turn = count.batch as usize % stages.len();
+        let Stage { setup, bar, leading, finished, index } = &stages[turn];
         let near_ends = leading.iter().map(|(_, start)| start.clone()).collect::<Vec<_>>();
         let so_far = Known { bar: *bar, near_ends: &near_ends, finished };
         let found = AtomicU64::new(u64::MAX);
-        let first = batch * BATCH;
+        let first = count.batch * BATCH;
         let rounds: Vec<Round> = (0..BATCH)
             .into_par_iter()
             .map(|i| {
@@ -507,11 +535,18 @@ pub(super) fn search(
                 round(setup, place, allowance(i), &so_far, budget, &found)
             })
             .collect();
-        batch += 1;
+        // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
+        let stop = budget.stop_reason();
+        if stop.is_some() && ample {
+            keep(true, count, local.evaluations, &best_merits, &stages, &ends);
+        }
+        ample &= (0..).zip(&rounds).all(|(i, round)| spared(round.evaluations, allowance(i)));
+        let Stage { bar, leading, finished, index, .. } = &mut stages[turn];
+        count.batch += 1;
         *index += BATCH;
         let mut finished_now = Vec::new();
         for round in rounds {
-            draws += round.draws;
+            count.draws += round.draws;
             *bar = bar.min(round.explored);
             for (merit, start) in round.leaders {
                 if leading.iter().all(|(other, _): &(f64, Start)| (merit - other).abs() > DIFFERENT * other) {
@@ -543,7 +578,7 @@ pub(super) fn search(
         });
         ends.truncate(KEPT);
         let best = judge_from_the_best(problem, &mut ends, wanted, exact);
-        if let Some(reason) = budget.stop_reason() {
+        if let Some(reason) = stop {
             local.reason = reason;
             break;
         }
@@ -569,12 +604,12 @@ pub(super) fn search(
                 Some(_) if likeness(problem, best) < ALIKE => DENSE_BATCHES,
                 Some(_) => PATIENT_BATCHES,
             };
-            if (believed && batch >= least) || (is_exact && wanted == 1) {
+            if (believed && count.batch >= least) || (is_exact && wanted == 1) {
                 let now =
                     if wanted == 1 { 1 } else { count_distinct(problem, &accepted(problem, &ends), wanted) };
-                quiet = if now > known { 0 } else { quiet + 1 };
-                known = now;
-                if now >= wanted || quiet >= QUIET_BATCHES {
+                count.quiet = if now > count.known { 0 } else { count.quiet + 1 };
+                count.known = now;
+                if now >= wanted || count.quiet >= QUIET_BATCHES {
                     let is_exact = best.error.sum_sq <= exact_sum_sq(problem);
                     local.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
                     break;
@@ -583,7 +618,7 @@ pub(super) fn search(
         }
         // Draws that cannot be assembled cost no evaluation, and must not go on for ever.
         let used = local.evaluations.objective;
-        let spent = used.max(draws);
+        let spent = used.max(count.draws);
         if spent >= limit || (spent >= patience && best.is_none()) {
             local.reason = if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
             break;

@@ -14,6 +14,7 @@ pub mod costs;
 pub mod exact_linkages;
 pub mod family;
 pub mod free;
+pub mod keeper;
 pub mod loosen;
 pub mod multistart;
 pub mod nearest;

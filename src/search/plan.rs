@@ -8,6 +8,7 @@
 //! acceptable, `auto` lets differential evolution look for a feasible design and polishes what that finds. The
 //! population searches alone run without a polish.
 
+use super::keeper::{Keeper, of_as_many_points, spared};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
 use super::polish::{improve, promising, reserve};
 use super::population::{self, Population};
@@ -22,6 +23,7 @@ use crate::record::{Candidate, Evaluations, Reason};
 use crate::solve::population::PopulationError;
 use crate::task::Timing;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// The best answer has to come back from this many rounds before it is believed.
 pub const HITS: usize = 6;
@@ -58,13 +60,26 @@ pub fn search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<SearchOutcome, PopulationError> {
+    search_kept(problem, budget, observer, None)
+}
+
+/// As [`search`], with a keeper of where it stands: it begins where the keeper says.
+///
+/// # Errors
+/// As [`search`].
+pub fn search_kept(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
+) -> Result<SearchOutcome, PopulationError> {
     let Some(exact) = continuation::solve(problem, budget, observer) else {
-        return approximate(problem, budget, observer);
+        return approximated(problem, budget, observer, keeper);
     };
     if exact.suffices(problem) || budget.stopped() {
         return Ok(exact.alone(problem, budget));
     }
-    Ok(exact.beside(problem, approximate(problem, budget, observer)?, budget))
+    Ok(exact.beside(problem, approximated(problem, budget, observer, keeper)?, budget))
 }
 
 /// As [`search`] without exact answers: what conflicts and costs are looked for with, many times over.
@@ -76,14 +91,23 @@ pub fn approximate(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<SearchOutcome, PopulationError> {
+    approximated(problem, budget, observer, None)
+}
+
+fn approximated(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
+) -> Result<SearchOutcome, PopulationError> {
     let centre = problem.task().centre();
     if centre.norm() <= FAR * problem.task().size() {
-        return search_here(problem, budget, observer);
+        return search_here(problem, budget, observer, keeper);
     }
     let Ok(near) = Problem::new(problem.spec().shifted([-centre.re, -centre.im])) else {
-        return search_here(problem, budget, observer);
+        return search_here(problem, budget, observer, keeper);
     };
-    let mut outcome = search_here(&near, budget, observer)?;
+    let mut outcome = search_here(&near, budget, observer, keeper)?;
     let back = |candidate: &Candidate| {
         let linkage = candidate.linkage.shifted(centre).ok()?;
         assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
@@ -105,19 +129,22 @@ fn search_here(
     problem: &Problem,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Result<SearchOutcome, PopulationError> {
     match problem.spec().solve.method {
-        Method::Genetic => alone(problem, Population::Genetic, budget, observer),
-        Method::DifferentialEvolution => alone(problem, Population::DifferentialEvolution, budget, observer),
+        Method::Genetic => alone(problem, Population::Genetic, budget, observer, keeper),
+        Method::DifferentialEvolution => {
+            alone(problem, Population::DifferentialEvolution, budget, observer, keeper)
+        }
         Method::LeastSquares => {
             let limit = problem.spec().solve.evaluations;
             let share = limit - reserve(problem, limit);
-            let mut local = local_search(problem, share, share, budget, observer);
+            let mut local = local_search(problem, share, share, budget, observer, keeper);
             local.finish(problem, limit, budget);
             Ok(local.outcome(problem))
         }
         // Exact answers are not approximated; where the points have none, all the same.
-        Method::Auto | Method::Continuation => auto(problem, budget, observer),
+        Method::Auto | Method::Continuation => auto(problem, budget, observer, keeper),
     }
 }
 
@@ -126,9 +153,10 @@ fn alone(
     which: Population,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Result<SearchOutcome, PopulationError> {
     let spec = &problem.spec().solve;
-    let end = population::search(problem, which, spec.evaluations, budget, observer)?;
+    let end = population::search_kept(problem, which, spec.evaluations, budget, observer, keeper)?;
     let (candidates, others) = divided(problem, end.found, spec.candidates);
     Ok(SearchOutcome {
         candidates,
@@ -182,13 +210,14 @@ fn local_search(
     patience: u64,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Local {
     if matches!(problem.task().timing(), Timing::Free) {
-        return free::search(problem, limit, patience, budget, observer);
+        return free::search(problem, limit, patience, budget, observer, keeper);
     }
     let share = (patience as f64 * REDUCED_SHARE) as u64;
-    let Some(timed) = timed::search(problem, limit, share, budget, observer) else {
-        return rounds(problem, limit, patience, budget, observer);
+    let Some(timed) = timed::search(problem, limit, share, budget, observer, keeper) else {
+        return rounds(problem, limit, patience, budget, observer, keeper);
     };
     let mut local = Local {
         found: timed.found,
@@ -205,7 +234,7 @@ fn local_search(
         return local;
     }
     let patience = patience.saturating_sub(local.evaluations.objective).min(left);
-    let more = rounds(problem, left, patience, budget, observer);
+    let more = rounds(problem, left, patience, budget, observer, keeper);
     local.found.extend(more.found);
     local.evaluations.objective += more.evaluations.objective;
     local.evaluations.positions += more.evaluations.positions;
@@ -216,6 +245,25 @@ fn local_search(
     local
 }
 
+/// Where [`rounds`] stand between two batches: all that the next ones depend on besides the problem and the budget.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct RoundsState {
+    found: Vec<Candidate>,
+    evaluations: Evaluations,
+    best: Option<Candidate>,
+    hits: usize,
+    known: usize,
+    quiet: u64,
+    batch: u64,
+    draws: u64,
+}
+
+impl RoundsState {
+    fn ended(self, reason: Reason) -> Local {
+        Local { found: self.found, evaluations: self.evaluations, reason, used: vec!["least-squares".into()] }
+    }
+}
+
 /// Prescribed timing in the physical parameters: rounds until the best is believed, until `limit` evaluations are
 /// used, or until `patience` are used without an acceptable candidate.
 fn rounds(
@@ -224,86 +272,95 @@ fn rounds(
     patience: u64,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Local {
     let wanted = problem.spec().solve.candidates;
     let exact = exact_cost(problem);
     let starts = Starts::new(problem);
-    let mut local = Local {
-        found: Vec::new(),
-        evaluations: Evaluations::default(),
-        reason: Reason::EvaluationLimit,
-        used: vec!["least-squares".into()],
+    let earlier = keeper.and_then(|keeper| keeper.earlier().rounds.clone());
+    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
+    let mut at = earlier.unwrap_or_default();
+    let keep = |stopped, at: &RoundsState| {
+        if let Some(keeper) = keeper {
+            keeper.keep(stopped, |state| state.rounds = Some(at.clone()));
+        }
     };
-    let mut best: Option<Candidate> = None;
-    let (mut hits, mut known, mut quiet) = (0, 0, 0);
-    let (mut batch, mut draws) = (0, 0);
+    // No round so far came near to what it was allowed.
+    let mut ample = true;
     loop {
-        if let Some(reason) = budget.stop_reason() {
-            local.reason = reason;
-            return local;
+        let stop = budget.stop_reason();
+        if ample {
+            keep(stop.is_some(), &at);
+        }
+        if let Some(reason) = stop {
+            return at.ended(reason);
         }
         // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
-        let left = limit.saturating_sub(local.evaluations.objective);
+        let left = limit.saturating_sub(at.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
-        let rounds: Vec<_> = (batch * BATCH..(batch + 1) * BATCH)
+        let rounds: Vec<_> = (at.batch * BATCH..(at.batch + 1) * BATCH)
             .into_par_iter()
             .map(|index| round(problem, &starts, index, allowance(index), budget))
             .collect();
-        batch += 1;
+        let stop = budget.stop_reason();
+        if stop.is_some() && ample {
+            keep(true, &at);
+        }
+        ample &= (at.batch * BATCH..)
+            .zip(&rounds)
+            .all(|(index, round)| spared(round.evaluations, allowance(index)));
+        at.batch += 1;
         for outcome in rounds {
-            draws += outcome.draws;
-            local.evaluations.objective += outcome.evaluations;
-            local.evaluations.positions += outcome.positions;
+            at.draws += outcome.draws;
+            at.evaluations.objective += outcome.evaluations;
+            at.evaluations.positions += outcome.positions;
             let mut hit = false;
             for candidate in outcome.found {
                 if promising(problem, &candidate) {
                     let error = searched(problem, &candidate);
-                    let bar = best.as_ref().map_or(f64::INFINITY, |b| searched(problem, b));
+                    let bar = at.best.as_ref().map_or(f64::INFINITY, |b| searched(problem, b));
                     if error < bar - SAME_OPTIMUM * bar.max(exact) {
-                        hits = 0;
+                        at.hits = 0;
                     }
                     if error <= bar + (SAME_OPTIMUM * bar).max(exact) {
                         hit = true;
                     }
                     if error < bar {
-                        best = Some(candidate.clone());
+                        at.best = Some(candidate.clone());
                     }
                 }
-                local.found.push(candidate);
+                at.found.push(candidate);
             }
-            hits += usize::from(hit);
+            at.hits += usize::from(hit);
         }
-        sort(problem, &mut local.found);
-        local.found.truncate(KEPT);
+        sort(problem, &mut at.found);
+        at.found.truncate(KEPT);
         // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
-        if let Some(reason) = budget.stop_reason() {
-            local.reason = reason;
-            return local;
+        if let Some(reason) = stop {
+            return at.ended(reason);
         }
-        let shown = best.as_ref().or(local.found.first());
+        let shown = at.best.as_ref().or(at.found.first());
         observer(&Progress {
             phase: "least-squares",
-            evaluations: local.evaluations.objective,
+            evaluations: at.evaluations.objective,
             budget: limit,
             best_sum_sq: shown.map(|c| c.error.sum_sq),
-            accepted: best.as_ref().is_some_and(|b| b.accepted),
+            accepted: at.best.as_ref().is_some_and(|b| b.accepted),
         });
-        if hits >= HITS && batch >= LEAST_BATCHES {
-            let distinct = count_distinct(problem, &local.found, wanted);
-            quiet = if distinct > known { 0 } else { quiet + 1 };
-            known = distinct;
-            if distinct >= wanted || quiet >= QUIET_BATCHES {
-                let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact_sum_sq(problem));
-                local.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
-                return local;
+        if at.hits >= HITS && at.batch >= LEAST_BATCHES {
+            let distinct = count_distinct(problem, &at.found, wanted);
+            at.quiet = if distinct > at.known { 0 } else { at.quiet + 1 };
+            at.known = distinct;
+            if distinct >= wanted || at.quiet >= QUIET_BATCHES {
+                let is_exact = at.best.as_ref().is_some_and(|b| b.error.sum_sq <= exact_sum_sq(problem));
+                return at.ended(if is_exact { Reason::TargetReached } else { Reason::Converged });
             }
         }
         // Draws that cannot be assembled cost no evaluation, and must not go on for ever.
-        let used = local.evaluations.objective;
-        let spent = used.max(draws);
-        if spent >= limit || (spent >= patience && best.is_none()) {
-            local.reason = if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
-            return local;
+        let used = at.evaluations.objective;
+        let spent = used.max(at.draws);
+        if spent >= limit || (spent >= patience && at.best.is_none()) {
+            return at.ended(if used < patience { Reason::Stalled } else { Reason::EvaluationLimit });
         }
     }
 }
@@ -312,10 +369,12 @@ fn auto(
     problem: &Problem,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Result<SearchOutcome, PopulationError> {
     let limit = problem.spec().solve.evaluations;
     let patience = (limit as f64 * LOCAL_SHARE) as u64;
-    let mut local = local_search(problem, limit - reserve(problem, limit), patience, budget, observer);
+    let mut local =
+        local_search(problem, limit - reserve(problem, limit), patience, budget, observer, keeper);
     local.finish(problem, limit, budget);
     // Converged without an accepted answer: a tolerance that no polish could meet.
     let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged);
@@ -326,8 +385,14 @@ fn auto(
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
     let for_polish = left / POLISH_SHARE;
     let which = Population::DifferentialEvolution;
-    let end =
-        population::search(problem, which, left - for_polish - reserve(problem, left), budget, observer)?;
+    let end = population::search_kept(
+        problem,
+        which,
+        left - for_polish - reserve(problem, left),
+        budget,
+        observer,
+        keeper,
+    )?;
     local.used.push(which.name().into());
     local.evaluations.objective += end.evaluations;
     local.evaluations.positions += end.positions;

@@ -1,6 +1,7 @@
 //! The population searches on the design vector or in reduced variables: genetic, differential evolution, and
 //! uniform sampling as the baseline that they are measured against.
 
+use super::keeper::Keeper;
 use super::multistart::{judged, settle_positions};
 use super::reduced::{ReducedFitness, forms};
 use super::starts::Start;
@@ -10,7 +11,7 @@ use crate::problem::fitness::PathFitness;
 use crate::problem::reduced::refusal;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Reason};
-use crate::solve::argmin_bridge::{Limits, StopReason, run_restarts};
+use crate::solve::argmin_bridge::{Limits, PopulationProgress, RestartsState, StopReason, run_restarts_from};
 use crate::solve::differential_evolution::DifferentialEvolution;
 use crate::solve::genetic::Genetic;
 use crate::solve::population::{Generations, PopulationError, PopulationProblem};
@@ -79,15 +80,31 @@ pub fn search(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<PopulationEnd, PopulationError> {
+    search_kept(problem, which, evaluations, budget, observer, None)
+}
+
+/// As [`search`], with a keeper of where it stands: it begins where the keeper says.
+///
+/// # Errors
+/// As [`search`].
+pub fn search_kept(
+    problem: &Problem,
+    which: Population,
+    evaluations: u64,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
+) -> Result<PopulationEnd, PopulationError> {
     if !problem.spec().solve.moves_reduced() {
-        return search_in(problem, &PathFitness::new(problem), which, evaluations, budget, observer);
+        let fitness = PathFitness::new(problem);
+        return search_in(problem, &fitness, which, evaluations, budget, observer, keeper);
     }
     if let Some(refusal) = refusal(problem) {
         return Err(PopulationError::Form { why: refusal.to_string() });
     }
     let forms = forms(problem);
     let fitness = ReducedFitness::new(problem, &forms);
-    search_in(problem, &fitness, which, evaluations, budget, observer)
+    search_in(problem, &fitness, which, evaluations, budget, observer, keeper)
 }
 
 fn search_in<F: Searched>(
@@ -97,6 +114,7 @@ fn search_in<F: Searched>(
     evaluations: u64,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Result<PopulationEnd, PopulationError> {
     let spec = &problem.spec().solve;
     let mut algorithm: Box<dyn Generations> = match which {
@@ -119,7 +137,7 @@ fn search_in<F: Searched>(
     let limits = Limits { evaluations, target: Some(super::rank::exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(budget.stopped());
-    let outcome = run_restarts(fitness, &mut *algorithm, &[], spec.seed, &limits, &stop, &mut |at| {
+    let mut observe = |at: PopulationProgress<'_>| {
         if budget.stopped() {
             stop.store(true, Ordering::Relaxed);
         }
@@ -130,7 +148,16 @@ fn search_in<F: Searched>(
             best_sum_sq: (sums && at.best.fitness.is_feasible()).then_some(at.best.fitness.cost),
             accepted: at.best.fitness.is_feasible(),
         });
-    })?;
+    };
+    let mut keep = |state: &dyn Fn() -> RestartsState| {
+        if let Some(keeper) = keeper {
+            keeper.keep(stop.load(Ordering::Relaxed), |at| at.population = Some(state()));
+        }
+    };
+    let earlier = keeper.and_then(|keeper| keeper.earlier().population.clone());
+    let (algorithm, seed) = (&mut *algorithm, spec.seed);
+    let outcome =
+        run_restarts_from(earlier, fitness, algorithm, &[], seed, &limits, &stop, &mut observe, &mut keep)?;
     let mut starts = Vec::new();
     let mut found = Vec::new();
     let kept =

@@ -15,10 +15,12 @@ use crate::problem::torus::Positions;
 use crate::problem::{Problem, Setting};
 use crate::solve::streams::{Stream, below, uniform};
 use crate::task::{AngleOffset, Timing};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A start for a local search.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(from = "WrittenStart", into = "WrittenStart")]
 pub struct Start {
     /// The design vector, inside its bounds.
     pub design: Design,
@@ -26,6 +28,28 @@ pub struct Start {
     pub setting: Setting,
     /// The points' positions; empty for prescribed timing.
     pub positions: Positions,
+}
+
+/// A start as it is written: of each position both real parts and imaginary parts.
+#[derive(Serialize, Deserialize)]
+struct WrittenStart {
+    design: Design,
+    setting: Setting,
+    positions: Vec<[f64; 4]>,
+}
+
+impl From<Start> for WrittenStart {
+    fn from(Start { design, setting, positions }: Start) -> Self {
+        let positions = positions.iter().map(|[e, u]| [e.re, e.im, u.re, u.im]).collect();
+        WrittenStart { design, setting, positions }
+    }
+}
+
+impl From<WrittenStart> for Start {
+    fn from(WrittenStart { design, setting, positions }: WrittenStart) -> Self {
+        let position = |[a, b, c, d]: [f64; 4]| [Complex::new(a, b), Complex::new(c, d)];
+        Start { design, setting, positions: positions.into_iter().map(position).collect() }
+    }
 }
 
 /// Draws starts for a problem.

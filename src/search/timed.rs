@@ -17,6 +17,7 @@
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
 use super::belief::Belief;
+use super::keeper::{Keeper, of_as_many_points, spared};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
 use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched, sort};
@@ -32,6 +33,7 @@ use crate::solve::compact_lm::{CompactOptions, solve};
 use crate::solve::streams::{Stream, below, stream, uniform};
 use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// Draws of a batch.
@@ -87,10 +89,51 @@ struct End {
 }
 
 /// An end that the referee has seen.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Judged {
     setting: Setting,
     design: Design,
     accepted: bool,
+}
+
+/// Where the search stands between two waves: all that the next waves depend on besides the problem and the budget.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct TimedState {
+    found: Vec<Candidate>,
+    evaluations: Evaluations,
+    polished: bool,
+    best: Option<Candidate>,
+    seen: Vec<Judged>,
+    belief: Belief,
+    known: usize,
+    quiet: u64,
+    wave: u64,
+    draws: u64,
+    binding: bool,
+    binding_waves: u64,
+}
+
+impl TimedState {
+    fn new(exact: f64) -> Self {
+        TimedState {
+            found: Vec::new(),
+            evaluations: Evaluations::default(),
+            polished: false,
+            best: None,
+            seen: Vec::new(),
+            belief: Belief::new(exact),
+            known: 0,
+            quiet: 0,
+            wave: 0,
+            draws: 0,
+            binding: false,
+            binding_waves: 0,
+        }
+    }
+
+    fn ended(self, reason: Reason) -> TimedOutcome {
+        TimedOutcome { found: self.found, evaluations: self.evaluations, reason, polished: self.polished }
+    }
 }
 
 /// What a batch gives.
@@ -129,50 +172,60 @@ pub fn search(
     patience: u64,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
+    keeper: Option<&Keeper<'_>>,
 ) -> Option<TimedOutcome> {
     let search = Search::new(problem, budget)?;
     let wanted = basins_wanted(problem);
-    let mut out = TimedOutcome {
-        found: Vec::new(),
-        evaluations: Evaluations::default(),
-        reason: Reason::EvaluationLimit,
-        polished: false,
-    };
     let n = problem.task().len() as u64;
-    let mut best: Option<Candidate> = None;
-    let mut seen: Vec<Judged> = Vec::new();
-    let mut belief = Belief::new(search.exact);
-    let (mut known, mut quiet, mut wave, mut draws) = (0, 0, 0, 0);
-    let (mut binding, mut binding_waves) = (false, 0);
-    loop {
-        if let Some(reason) = budget.stop_reason() {
-            out.reason = reason;
-            return Some(out);
+    let earlier = keeper.and_then(|keeper| keeper.earlier().timed.clone());
+    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
+    let mut at = earlier.unwrap_or_else(|| TimedState::new(search.exact));
+    // No batch so far came near to what it was allowed.
+    let mut ample = true;
+    let keep = |stopped, at: &TimedState| {
+        if let Some(keeper) = keeper {
+            keeper.keep(stopped, |state| state.timed = Some(at.clone()));
         }
-        let left = limit.saturating_sub(out.evaluations.objective);
+    };
+    loop {
+        let stop = budget.stop_reason();
+        if ample {
+            keep(stop.is_some(), &at);
+        }
+        if let Some(reason) = stop {
+            return Some(at.ended(reason));
+        }
+        let left = limit.saturating_sub(at.evaluations.objective);
         let allowance = |index: u64| left / WAVE + u64::from(index % WAVE < left % WAVE);
-        let bar = belief.best();
+        let (wave, bar, binding) = (at.wave, at.belief.best(), at.binding);
         let batches: Vec<BatchOutcome> = (wave * WAVE..(wave + 1) * WAVE)
             .into_par_iter()
             .map(|index| search.batch(index, allowance(index), bar, binding))
             .collect();
-        wave += 1;
-        binding_waves += u64::from(binding);
+        let stop = budget.stop_reason();
+        if stop.is_some() && ample {
+            keep(true, &at);
+        }
+        ample &=
+            (wave * WAVE..).zip(&batches).all(|(index, batch)| spared(batch.evaluations, allowance(index)));
+        let (found, best, seen, belief) = (&mut at.found, &mut at.best, &mut at.seen, &mut at.belief);
+        at.wave += 1;
+        at.binding_waves += u64::from(binding);
         for batch in batches {
-            binding |= batch.binding;
-            draws += batch.draws;
-            out.polished |= batch.polished;
-            out.evaluations.objective += batch.evaluations;
-            out.evaluations.positions += n * batch.evaluations;
+            at.binding |= batch.binding;
+            at.draws += batch.draws;
+            at.polished |= batch.polished;
+            at.evaluations.objective += batch.evaluations;
+            at.evaluations.positions += n * batch.evaluations;
             let mut take = |candidate: Candidate, belief: &mut Belief| {
                 if promising(problem, &candidate) {
                     let cost = searched(problem, &candidate);
                     belief.came_to(cost);
                     if best.as_ref().is_none_or(|b| cost < searched(problem, b)) {
-                        best = Some(candidate.clone());
+                        *best = Some(candidate.clone());
                     }
                 }
-                out.found.push(candidate);
+                found.push(candidate);
             };
             for end in batch.ends {
                 if wanted == 1 && end.cost > search.exact && !belief.would_improve(end.cost) {
@@ -180,7 +233,7 @@ pub fn search(
                     belief.came_back_to(end.cost);
                     continue;
                 }
-                if let Some(accepted) = search.judged_before(&seen, &end) {
+                if let Some(accepted) = search.judged_before(seen, &end) {
                     if accepted {
                         belief.came_back_to(end.cost);
                     }
@@ -189,43 +242,40 @@ pub fn search(
                 let Some(candidate) = judged(problem, &end.start) else { continue };
                 let Start { setting, design, .. } = end.start;
                 seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
-                take(candidate, &mut belief);
+                take(candidate, belief);
             }
             for candidate in batch.judged {
-                take(candidate, &mut belief);
+                take(candidate, belief);
             }
             belief.end_batch();
         }
-        sort(problem, &mut out.found);
-        out.found.truncate(KEPT);
-        if let Some(reason) = budget.stop_reason() {
-            out.reason = reason;
-            return Some(out);
+        sort(problem, found);
+        found.truncate(KEPT);
+        if let Some(reason) = stop {
+            return Some(at.ended(reason));
         }
         observer(&Progress {
             phase: "variable-projection",
-            evaluations: out.evaluations.objective,
+            evaluations: at.evaluations.objective,
             budget: limit,
-            best_sum_sq: best.as_ref().or(out.found.first()).map(|c| c.error.sum_sq),
+            best_sum_sq: best.as_ref().or(found.first()).map(|c| c.error.sum_sq),
             accepted: best.as_ref().is_some_and(|b| b.accepted),
         });
-        let explored = !binding || binding_waves >= BINDING_WAVES;
-        let enough = wanted == 1 || wave >= LEAST_WAVES;
+        let explored = !at.binding || at.binding_waves >= BINDING_WAVES;
+        let enough = wanted == 1 || at.wave >= LEAST_WAVES;
         if belief.is_firm() && explored && enough {
-            let distinct = if wanted == 1 { 1 } else { count_distinct(problem, &out.found, wanted) };
-            quiet = if distinct > known { 0 } else { quiet + 1 };
-            known = distinct;
-            if distinct >= wanted || quiet >= QUIET_WAVES {
+            let distinct = if wanted == 1 { 1 } else { count_distinct(problem, found, wanted) };
+            at.quiet = if distinct > at.known { 0 } else { at.quiet + 1 };
+            at.known = distinct;
+            if distinct >= wanted || at.quiet >= QUIET_WAVES {
                 let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact_sum_sq(problem));
-                out.reason = if is_exact { Reason::TargetReached } else { Reason::Converged };
-                return Some(out);
+                return Some(at.ended(if is_exact { Reason::TargetReached } else { Reason::Converged }));
             }
         }
-        let used = out.evaluations.objective;
-        let spent = used.max(draws);
+        let used = at.evaluations.objective;
+        let spent = used.max(at.draws);
         if spent >= limit || (spent >= patience && best.is_none()) {
-            out.reason = if used < patience { Reason::Stalled } else { Reason::EvaluationLimit };
-            return Some(out);
+            return Some(at.ended(if used < patience { Reason::Stalled } else { Reason::EvaluationLimit }));
         }
     }
 }

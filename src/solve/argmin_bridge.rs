@@ -9,15 +9,20 @@
 //!   go by the feasibility rules of [`Fitness`](super::population::Fitness);
 //! - *signals*: its handler is for the whole process. A search looks at its own job's token after each generation.
 //!
+//! - *checkpoints*: argmin's would replace the solver and the limits by what was written. Here a search hands out its
+//!   [`RestartsState`] after whole generations and begins from one; limits are those of the call.
+//!
 //! A search that stops at its limit, at a token or in a stall is an outcome, not an error.
 
 use super::population::{
-    Generations, Individual, PopulationError, PopulationProblem, best_of, check_box, sort_best_first,
+    Generations, GenerationsState, Individual, PopulationError, PopulationProblem, best_of, check_box,
+    lies_in, sort_best_first,
 };
 use super::streams::stream;
 use argmin::core::{
     Error, Executor, KV, PopulationState, Problem, Solver, State, TerminationReason, TerminationStatus,
 };
+use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// When a search has to stop.
@@ -30,7 +35,7 @@ pub struct Limits {
 }
 
 /// Why a search stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum StopReason {
     /// The best stalled or the population collapsed.
     Converged,
@@ -56,7 +61,7 @@ pub struct PopulationProgress<'a> {
 }
 
 /// What a search found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PopulationOutcome {
     /// The best individual of all. It may be infeasible, if no feasible one was met.
     pub best: Individual,
@@ -71,6 +76,41 @@ pub struct PopulationOutcome {
     /// Why the search stopped.
     pub reason: StopReason,
 }
+
+/// Where a search with restarts stands between two generations: all that the rest of it depends on besides the
+/// arguments of [`run_restarts_from`].
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RestartsState {
+    /// The number of the restart.
+    restart: u64,
+    /// Generations of this restart.
+    generation: u64,
+    /// Over all restarts.
+    evaluations: u64,
+    /// What the restarts before this one found.
+    found: Option<PopulationOutcome>,
+    /// The algorithm.
+    algorithm: GenerationsState,
+}
+
+impl RestartsState {
+    /// Whether the numbers can stand together in a search of these limits.
+    fn fits(&self, bounds: &[(f64, f64)], limits: &Limits) -> bool {
+        let found = self.found.as_ref().is_none_or(|found| {
+            let individuals = [&found.best].into_iter().chain(&found.population).chain(&found.restart_bests);
+            found.evaluations < self.evaluations
+                && found.restart_bests.len() as u64 == self.restart
+                && individuals.into_iter().all(|individual| lies_in(&individual.x, bounds))
+        });
+        found
+            && self.found.is_some() == (self.restart > 0)
+            && (1..limits.evaluations).contains(&self.evaluations)
+    }
+}
+
+/// Told after every whole generation that is not the last one where the search stands, by a function that it need
+/// not call.
+pub type Keep<'k> = dyn FnMut(&dyn Fn() -> RestartsState) + 'k;
 
 /// Searches once, with stream 0 of `seed`, until the algorithm converges or the limits are met.
 ///
@@ -95,8 +135,9 @@ pub fn run(
     observe: &mut dyn FnMut(PopulationProgress<'_>),
 ) -> Result<PopulationOutcome, PopulationError> {
     check(problem, starts, limits)?;
-    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, found: None };
-    search.restart(0, starts);
+    let keep = &mut |_: &dyn Fn() -> RestartsState| {};
+    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, keep, found: None };
+    search.restart(0, starts, None);
     Ok(search.finish())
 }
 
@@ -121,13 +162,46 @@ pub fn run_restarts(
     cancel: &AtomicBool,
     observe: &mut dyn FnMut(PopulationProgress<'_>),
 ) -> Result<PopulationOutcome, PopulationError> {
+    let keep = &mut |_: &dyn Fn() -> RestartsState| {};
+    run_restarts_from(None, problem, algorithm, starts, seed, limits, cancel, observe, keep)
+}
+
+/// As [`run_restarts`], from where a search of the same problem, algorithm, starts and seed stood, or from the beginning
+/// where that is `None` or cannot be: then its outcome is that of an unbroken search. `keep` is told where it stands.
+///
+/// # Errors
+/// As [`run`].
+///
+/// # Panics
+/// As [`run`].
+#[expect(clippy::too_many_arguments, reason = "those of a search, and where it comes from and goes to")]
+pub fn run_restarts_from(
+    state: Option<RestartsState>,
+    problem: &dyn PopulationProblem,
+    algorithm: &mut dyn Generations,
+    starts: &[Vec<f64>],
+    seed: u64,
+    limits: &Limits,
+    cancel: &AtomicBool,
+    observe: &mut dyn FnMut(PopulationProgress<'_>),
+    keep: &mut Keep<'_>,
+) -> Result<PopulationOutcome, PopulationError> {
     check(problem, starts, limits)?;
-    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, found: None };
-    search.restart(0, starts);
-    let mut index = 1;
+    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, keep, found: None };
+    let state = state.filter(|state| state.fits(problem.bounds(), limits));
+    let mut index = 0;
+    let mut again = None;
+    if let Some(state) = state
+        && search.algorithm.restore(problem, state.algorithm)
+    {
+        index = state.restart;
+        search.found = state.found;
+        again = Some((state.generation, state.evaluations));
+    }
+    search.restart(index, if index == 0 { starts } else { &[] }, again);
     while search.wants_more() {
-        search.restart(index, &[]);
         index += 1;
+        search.restart(index, &[], None);
     }
     Ok(search.finish())
 }
@@ -152,6 +226,7 @@ struct Search<'a> {
     limits: &'a Limits,
     cancel: &'a AtomicBool,
     observe: &'a mut dyn FnMut(PopulationProgress<'_>),
+    keep: &'a mut Keep<'a>,
     found: Option<PopulationOutcome>,
 }
 
@@ -167,11 +242,11 @@ impl Search<'_> {
         found.reason == StopReason::Converged
     }
 
-    fn restart(&mut self, index: u64, starts: &[Vec<f64>]) {
-        let (evaluations, generations, best_before) = match &self.found {
-            None => (0, 0, None),
-            Some(found) => (found.evaluations, found.generations, Some(&found.best)),
-        };
+    /// Restart `index`; where the algorithm has been restored, after so many generations and evaluations.
+    fn restart(&mut self, index: u64, starts: &[Vec<f64>], restored: Option<(u64, u64)>) {
+        let (evaluations, generations) =
+            self.found.as_ref().map_or((0, 0), |found| (found.evaluations, found.generations));
+        let (generation, evaluations) = restored.unwrap_or((0, evaluations));
         let bridge = Bridge {
             algorithm: self.algorithm,
             starts,
@@ -180,9 +255,11 @@ impl Search<'_> {
             limits: self.limits,
             cancel: self.cancel,
             observe: self.observe,
-            best_before,
+            keep: self.keep,
+            found: self.found.as_ref(),
+            restored: restored.is_some(),
             evaluations,
-            generation: 0,
+            generation,
         };
         let result = Executor::new(self.problem, bridge)
             .ctrlc(false)
@@ -242,8 +319,11 @@ struct Bridge<'a> {
     limits: &'a Limits,
     cancel: &'a AtomicBool,
     observe: &'a mut dyn FnMut(PopulationProgress<'_>),
-    /// The best of the restarts before this one.
-    best_before: Option<&'a Individual>,
+    keep: &'a mut Keep<'a>,
+    /// What the restarts before this one found.
+    found: Option<&'a PopulationOutcome>,
+    /// Whether the algorithm has its population already.
+    restored: bool,
     /// Over all restarts.
     evaluations: u64,
     /// Of this restart.
@@ -269,7 +349,7 @@ impl Bridge<'_> {
         );
         self.evaluations += spent;
         let best = best_of(self.algorithm.population()).expect("an initialised algorithm has a population");
-        let overall = match self.best_before {
+        let overall = match self.found.map(|found| &found.best) {
             Some(before) if before.fitness.compare(&best.fitness).is_le() => before,
             _ => best,
         };
@@ -279,6 +359,17 @@ impl Bridge<'_> {
             evaluations: self.evaluations,
             best: overall,
         });
+        if self.remaining() > 0 {
+            let (algorithm, found) = (&*self.algorithm, self.found);
+            let (restart, generation, evaluations) = (self.restart, self.generation, self.evaluations);
+            (self.keep)(&|| RestartsState {
+                restart,
+                generation,
+                evaluations,
+                found: found.cloned(),
+                algorithm: algorithm.state(),
+            });
+        }
         state.cost = if best.fitness.is_feasible() { best.fitness.cost } else { f64::INFINITY };
         state.individual.get_or_insert_default().clone_from(&best.x);
         state
@@ -295,6 +386,9 @@ impl<'p> Solver<&'p dyn PopulationProblem, BridgeState> for Bridge<'_> {
         problem: &mut Problem<&'p dyn PopulationProblem>,
         state: BridgeState,
     ) -> Result<(BridgeState, Option<KV>), Error> {
+        if self.restored {
+            return Ok((state, None));
+        }
         let draws = stream(self.seed, self.restart);
         let allowance = self.remaining();
         let (algorithm, starts) = (&mut self.algorithm, self.starts);

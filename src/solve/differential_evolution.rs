@@ -30,8 +30,8 @@
 //! adaptation for differential evolution", IEEE Congress on Evolutionary Computation (2013).
 
 use super::population::{
-    Fitness, Generations, Individual, PopulationError, PopulationProblem, StallWatch, admitted, best_of,
-    evaluate_generation, scatter, spread,
+    Fitness, Generations, GenerationsState, Individual, PopulationError, PopulationProblem, StallWatch,
+    admitted, best_of, evaluate_generation, lie_in, lies_in, scatter, spread,
 };
 use super::streams::{Stream, below, cauchy, normal, stream, uniform, unit};
 use schemars::JsonSchema;
@@ -93,7 +93,7 @@ const FIRST_GUESS: Strategy = Strategy { step: 0.5, crossover: 0.5 };
 const COLLAPSED_SPREAD: f64 = 1e-10;
 
 /// The two numbers that a trial is made with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Strategy {
     /// F, in (0, 1].
     step: f64,
@@ -140,6 +140,18 @@ pub struct DifferentialEvolution {
     /// Where the history is written next.
     cursor: usize,
     successes: Vec<(Strategy, Gain)>,
+    watch: StallWatch,
+    collapsed: bool,
+}
+
+/// Where a [`DifferentialEvolution`] search stands between two generations.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct EvolutionState {
+    stream: Stream,
+    population: Vec<Individual>,
+    archive: Vec<Vec<f64>>,
+    history: Vec<Strategy>,
+    cursor: usize,
     watch: StallWatch,
     collapsed: bool,
 }
@@ -358,6 +370,42 @@ impl Generations for DifferentialEvolution {
 
     fn converged(&self) -> bool {
         self.collapsed || self.watch.idle_generations() >= self.parameters.stall_generations
+    }
+
+    fn state(&self) -> GenerationsState {
+        GenerationsState::DifferentialEvolution(EvolutionState {
+            stream: self.stream.clone(),
+            population: self.population.clone(),
+            archive: self.archive.clone(),
+            history: self.history.clone(),
+            cursor: self.cursor,
+            watch: self.watch.clone(),
+            collapsed: self.collapsed,
+        })
+    }
+
+    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
+        let GenerationsState::DifferentialEvolution(state) = state else { return false };
+        let size = self.parameters.population;
+        let bounds = problem.bounds();
+        let archived = state.archive.len() <= self.archive_size;
+        let remembered = state.history.len() == self.parameters.history && state.cursor < state.history.len();
+        // Steps drawn around anything else may never be positive.
+        let likely =
+            |one: &Strategy| one.step > 0.0 && one.step <= 1.0 && (0.0..=1.0).contains(&one.crossover);
+        let whole =
+            lie_in(&state.population, size, bounds) && state.archive.iter().all(|x| lies_in(x, bounds));
+        if !(whole && archived && remembered && state.history.iter().all(likely)) {
+            return false;
+        }
+        self.trials.clear();
+        self.trials.resize(size, Individual::blank(bounds.len()));
+        self.strategies.clear();
+        self.strategies.resize(size, FIRST_GUESS);
+        (self.stream, self.population, self.archive) = (state.stream, state.population, state.archive);
+        (self.history, self.cursor) = (state.history, state.cursor);
+        (self.watch, self.collapsed) = (state.watch, state.collapsed);
+        true
     }
 }
 

@@ -27,8 +27,8 @@
 //! (2000).
 
 use super::population::{
-    Fitness, Generations, Individual, PopulationError, PopulationProblem, StallWatch, admitted,
-    evaluate_generation, scatter, sort_best_first,
+    Fitness, Generations, GenerationsState, Individual, PopulationError, PopulationProblem, StallWatch,
+    admitted, evaluate_generation, lie_in, scatter, sort_best_first,
 };
 use super::streams::{Stream, below, stream, unit};
 use schemars::JsonSchema;
@@ -115,6 +115,14 @@ pub struct Genetic {
     /// Best first.
     population: Vec<Individual>,
     children: Vec<Individual>,
+    watch: StallWatch,
+}
+
+/// Where a [`Genetic`] search stands between two generations.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct GeneticState {
+    stream: Stream,
+    population: Vec<Individual>,
     watch: StallWatch,
 }
 
@@ -254,6 +262,28 @@ impl Generations for Genetic {
 
     fn converged(&self) -> bool {
         self.watch.idle_generations() >= self.parameters.stall_generations
+    }
+
+    fn state(&self) -> GenerationsState {
+        GenerationsState::Genetic(GeneticState {
+            stream: self.stream.clone(),
+            population: self.population.clone(),
+            watch: self.watch.clone(),
+        })
+    }
+
+    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
+        let GenerationsState::Genetic(GeneticState { stream, population, watch }) = state else {
+            return false;
+        };
+        let GeneticParameters { population: size, elites, .. } = self.parameters;
+        if !lie_in(&population, size, problem.bounds()) {
+            return false;
+        }
+        self.children.clear();
+        self.children.resize(size - elites, Individual::blank(problem.bounds().len()));
+        (self.stream, self.population, self.watch) = (stream, population, watch);
+        true
     }
 }
 

@@ -10,6 +10,7 @@ pub mod compact_lm;
 pub mod conic;
 pub mod convex;
 pub mod differential_evolution;
+pub mod exact_float;
 pub mod genetic;
 pub mod levenberg_marquardt;
 pub mod nonnegative;

@@ -14,8 +14,13 @@
 //! Source: K. Deb, "An efficient constraint handling method for genetic algorithms", Computer Methods in Applied
 //! Mechanics and Engineering 186 (2000).
 
+use super::differential_evolution::EvolutionState;
+use super::exact_float;
+use super::genetic::GeneticState;
+use super::random_search::SamplingState;
 use super::streams::{Stream, uniform};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
 /// What a population search needs to know of a problem.
@@ -36,11 +41,13 @@ pub trait PopulationProblem: Sync {
 }
 
 /// How good a point is: by how much it breaks the constraints, and what it costs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fitness {
     /// How far the point is from being feasible, >= 0; zero means feasible. The unit is the problem's.
+    #[serde(with = "exact_float")]
     pub violation: f64,
     /// What is minimised. It is not looked at where the point is infeasible, and may be NaN there.
+    #[serde(with = "exact_float")]
     pub cost: f64,
 }
 
@@ -108,7 +115,7 @@ impl Fitness {
 }
 
 /// A point of the box with its fitness.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Individual {
     /// The genes, one for each pair of the problem's box.
     pub x: Vec<f64>,
@@ -259,6 +266,35 @@ pub trait Generations {
 
     /// Whether more generations promise nothing: the best has stalled or the population has collapsed.
     fn converged(&self) -> bool;
+
+    /// All that the next generations depend on, after a whole generation.
+    fn state(&self) -> GenerationsState;
+
+    /// Takes the place of [`initialise`](Self::initialise): goes on from a state of the same algorithm with the same
+    /// parameters on a problem with the same box. `false`, and nothing changed, where it is no such state.
+    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool;
+}
+
+/// Where an algorithm stands between two generations: what [`Generations::restore`] goes on from.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GenerationsState {
+    /// Of the genetic algorithm.
+    Genetic(GeneticState),
+    /// Of differential evolution.
+    DifferentialEvolution(EvolutionState),
+    /// Of uniform sampling.
+    UniformSampling(SamplingState),
+}
+
+/// Whether these are `size` points of the box.
+pub fn lie_in(individuals: &[Individual], size: usize, bounds: &[(f64, f64)]) -> bool {
+    individuals.len() == size && individuals.iter().all(|individual| lies_in(&individual.x, bounds))
+}
+
+/// Whether this is a point of the box.
+pub fn lies_in(x: &[f64], bounds: &[(f64, f64)]) -> bool {
+    x.len() == bounds.len() && x.iter().zip(bounds).all(|(x, (lower, upper))| (lower..=upper).contains(&x))
 }
 
 /// A generation is shared among threads from this amount of work on; below, waking the other threads costs more than
@@ -360,7 +396,7 @@ pub const STALL_IMPROVEMENT: f64 = 1e-6;
 /// Counts the generations since the best last made progress.
 ///
 /// Progress is measured from the fitness at the last progress, so many small steps add up.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StallWatch {
     reference: Fitness,
     idle_generations: u64,

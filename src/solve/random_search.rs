@@ -4,8 +4,8 @@
 //! answers in the same form as the population algorithms and can be compared with them evaluation by evaluation.
 
 use super::population::{
-    Generations, Individual, PopulationError, PopulationProblem, admitted, draw_uniform, evaluate_generation,
-    scatter, sort_best_first,
+    Generations, GenerationsState, Individual, PopulationError, PopulationProblem, admitted, draw_uniform,
+    evaluate_generation, lie_in, scatter, sort_best_first,
 };
 use super::streams::{Stream, stream};
 use schemars::JsonSchema;
@@ -46,6 +46,13 @@ pub struct UniformSampling {
     /// The best points so far, best first; of equals the earlier drawn.
     best: Vec<Individual>,
     drawn: Vec<Individual>,
+}
+
+/// Where [`UniformSampling`] stands between two generations.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SamplingState {
+    stream: Stream,
+    best: Vec<Individual>,
 }
 
 impl UniformSampling {
@@ -107,6 +114,23 @@ impl Generations for UniformSampling {
     /// Never: a sampler that starts again is the same sampler.
     fn converged(&self) -> bool {
         false
+    }
+
+    fn state(&self) -> GenerationsState {
+        let (stream, best) = (self.stream.clone(), self.best.clone());
+        GenerationsState::UniformSampling(SamplingState { stream, best })
+    }
+
+    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
+        let GenerationsState::UniformSampling(SamplingState { stream, best }) = state else { return false };
+        let size = self.parameters.population;
+        if !lie_in(&best, size, problem.bounds()) {
+            return false;
+        }
+        self.drawn.clear();
+        self.drawn.resize(size, Individual::blank(problem.bounds().len()));
+        (self.stream, self.best) = (stream, best);
+        true
     }
 }
 

@@ -13,6 +13,7 @@ mod properties;
 mod random;
 mod reduced;
 mod requirements;
+mod resuming;
 mod search;
 mod suite;
 mod timed_search;

@@ -1,0 +1,123 @@
+//! Where the search for free timing stands between two batches.
+
+use super::super::multistart::judged;
+use super::super::starts::Start;
+use super::{BATCH, End, Stage, WHOLE_MOST};
+use crate::problem::Problem;
+use crate::record::Evaluations;
+use crate::solve::exact_float::Exact;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// What is counted over all batches.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Counts {
+    /// Distinct answers known, and batches that brought none.
+    pub(super) known: usize,
+    pub(super) quiet: u64,
+    pub(super) batch: u64,
+    pub(super) draws: u64,
+}
+
+/// All that the next batches depend on besides the problem and the budget.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct FreeState {
+    counts: Counts,
+    evaluations: Evaluations,
+    best_merits: Vec<Exact>,
+    stages: Vec<StageState>,
+    ends: Vec<EndState>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct StageState {
+    bar: Exact,
+    leading: Vec<(Exact, Start)>,
+    finished: Vec<(Exact, Exact)>,
+    index: u64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct EndState {
+    merit: Exact,
+    start: Start,
+    /// Whether the referee has seen it: its verdict follows from the rest.
+    judged: bool,
+}
+
+/// What a search goes on from, apart from its stages.
+pub(super) struct Resumed {
+    pub(super) counts: Counts,
+    pub(super) evaluations: Evaluations,
+    pub(super) best_merits: Vec<f64>,
+    pub(super) ends: Vec<End>,
+}
+
+impl FreeState {
+    pub(super) fn of(
+        counts: Counts,
+        evaluations: Evaluations,
+        best_merits: &[f64],
+        stages: &[Stage<'_>],
+        ends: &[End],
+    ) -> Self {
+        let pair = |&(explored, whole): &(f64, f64)| (Exact(explored), Exact(whole));
+        let leader = |(merit, start): &(f64, Start)| (Exact(*merit), start.clone());
+        let end = |end: &End| EndState {
+            merit: Exact(end.merit),
+            start: end.start.clone(),
+            judged: end.verdict.is_some(),
+        };
+        let stage = |stage: &Stage<'_>| StageState {
+            bar: Exact(stage.bar),
+            leading: stage.leading.iter().map(leader).collect(),
+            finished: stage.finished.iter().map(pair).collect(),
+            index: stage.index,
+        };
+        FreeState {
+            counts,
+            evaluations,
+            best_merits: best_merits.iter().copied().map(Exact).collect(),
+            stages: stages.iter().map(stage).collect(),
+            ends: ends.iter().map(end).collect(),
+        }
+    }
+
+    /// How many ways of exploring have begun, where the state can be one of this problem's; `points` are those that
+    /// the first explores.
+    pub(super) fn stages(&self, problem: &Problem, points: usize) -> Option<usize> {
+        let n = problem.task().len();
+        let coarse = points != n;
+        let stages = self.stages.len();
+        let explored = |i: usize| if i == 0 { points } else { n };
+        let counted = self.stages.iter().map(|stage| stage.index).sum::<u64>() == self.counts.batch * BATCH;
+        let leaders =
+            self.stages.iter().enumerate().all(|(i, stage)| {
+                stage.leading.iter().all(|(_, start)| start.positions.len() == explored(i))
+            });
+        let ends = self.ends.iter().all(|end| end.start.positions.len() == n);
+        let possible = stages == 1 || (stages == 2 && coarse && n <= WHOLE_MOST);
+        (possible && counted && leaders && ends).then_some(stages)
+    }
+
+    /// Gives the stages what they knew, and the rest back; ends that the referee has seen are judged again.
+    pub(super) fn resume(&self, problem: &Problem, stages: &mut [Stage<'_>]) -> Resumed {
+        for (stage, state) in stages.iter_mut().zip(&self.stages) {
+            stage.bar = state.bar.0;
+            stage.leading = state.leading.iter().map(|(merit, start)| (merit.0, start.clone())).collect();
+            stage.finished = state.finished.iter().map(|(explored, whole)| (explored.0, whole.0)).collect();
+            stage.index = state.index;
+        }
+        let end = |end: &EndState| End {
+            start: end.start.clone(),
+            merit: end.merit.0,
+            verdict: end.judged.then(|| judged(problem, &end.start)),
+        };
+        Resumed {
+            counts: self.counts,
+            evaluations: self.evaluations,
+            best_merits: self.best_merits.iter().map(|merit| merit.0).collect(),
+            ends: self.ends.par_iter().map(end).collect(),
+        }
+    }
+}
