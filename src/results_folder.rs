@@ -203,7 +203,9 @@ impl ResultsFolder {
     pub fn replace(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
         let record_first = files.iter().filter(|(name, _)| name == RECORD);
         for (name, bytes) in record_first.chain(files.iter().filter(|(name, _)| name != RECORD)) {
-            self.write(name, bytes)?;
+            // What the record holds is on the disk before anything else happens. The other files follow from it: to
+            // wait for the disk with each would take longer than a small search.
+            renamed_in(&self.path, name, bytes, name == RECORD)?;
         }
         self.created.clear();
         for entry in fs::read_dir(&self.path).map_err(|e| FolderError::io(&self.path, e))?.flatten() {
@@ -215,10 +217,6 @@ impl ResultsFolder {
         }
         Ok(())
     }
-
-    fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
-        replace_file(&self.path, name, bytes)
-    }
 }
 
 /// Replaces the file `name` of a folder that is there: written to a temporary file beside it first and renamed,
@@ -227,6 +225,11 @@ impl ResultsFolder {
 /// # Errors
 /// [`FolderError::Io`] with the file; what was there before stays.
 pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
+    renamed_in(folder, name, bytes, true)
+}
+
+/// Writes beside and renames; where it is `durable` the bytes are on the disk before the name is.
+fn renamed_in(folder: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<(), FolderError> {
     let target = folder.join(name);
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY);
@@ -238,7 +241,9 @@ pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Folde
     }
     let written = builder.tempfile_in(folder).and_then(|mut file| {
         file.write_all(bytes)?;
-        file.as_file().sync_data()?;
+        if durable {
+            file.as_file().sync_data()?;
+        }
         file.persist(&target).map_err(|e| e.error)?;
         Ok(())
     });

@@ -61,7 +61,7 @@ pub enum Command {
 /// Options of `synth`.
 #[derive(Debug, Args)]
 pub struct Synth {
-    /// Problem files (TOML), points (CSV) or drawings (SVG)
+    /// Problem files (TOML), points (CSV), drawings (SVG), or folders of problem files; several make a batch
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Where the results go (several files: a folder for each in it) [default: results/NAME]
@@ -79,6 +79,9 @@ pub struct Synth {
     /// Threads [default: all cores]; they change the time, never a digit
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Go on from the checkpoint that an interrupted run left, skip what is done
+    #[arg(long)]
+    pub resume: bool,
     /// Nine precision points: print every real linkage through them, not the best ones alone
     #[arg(long)]
     pub all: bool,

@@ -7,9 +7,11 @@ mod analyze;
 mod arguments;
 mod check;
 mod compare;
+mod inputs;
 mod interrupt;
 mod man;
 mod new;
+mod one_job;
 mod progress;
 mod suite;
 mod synth;
@@ -30,6 +32,8 @@ enum Ended {
     Bad,
     /// Bad input or usage.
     Refused,
+    /// A part of a batch met a bug of ours; the others ran.
+    Bug,
     /// Interrupted; the best so far is saved.
     Interrupted,
 }
@@ -40,6 +44,7 @@ impl From<Ended> for ExitCode {
             Ended::Good => 0,
             Ended::Bad => 1,
             Ended::Refused => 2,
+            Ended::Bug => BUG,
             Ended::Interrupted => 130,
         })
     }

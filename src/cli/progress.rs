@@ -5,7 +5,8 @@ use crate::suite::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// Searches shorter than this show no progress.
@@ -67,6 +68,65 @@ impl SuiteShown {
     }
 }
 
+/// Shows how many jobs of a batch are done, where they run side by side.
+pub struct BatchShown {
+    start: Instant,
+    total: usize,
+    done: AtomicUsize,
+    bar: Option<ProgressBar>,
+    last_line: Mutex<Instant>,
+    silent: bool,
+}
+
+impl BatchShown {
+    /// Progress of so many jobs.
+    pub fn new(total: usize, silent: bool) -> Self {
+        let bar = (stderr().is_terminal() && !silent).then(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr_with_hz(10));
+            let style = "[{bar:24}] {pos} of {len} jobs, {per_sec}, {eta} left";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        let (done, last_line) = (AtomicUsize::new(0), Mutex::new(Instant::now()));
+        BatchShown { start: Instant::now(), total, done, bar, last_line, silent }
+    }
+
+    /// One more is done.
+    pub fn one_more(&self) {
+        let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.set_position(done as u64);
+            return;
+        }
+        let Ok(mut last) = self.last_line.lock() else { return };
+        if !self.silent && last.elapsed() >= LINE_EVERY {
+            *last = Instant::now();
+            let left = self.start.elapsed().as_secs_f64() * (self.total - done) as f64 / done as f64;
+            let total = self.total;
+            super::terminal::tell(&format!("{done} of {total} jobs done, about {} left", duration(left)));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A time as one says it: `40 s`, `12 min`, `3.4 h`.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
 /// Shows where a search stands.
 pub struct Shown {
     name: String,
@@ -76,6 +136,8 @@ pub struct Shown {
     silent: bool,
     /// Whether the bar has been put on the terminal.
     drawn: AtomicBool,
+    /// Evaluations at the first word: those of an earlier run whose checkpoint this one goes on from.
+    before: OnceLock<u64>,
 }
 
 impl Shown {
@@ -97,11 +159,13 @@ impl Shown {
             last_line: Mutex::new(Instant::now()),
             silent,
             drawn: AtomicBool::new(false),
+            before: OnceLock::new(),
         }
     }
 
     /// Takes a word from the search.
     pub fn update(&self, progress: &Progress) {
+        let before = *self.before.get_or_init(|| progress.evaluations);
         if self.silent || self.start.elapsed() < QUIET_FOR {
             return;
         }
@@ -110,11 +174,11 @@ impl Shown {
             Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
             None => "nothing acceptable yet".into(),
         };
+        let rate = progress.evaluations.saturating_sub(before) as f64 / self.start.elapsed().as_secs_f64();
         if let Some(bar) = &self.bar {
             if !self.drawn.swap(true, Ordering::Relaxed) {
                 bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
             }
-            let rate = progress.evaluations as f64 / self.start.elapsed().as_secs_f64();
             let best = format!("{}/s, {best}", crate::report::text::grouped(rate as u64));
             bar.set_length(progress.budget);
             bar.set_position(progress.evaluations.min(progress.budget));
@@ -124,12 +188,16 @@ impl Shown {
         let Ok(mut last) = self.last_line.lock() else { return };
         if last.elapsed() >= LINE_EVERY {
             *last = Instant::now();
+            let left = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
+            let left =
+                if left.is_finite() { format!("at most {} left, ", duration(left)) } else { String::new() };
             super::terminal::tell(&format!(
-                "{}: {} {} of {} evaluations, {best}",
+                "{}: {} {} of {} evaluations, {}/s, {left}{best}",
                 crate::report::text::clean(&self.name),
                 progress.phase,
                 progress.evaluations,
-                progress.budget
+                progress.budget,
+                crate::report::text::grouped(rate as u64),
             ));
         }
     }

@@ -1,162 +1,212 @@
 //! `synth`: problems in, results out.
 
 use super::arguments::Synth;
-use super::progress::Shown;
+use super::inputs::{self, Input};
+use super::one_job::{self, Done};
+use super::progress::{BatchShown, Shown};
 use super::{Ended, interrupt, terminal};
 use crate::linkage_file;
-use crate::problem_file::{self, ProblemFile};
 use crate::record::{Reason, Record};
+use crate::report::batch_csv::batch_csv;
 use crate::report::exact::exact_text;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use crate::report::{contact_sheet, csv, exact_sheet, svg};
-use crate::results_folder::{BUILDABLE, ResultsFolder};
-use crate::run::{Context, Finished, Job, run as run_job};
-use ariadne::ReportKind;
-use std::path::{Path, PathBuf};
+use crate::results_folder::{BUILDABLE, replace_file};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// Where results go when nothing is said.
-const RESULTS: &str = "results";
+/// From this many jobs a thread on, jobs run side by side, each on one thread: then no thread waits for another.
+const JOBS_A_THREAD: usize = 4;
+/// The summary of a batch.
+const SUMMARY: &str = "summary.csv";
+
+/// What came of an input.
+enum Outcome {
+    Done(Box<Done>),
+    /// Why there is no result; it has been told.
+    Refused(String),
+    /// A panic: a bug of ours.
+    Bug,
+    /// The batch was interrupted before.
+    NotRun,
+}
 
 /// Runs the command.
 pub fn run(options: &Synth) -> Ended {
     let start = Instant::now();
-    let Some(problems) = load(options) else { return Ended::Refused };
-    let Some(places) = places(options, &problems) else { return Ended::Refused };
-    let threads = options.threads.map_or(0, usize::from);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool,
+    let inputs = inputs::load(options);
+    let several = inputs.len() > 1 || options.files.iter().any(|path| path.is_dir());
+    let jobs = inputs.iter().filter(|input| input.job.is_ok()).count();
+    if jobs == 0 {
+        return Ended::Refused;
+    }
+    let threads = options.threads.map_or_else(rayon::current_num_threads, usize::from);
+    let side_by_side = threads > 1 && jobs >= JOBS_A_THREAD * threads;
+    let (workers, threads_each) = if side_by_side { (threads, 1) } else { (1, threads) };
+    let pools = (0..workers).map(|_| rayon::ThreadPoolBuilder::new().num_threads(threads_each).build());
+    let pools = match pools.collect::<Result<Vec<_>, _>>() {
+        Ok(pools) => pools,
         Err(e) => {
             terminal::complain(&format!("no threads to search with: {e}"));
             return Ended::Refused;
         }
     };
-    // Every folder is taken before anything runs: a place that cannot be written to costs no search.
-    let mut folders = Vec::new();
-    for place in &places {
-        match ResultsFolder::take(place) {
-            Ok(folder) => folders.push(folder),
-            Err(e) => {
-                terminal::complain(&e.to_string());
-                return Ended::Refused;
-            }
-        }
-    }
     let cancel = interrupt::watch("saving the best so far");
-    let several = problems.len() > 1;
-    let mut finished: Vec<Record> = Vec::new();
-    let mut ended = Ended::Good;
-    for (problem, mut folder) in problems.into_iter().zip(folders) {
-        let begun = if several { Instant::now() } else { start };
-        let shown = Shown::new(&problem.name, options.quiet);
-        let job = Job { name: problem.name, source: problem.source, unit: problem.unit, spec: problem.spec };
-        let observer = |progress: &_| shown.update(progress);
-        let outcome = pool.install(|| run_job(&job, &Context { cancel, observer: &observer }));
-        shown.finish();
-        let Finished { record, search_s, beside_s } = match outcome {
-            Ok(finished) => finished,
-            Err(e) => {
-                terminal::complain(&format!("{}: {e}", job.name));
-                return Ended::Refused;
+    let next = AtomicUsize::new(0);
+    let printed = Mutex::new(Printed::new(inputs.len()));
+    let shown_batch = BatchShown::new(inputs.len(), options.quiet || !side_by_side);
+    let worker = |pool: &rayon::ThreadPool| {
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(input) = inputs.get(i) else { return };
+            let outcome = match &input.job {
+                Err(why) => Outcome::Refused(why.clone()),
+                Ok(_) if cancel.load(Ordering::Relaxed) && i > 0 => Outcome::NotRun,
+                Ok((job, place)) => {
+                    let begun = if several { Instant::now() } else { start };
+                    let shown = Shown::new(&job.name, options.quiet || side_by_side);
+                    let run = || one_job::run(job, place, options, &shown, cancel, begun);
+                    match catch_unwind(AssertUnwindSafe(|| pool.install(run))) {
+                        Ok(Ok(done)) => Outcome::Done(Box::new(done)),
+                        Ok(Err(why)) => {
+                            terminal::complain(&why);
+                            Outcome::Refused(why)
+                        }
+                        Err(panic) if !several => resume_unwind(panic),
+                        Err(_) => Outcome::Bug,
+                    }
+                }
+            };
+            shown_batch.one_more();
+            let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
+            printed.take(i, outcome, |outcome| {
+                if let Outcome::Done(done) = outcome
+                    && !options.json
+                {
+                    terminal::answer(&page(done, several || options.quiet, options.all));
+                }
+            });
+        }
+    };
+    if side_by_side {
+        std::thread::scope(|scope| {
+            for pool in &pools {
+                scope.spawn(|| worker(pool));
             }
-        };
-        let timing = Timing {
-            search_s,
-            beside_s,
-            total_s: begun.elapsed().as_secs_f64(),
-            threads: pool.current_num_threads(),
-        };
-        if let Err(e) = files(&record, &timing).and_then(|f| folder.replace(&f).map_err(|e| e.to_string())) {
-            terminal::complain(&e);
-            return Ended::Refused;
-        }
-        if !options.json {
-            let seconds = (search_s, beside_s);
-            let brief = several || options.quiet;
-            terminal::answer(&page(&record, folder.path(), seconds, brief, options.all));
-        }
-        let interrupted = record.termination.reason == Reason::Cancelled;
-        if !record.candidates.iter().any(|c| c.accepted) && ended == Ended::Good {
-            ended = Ended::Bad;
-        }
-        finished.push(record);
-        if interrupted {
-            ended = Ended::Interrupted;
-            break;
-        }
+        });
+    } else {
+        worker(&pools[0]);
     }
+    shown_batch.finish();
+    let outcomes = printed.into_inner().unwrap_or_else(PoisonError::into_inner).outcomes();
+    let mut ended = outcomes.iter().map(ended_of).max_by_key(|ended| severity(*ended)).unwrap_or(Ended::Good);
     if options.json {
-        let text = match finished.as_slice() {
+        let records = outcomes.iter().filter_map(|outcome| match outcome {
+            Outcome::Done(done) => Some(&done.record),
+            _ => None,
+        });
+        let records: Vec<_> = records.collect();
+        let text = match records.as_slice() {
             [record] if !several => serde_json::to_string_pretty(record),
+            [] if !several => return ended,
             records => serde_json::to_string_pretty(records),
         };
         terminal::answer(&format!("{}\n", text.unwrap_or_default()));
-    } else if several {
-        let rows: Vec<BatchRow<'_>> = finished
-            .iter()
-            .map(|record| BatchRow { name: &record.problem.name, outcome: BatchOutcome::Ran(record) })
-            .collect();
-        terminal::answer(&batch_summary(&rows, terminal::colour()));
+    }
+    if several {
+        let rows: Vec<BatchRow<'_>> = inputs.iter().zip(&outcomes).map(|(input, o)| row(input, o)).collect();
+        if !options.json {
+            terminal::answer(&batch_summary(&rows, terminal::colour()));
+        }
+        if let Err(why) = write_summary(inputs::folder_of_all(options), &batch_csv(&rows)) {
+            terminal::complain(&why);
+            ended = if severity(ended) < severity(Ended::Refused) { Ended::Refused } else { ended };
+        }
     }
     ended
 }
 
-/// Reads every file; `None` after the diagnostics of those that are no problems.
-fn load(options: &Synth) -> Option<Vec<ProblemFile>> {
-    let mut overrides = options.set.clone();
-    overrides.extend(options.method.iter().map(|method| ("solve.method".into(), method.clone())));
-    overrides.extend(options.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
-    let mut problems = Vec::new();
-    let mut refused = false;
-    for path in &options.files {
-        match problem_file::load_any(path, &overrides) {
-            Ok(problem) => {
-                for warning in &problem.warnings {
-                    terminal::diagnose(ReportKind::Warning, warning);
-                }
-                problems.push(problem);
-            }
-            Err(diagnostic) => {
-                terminal::diagnose(ReportKind::Error, &diagnostic);
-                refused = true;
-            }
-        }
-    }
-    (!refused).then_some(problems)
+/// Outcomes as they come in, and how many of the first have been printed: pages come in the order of the inputs.
+struct Printed {
+    outcomes: Vec<Option<Outcome>>,
+    count: usize,
 }
 
-/// Where each problem's results go; `None` where two would share a folder.
-fn places(options: &Synth, problems: &[ProblemFile]) -> Option<Vec<PathBuf>> {
-    let place = |problem: &ProblemFile| match &options.out {
-        Some(out) if problems.len() == 1 => out.clone(),
-        Some(out) => out.join(&problem.name),
-        None => Path::new(RESULTS).join(&problem.name),
+impl Printed {
+    fn new(inputs: usize) -> Self {
+        Printed { outcomes: (0..inputs).map(|_| None).collect(), count: 0 }
+    }
+
+    fn take(&mut self, i: usize, outcome: Outcome, print: impl Fn(&Outcome)) {
+        self.outcomes[i] = Some(outcome);
+        while let Some(Some(outcome)) = self.outcomes.get(self.count) {
+            print(outcome);
+            self.count += 1;
+        }
+    }
+
+    fn outcomes(self) -> Vec<Outcome> {
+        self.outcomes.into_iter().map(|outcome| outcome.unwrap_or(Outcome::Bug)).collect()
+    }
+}
+
+fn ended_of(outcome: &Outcome) -> Ended {
+    match outcome {
+        Outcome::Done(done) if done.record.termination.reason == Reason::Cancelled => Ended::Interrupted,
+        Outcome::Done(done) if done.record.candidates.iter().any(|c| c.accepted) => Ended::Good,
+        Outcome::Done(_) => Ended::Bad,
+        Outcome::Refused(_) => Ended::Refused,
+        Outcome::Bug => Ended::Bug,
+        Outcome::NotRun => Ended::Interrupted,
+    }
+}
+
+/// Of several ends the gravest is that of the batch.
+fn severity(ended: Ended) -> u8 {
+    match ended {
+        Ended::Good => 0,
+        Ended::Bad => 1,
+        Ended::Refused => 2,
+        Ended::Bug => 3,
+        Ended::Interrupted => 4,
+    }
+}
+
+fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
+    let name = input.job.as_ref().map_or(input.file.as_str(), |(job, _)| &job.name);
+    let outcome = match outcome {
+        Outcome::Done(done) => BatchOutcome::Ran(&done.record),
+        Outcome::Refused(why) => BatchOutcome::Refused(why),
+        Outcome::Bug => BatchOutcome::Refused("a bug of linkwright: please report it with this input"),
+        Outcome::NotRun => BatchOutcome::Refused("not run: the batch was interrupted before"),
     };
-    let places: Vec<PathBuf> = problems.iter().map(place).collect();
-    for (i, one) in places.iter().enumerate() {
-        if let Some(j) = places[..i].iter().position(|other| other == one) {
-            let [first, second] = [j, i].map(|k| options.files[k].display().to_string());
-            terminal::complain(&format!(
-                "{first} and {second} would both write to {}; give them different names (key `name`)",
-                one.display()
-            ));
-            return None;
-        }
-    }
-    Some(places)
+    BatchRow { name, outcome }
 }
 
+fn write_summary(folder: &Path, csv: &str) -> Result<(), String> {
+    std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    replace_file(folder, SUMMARY, csv.as_bytes()).map_err(|e| e.to_string())
+}
+
+/// What `timing.json` holds.
 #[derive(serde::Serialize)]
-struct Timing {
-    search_s: f64,
-    beside_s: f64,
-    total_s: f64,
-    threads: usize,
+pub struct Timing {
+    /// Seconds of search.
+    pub search_s: f64,
+    /// Seconds more for what stands beside the candidates.
+    pub beside_s: f64,
+    /// Seconds altogether.
+    pub total_s: f64,
+    /// Threads.
+    pub threads: usize,
 }
 
 /// Everything that a result's folder holds.
-fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
+pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
     let json = |text: Result<String, serde_json::Error>| {
         text.map(|t| (t + "\n").into_bytes())
             .map_err(|e| format!("the record cannot be written as JSON: {e}"))
@@ -198,7 +248,7 @@ fn numbered(name: &str, n: &str) -> String {
 }
 
 /// What is printed for one problem.
-fn page(record: &Record, folder: &Path, (search_s, beside_s): (f64, f64), brief: bool, all: bool) -> String {
+fn page(Done { record, folder, seconds }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
     if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
@@ -206,11 +256,14 @@ fn page(record: &Record, folder: &Path, (search_s, beside_s): (f64, f64), brief:
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));
     }
     let shown = crate::diagnostic::escaped(&folder.display().to_string());
-    let more = match &record.buildable {
-        Some(_) => format!(", {beside_s:.3} s more for the buildable one"),
-        None => String::new(),
+    let more = match (&record.buildable, seconds) {
+        (Some(_), Some((_, beside_s))) => format!(", {beside_s:.3} s more for the buildable one"),
+        _ => String::new(),
     };
-    text.push_str(&format!("\n  {search_s:.3} s of search{more}. Written to {shown}\n"));
+    text.push_str(&match seconds {
+        Some((search_s, _)) => format!("\n  {search_s:.3} s of search{more}. Written to {shown}\n"),
+        None => format!("\n  Done before: nothing was run. It stands in {shown}\n"),
+    });
     if !record.candidates.is_empty() && !brief {
         let quoted = if shown.contains(' ') { format!("\"{shown}\"") } else { shown };
         text.push_str(&format!("  Look at {quoted}/candidate-1.svg, then: linkwright verify {quoted}\n"));

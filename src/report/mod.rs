@@ -18,6 +18,7 @@
 pub mod analysis_csv;
 pub mod analysis_sheets;
 pub mod analysis_text;
+pub mod batch_csv;
 mod beside;
 mod canvas;
 pub mod chain_sheet;

@@ -3,6 +3,7 @@
 mod analysis_sheets;
 mod analyze;
 mod bad_input;
+mod batches;
 mod command_line;
 mod continuation;
 #[path = "../common/mod.rs"]
