@@ -57,7 +57,7 @@ pub struct Census {
     pub tracked: usize,
     /// Ended in an isolated solution.
     pub finite: usize,
-    /// Ended at infinity or in a singular solution, or in one of a family.
+    /// Ended at infinity, in a singular or double solution, or in one of a family.
     pub singular: usize,
     /// Were lost on the way, and again in every further round.
     pub failed: usize,
@@ -81,9 +81,10 @@ pub enum Completeness {
     /// As many distinct classes as a target in general position has.
     Complete,
     /// Paths ended at infinity or in singular solutions, and none was lost: the target is not in general position and
-    /// has fewer isolated solutions.
+    /// has fewer isolated solutions. Paths that stay together in spite of all rounds are counted as duplicates here:
+    /// they end in multiple solutions.
     NonGeneric {
-        /// Distinct isolated classes that were found.
+        /// Distinct isolated classes that were found; no claim that there are no more.
         isolated: usize,
     },
     /// Paths were lost or ended together: so many classes may be missing.
@@ -116,10 +117,10 @@ impl Solved {
             Completeness::Cancelled
         } else if census.distinct == CLASSES {
             Completeness::Complete
-        } else if census.failed + census.duplicates > 0 || census.tracked < CLASSES {
-            Completeness::Incomplete { missing: CLASSES.saturating_sub(census.distinct + census.singular) }
-        } else {
+        } else if census.failed == 0 && census.singular > 0 && census.singular >= census.duplicates {
             Completeness::NonGeneric { isolated: census.distinct }
+        } else {
+            Completeness::Incomplete { missing: CLASSES.saturating_sub(census.distinct + census.singular) }
         }
     }
 }
@@ -205,6 +206,8 @@ pub(super) fn settle(
     let mut fates = vec![Fate::Lost; starts.len()];
     let mut open: Vec<usize> = (0..starts.len()).collect();
     let mut obstructed = vec![false; starts.len()];
+    // Paths whose solution was rough though of moderate size: where two of them stay together it is a double one.
+    let mut rough = vec![false; starts.len()];
     let mut again = 0;
     for round in 0..=options.retries {
         let image = |path: usize| match round {
@@ -223,8 +226,9 @@ pub(super) fn settle(
         let corrected = correct(&arrived, along, CORRECTIONS);
         let judged: Vec<Fate> =
             ends.par_iter().zip(&corrected).map(|(end, corrected)| fate(end, corrected, along)).collect();
-        for (&path, fate) in paths.iter().zip(judged) {
+        for ((&path, fate), corrected) in paths.iter().zip(judged).zip(&corrected) {
             fates[path] = fate;
+            rough[path] = !(corrected.newton_step <= CONVERGED) && corrected.size <= MODERATE;
             obstructed[path] |= fate == Fate::Lost;
         }
         open = unsettled(&fates, round);
@@ -236,8 +240,18 @@ pub(super) fn settle(
             break;
         }
     }
+    if !cancel.load(Ordering::Relaxed) {
+        for path in open {
+            if rough[path] && fates[path] != Fate::Lost {
+                fates[path] = Fate::Singular;
+            }
+        }
+    }
     Fates { fates, again }
 }
+
+/// Below this size an isolated solution has not lost many digits.
+const MODERATE: f64 = 1e3;
 
 /// Newton steps on arrival.
 const CORRECTIONS: usize = 2;
@@ -252,7 +266,7 @@ fn track_around(
     with: &Parameters,
     cancel: &AtomicBool,
 ) -> Vec<Tracked> {
-    let e = ASIDE * f64::from(round / 2) * if round % 2 == 0 { 1.0 } else { -1.0 };
+    let e = ASIDE * 4.0_f64.powi(round as i32 / 2 - 1) * if round % 2 == 0 { 1.0 } else { -1.0 };
     let t = Complex::new(0.5, e);
     let middle = Displacements {
         delta: std::array::from_fn(|j| along.from.delta[j] * (-t + 1.0) + along.to.delta[j] * t),
@@ -277,7 +291,7 @@ fn track_around(
 }
 
 /// How far from the straight path the first way around leads, in t.
-const ASIDE: f64 = 0.02;
+const ASIDE: f64 = 0.005;
 
 /// Paths that another round may help: lost ones, those that share a class, and after the first round also those that
 /// seemed to end in singular solutions.

@@ -380,6 +380,8 @@ pub struct Corrected {
     pub speed: f64,
     /// The smallest pivot of the elimination: near rounding where the solution is singular.
     pub pivot: f64,
+    /// The largest modulus of its unknowns.
+    pub size: f64,
 }
 
 /// Newton steps at t = 1 of the segment: at most `most`, ended when the last is below 1e-15 for all or grows no more.
@@ -409,6 +411,7 @@ pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected
                 newton_step: change.0[lane].sqrt(),
                 speed: speed.0[lane].sqrt(),
                 pivot: pivot.0[lane].sqrt(),
+                size: z.iter().map(|z| z.get(lane).norm()).fold(0.0, f64::max),
             };
             (0..chunk.len()).map(corrected).collect::<Vec<_>>()
         })

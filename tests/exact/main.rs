@@ -1,0 +1,5 @@
+//! Exact synthesis: every linkage through nine points.
+
+mod equations;
+mod solutions;
+mod start_set;
