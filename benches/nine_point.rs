@@ -104,7 +104,10 @@ fn holds(answer: &Solved, linkage: &FourBar, joints: [Complex; 2]) -> bool {
     answer.classes.iter().filter(|class| class.reality == Reality::Linkage).any(|class| {
         class.solution.images(&target.displacements).iter().any(|image| {
             let places = [image.grounds[0], image.pins[0], image.grounds[1], image.pins[1]];
-            places.iter().zip(wanted).all(|(z, w)| (target.points[0] + z * target.scale - w).norm() < FOUND * size)
+            places
+                .iter()
+                .zip(wanted)
+                .all(|(z, w)| (target.points[0] + z * target.scale - w).norm() < FOUND * size)
         })
     })
 }
@@ -128,8 +131,9 @@ fn targets(count: u64) {
     for index in 0..count {
         let mut numbers = stream(9, index);
         let (curve, linkage, pins) = on_a_curve(&mut numbers);
-        let gaussian =
-            std::array::from_fn(|_| Complex::new(normal(&mut numbers, 0.0, 1.0), normal(&mut numbers, 0.0, 1.0)));
+        let gaussian = std::array::from_fn(|_| {
+            Complex::new(normal(&mut numbers, 0.0, 1.0), normal(&mut numbers, 0.0, 1.0))
+        });
         let minor = uniform(&mut numbers, 0.2, 1.0);
         let ellipse = std::array::from_fn(|j| {
             let angle = std::f64::consts::TAU * j as f64 / 9.0;
@@ -155,10 +159,15 @@ fn targets(count: u64) {
             }
         }
     }
-    println!("all {CLASSES} classes: {} coupler curves, {} normal, {} ellipses of {count} each", complete[0], complete[1], complete[2]);
+    println!(
+        "all {CLASSES} classes: {} coupler curves, {} normal, {} ellipses of {count} each",
+        complete[0], complete[1], complete[2]
+    );
     println!("the generating linkage: {found} of {count}; median {:.3} s", median(times));
     assert_eq!(found, count);
-    assert!(complete[0] * 100 >= 98 * count && complete[1] * 100 >= 99 * count && complete[2] * 100 >= 99 * count);
+    assert!(
+        complete[0] * 100 >= 98 * count && complete[1] * 100 >= 99 * count && complete[2] * 100 >= 99 * count
+    );
 }
 
 fn main() {

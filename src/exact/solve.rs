@@ -229,7 +229,7 @@ pub(super) fn settle(
         for ((&path, fate), corrected) in paths.iter().zip(judged).zip(&corrected) {
             fates[path] = fate;
             rough[path] = !(corrected.newton_step <= CONVERGED) && corrected.size <= MODERATE;
-            obstructed[path] |= fate == Fate::Lost;
+            obstructed[path] |= matches!(fate, Fate::Lost | Fate::Singular);
         }
         open = unsettled(&fates, round);
         progress(starts.len() - open.len(), starts.len());
@@ -253,6 +253,8 @@ pub(super) fn settle(
 /// Below this size an isolated solution has not lost many digits.
 const MODERATE: f64 = 1e3;
 
+/// As many singular ends may well be obstacles close to the end; a target in special position has more of them.
+const FEW: usize = 8;
 /// Newton steps on arrival.
 const CORRECTIONS: usize = 2;
 
@@ -293,12 +295,13 @@ fn track_around(
 /// How far from the straight path the first way around leads, in t.
 const ASIDE: f64 = 0.005;
 
-/// Paths that another round may help: lost ones, those that share a class, and after the first round also those that
-/// seemed to end in singular solutions.
+/// Paths that another round may help: lost ones, those that share a class, and those that seemed to end in singular
+/// solutions, after the first round or when they are few.
 fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
     let mut open: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Lost).collect();
-    if round == 0 {
-        open.extend((0..fates.len()).filter(|&path| fates[path] == Fate::Singular));
+    let singular: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Singular).collect();
+    if round == 0 || singular.len() <= FEW {
+        open.extend(singular);
     }
     let (paths, foci): (Vec<usize>, Vec<_>) =
         isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();

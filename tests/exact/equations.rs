@@ -61,7 +61,8 @@ fn slopes(of: &Solution, at: &Displacements, moved: usize) -> [Complex; UNKNOWNS
 /// Entries of the start set, moved a little so that they are no solutions.
 fn places() -> (Displacements, Vec<Solution>) {
     let set = StartSet::embedded();
-    let move_ = |(i, z): (usize, &Complex)| z * Complex::new(1.0 + 1e-3 * (i as f64).sin(), 1e-3 * (i as f64).cos());
+    let move_ =
+        |(i, z): (usize, &Complex)| z * Complex::new(1.0 + 1e-3 * (i as f64).sin(), 1e-3 * (i as f64).cos());
     let places = set.solutions.iter().step_by(181).map(|s| {
         let z: Vec<Complex> = unknowns(s).iter().enumerate().map(move_).collect();
         solution(&std::array::from_fn(|i| z[i]))
