@@ -134,6 +134,7 @@ fn size(z: ComplexLanes) -> F64x8 {
 /// The first right-hand side is Newton's, -f. With R = 2 the second is Davidenko's, -(df/ddelta delta' + df/ddelta*
 /// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so.
 /// With them comes the smallest pivot, squared.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 pub fn steps<const R: usize>(
     z: &Unknowns,

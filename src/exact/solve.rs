@@ -142,6 +142,7 @@ pub fn solve(
 }
 
 /// What a path came to.
+#[expect(clippy::large_enum_variant, reason = "nearly every path ends in an isolated solution")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fate {
     /// An isolated solution.
@@ -182,13 +183,17 @@ fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
         Ending::Arrived => {}
     }
     let (mut solution, mut newton_step) = (corrected.solution, corrected.newton_step);
-    if !(newton_step <= ROUGH) {
+    if newton_step.is_nan() || newton_step > ROUGH {
         match refine(&along.to, &end.solution) {
             Ok(refined) => (solution, newton_step) = (refined.solution, refined.last_step),
             Err(_) => return Fate::Singular,
         }
     }
-    if !(newton_step <= CONVERGED && corrected.speed <= SINGULAR_SPEED) {
+    if newton_step.is_nan()
+        || newton_step > CONVERGED
+        || corrected.speed.is_nan()
+        || corrected.speed > SINGULAR_SPEED
+    {
         return Fate::Singular;
     }
     Fate::Isolated(Class { solution, reality: Reality::Complex, newton_step, speed: corrected.speed })
@@ -228,7 +233,7 @@ pub(super) fn settle(
             ends.par_iter().zip(&corrected).map(|(end, corrected)| fate(end, corrected, along)).collect();
         for ((&path, fate), corrected) in paths.iter().zip(judged).zip(&corrected) {
             fates[path] = fate;
-            rough[path] = !(corrected.newton_step <= CONVERGED) && corrected.size <= MODERATE;
+            rough[path] = corrected.newton_step > CONVERGED && corrected.size <= MODERATE;
             obstructed[path] |= matches!(fate, Fate::Lost | Fate::Singular);
         }
         open = unsettled(&fates, round);
@@ -268,7 +273,7 @@ fn track_around(
     with: &Parameters,
     cancel: &AtomicBool,
 ) -> Vec<Tracked> {
-    let e = ASIDE * 4.0_f64.powi(round as i32 / 2 - 1) * if round % 2 == 0 { 1.0 } else { -1.0 };
+    let e = ASIDE * 4.0_f64.powi(round as i32 / 2 - 1) * if round.is_multiple_of(2) { 1.0 } else { -1.0 };
     let t = Complex::new(0.5, e);
     let middle = Displacements {
         delta: std::array::from_fn(|j| along.from.delta[j] * (-t + 1.0) + along.to.delta[j] * t),

@@ -187,6 +187,7 @@ impl State {
     }
 
     /// The point that the next step predicts, and its t.
+    #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
     #[inline(always)]
     fn predicted(&self) -> (Unknowns, [f64; LANES]) {
         let mut weights = [[F64x8([0.0; LANES]); NODES]; 2];
@@ -312,6 +313,7 @@ pub fn track(starts: &[Solution], along: &Segment, with: &Parameters, cancel: &A
 }
 
 /// One thread's eight lanes: takes paths until none is left.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 fn worker(
     starts: &[Solution],
