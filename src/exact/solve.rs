@@ -137,7 +137,8 @@ pub fn solve(
 ) -> Solved {
     let start = StartSet::embedded();
     let along = Segment { from: start.displacements, to: target.displacements };
-    let ends = settle(&start.solutions, &along, options, progress, cancel);
+    let mut ends = settle(&start.solutions, &along, options, progress, cancel);
+    complete(&mut ends, &start.solutions, &along, options, cancel);
     judged(target, &ends, cancel.load(Ordering::Relaxed))
 }
 
@@ -299,6 +300,39 @@ fn track_around(
 
 /// How far from the straight path the first way around leads, in t.
 const ASIDE: f64 = 0.005;
+
+/// Where few classes are missing: all paths once more on a wide detour, which permutes the ends; classes that only it
+/// finds take the place of paths that were lost, singular or second in their class.
+fn complete(ends: &mut Fates, starts: &[Solution], along: &Segment, options: &Options, cancel: &AtomicBool) {
+    let foci = |fates: &[Fate]| isolated(fates).map(|(_, class)| class.solution.foci()).collect::<Vec<_>>();
+    let first = first_of_class(&foci(&ends.fates), SAME);
+    let paths: Vec<usize> = isolated(&ends.fates).map(|(path, _)| path).collect();
+    let mut is_first = vec![false; starts.len()];
+    for (at, &path) in paths.iter().enumerate() {
+        is_first[path] = first[at] == at;
+    }
+    let spare: Vec<usize> = (0..starts.len()).filter(|&path| !is_first[path]).collect();
+    if spare.is_empty() || spare.len() > FEW || cancel.load(Ordering::Relaxed) {
+        return;
+    }
+    let tracked = track_around(starts, along, WIDE, &options.parameters, cancel);
+    let arrived: Vec<Solution> = tracked.iter().map(|end| end.solution).collect();
+    let corrected = correct(&arrived, along, CORRECTIONS);
+    let detour: Vec<Fate> = tracked.par_iter().zip(&corrected).map(|(end, c)| fate(end, c, along)).collect();
+    let known: Vec<Fate> =
+        (0..starts.len()).filter(|&path| is_first[path]).map(|path| ends.fates[path]).collect();
+    let all: Vec<Fate> =
+        known.iter().chain(&detour).copied().filter(|f| matches!(f, Fate::Isolated(_))).collect();
+    let first = first_of_class(&foci(&all), SAME);
+    let new = (known.len()..all.len()).filter(|&at| first[at] == at);
+    for (path, at) in spare.into_iter().zip(new) {
+        ends.fates[path] = all[at];
+    }
+    ends.again = starts.len();
+}
+
+/// The round whose way around is a wide one: t = 1/2 + 0.32 i.
+const WIDE: u32 = 8;
 
 /// Paths that another round may help: lost ones, those that share a class, and those that seemed to end in singular
 /// solutions, after the first round or when they are few.
