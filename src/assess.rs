@@ -105,6 +105,7 @@ pub fn assess_on_curve(
         alternatives: Vec::new(),
         requirements: Vec::new(),
         accepted: false,
+        certified: None,
         defects: verdict.defects.clone(),
         costs: Vec::new(),
     };

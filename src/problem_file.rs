@@ -15,9 +15,10 @@ use crate::input_text;
 use crate::linkage::AssemblyMode;
 use crate::linkage_file::{check_format, checked_name};
 use crate::name;
+use crate::problem::precision::{self, precision_points};
 use crate::problem::spec::{
-    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Objective, PathSpec, ProblemSpec,
-    RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec,
+    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use crate::problem::{Problem, reduced};
 use crate::record::Unit;
@@ -55,8 +56,25 @@ pub struct Expect {
     pub best_known_sum_sq: Option<f64>,
     /// What a run has to reach to count as a hit; absent: the best known sum.
     pub goal_sum_sq: Option<f64>,
+    /// How many linkages there are through nine points.
+    pub exact: Option<ExpectedCensus>,
     /// Answers that were published.
     pub published: Vec<Published>,
+}
+
+/// How many classes of exact linkages a problem has; what is not known is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExpectedCensus {
+    /// Isolated solutions up to cognates.
+    pub classes: Option<usize>,
+    /// Those that are real linkages.
+    pub real: Option<usize>,
+    /// Of these, on one circuit.
+    pub one_circuit: Option<usize>,
+    /// Of these, in the order of the points.
+    pub in_order: Option<usize>,
+    /// Of these, on one branch.
+    pub free_of_defects: Option<usize>,
 }
 
 /// A published answer.
@@ -126,6 +144,7 @@ pub fn parse(
     let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
     design.resolve(&task);
     let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
+    continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
     Ok(ProblemFile { name, source: raw.source, unit: raw.unit, spec, expect, warnings })
 }
@@ -291,6 +310,22 @@ fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnosti
     }))
 }
 
+/// Continuation needs nine precision points.
+fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<(), Box<Diagnostic>> {
+    if spec.solve.method != Method::Continuation {
+        return Ok(());
+    }
+    // What is wrong with the task itself has been said before.
+    let refusal = Problem::new(spec.clone()).ok().and_then(|problem| precision_points(&problem).err());
+    refusal.map_or(Ok(()), |refusal| {
+        let key = match refusal {
+            precision::Refusal::Points { .. } | precision::Refusal::Timed => "solve.method".to_owned(),
+            precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
+        };
+        Err(Box::new(toml.at(&key, refusal.to_string()).with_help(refusal.remedy())))
+    })
+}
+
 /// Reduced variables need a reduced form; a warning where the method does not read them.
 fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
     if spec.solve.variables.is_nine() {
@@ -353,5 +388,15 @@ fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expec
             note: p.note,
         });
     }
-    Ok(Expect { best_known_sum_sq: best, goal_sum_sq: goal, published })
+    let exact = raw.exact.map(|OnlyTable(e)| {
+        let count = |given: Option<Count>| given.map(|Count(n)| n as usize);
+        ExpectedCensus {
+            classes: count(e.classes),
+            real: count(e.real),
+            one_circuit: count(e.one_circuit),
+            in_order: count(e.in_order),
+            free_of_defects: count(e.free_of_defects),
+        }
+    });
+    Ok(Expect { best_known_sum_sq: best, goal_sum_sq: goal, exact, published })
 }

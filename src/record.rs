@@ -8,8 +8,10 @@ use crate::problem::spec::{Method, ProblemSpec, TransmissionOver};
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
 
+mod exact;
 mod extras;
 
+pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, Warning, WarningKind};
 
 /// The format that this program writes and reads.
@@ -39,6 +41,9 @@ pub struct Record {
     /// among the candidates, 0 where it is none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buildable: Option<Candidate>,
+    /// Nine precision points: every linkage through them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exact: Option<ExactRecord>,
     /// The answers, best first.
     pub candidates: Vec<Candidate>,
     /// Where nothing is acceptable: requirements that cannot be met together, as far as was searched.
@@ -181,6 +186,9 @@ pub struct Candidate {
     pub requirements: Vec<Requirement>,
     /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.
     pub accepted: bool,
+    /// The proof that an exact linkage stands there, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Certified>,
     /// What the limits that it stands on cost.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<Cost>,

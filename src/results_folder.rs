@@ -91,8 +91,10 @@ fn is_ours(name: &str) -> bool {
             .and_then(|rest| rest.strip_suffix(suffix))
             .is_some_and(|n| n == BUILDABLE || (!n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
     };
-    matches!(name, LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "report.html")
-        || name == "checkpoint.json"
+    matches!(
+        name,
+        LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
+    ) || name == "checkpoint.json"
         || name.starts_with(TEMPORARY)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")

@@ -1,9 +1,10 @@
 //! One run: a problem in, a record out. This is where the rooms meet.
 
 use crate::problem::Problem;
-use crate::problem::spec::ProblemSpec;
+use crate::problem::precision::{Refusal, precision_points};
+use crate::problem::spec::{Method, ProblemSpec};
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
-use crate::search::{Budget, Observer, answers, cognates, conflicts, costs, plan};
+use crate::search::{Budget, Observer, answers, cognates, conflicts, continuation, costs, plan};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
 use serde::Serialize;
@@ -39,6 +40,9 @@ pub enum RunError {
     /// The task is no task.
     #[error(transparent)]
     Task(#[from] TaskError),
+    /// Exact linkages are asked for where there are none to list.
+    #[error(transparent)]
+    Precision(#[from] Refusal),
     /// A population search cannot be set up.
     #[error(transparent)]
     Population(#[from] PopulationError),
@@ -66,9 +70,13 @@ pub struct Finished {
 pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     let start = Instant::now();
     let problem = Problem::new(job.spec.clone())?;
+    if job.spec.solve.method == Method::Continuation {
+        precision_points(&problem)?;
+    }
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
     let mut outcome = plan::search(&problem, &budget, context.observer)?;
     cognates::offer(&problem, &mut outcome.candidates);
+    continuation::finish(&problem, &mut outcome);
     let search_s = start.elapsed().as_secs_f64();
     costs::attach(&problem, &mut outcome, &budget);
     let explained = conflicts::explain(&problem, &mut outcome, &budget, context.observer)?;
@@ -94,6 +102,7 @@ pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
         candidates: outcome.candidates,
         conflict: explained.conflict,
         relaxations: explained.relaxations,
+        exact: outcome.exact,
     };
     Ok(Finished { record, search_s, beside_s })
 }

@@ -38,9 +38,6 @@ const KEYS_TO_COME: [KeyToCome; 5] = [
     KeyToCome { key: "samples", beside: "points", what: SVG, instead: NO_SVG },
 ];
 
-/// A value that is known and not read yet, and a value that stands beside it.
-const VALUES_TO_COME: [(&str, &str); 1] = [("continuation", "least-squares")];
-
 impl<'a> TomlText<'a> {
     /// The text as a value of type T.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, Box<Diagnostic>> {
@@ -188,11 +185,6 @@ impl<'a> TomlText<'a> {
 
     fn unknown_value(&self, value: &str, allowed: &[&str]) -> Diagnostic {
         let list = allowed.join(", ");
-        if VALUES_TO_COME.iter().any(|(v, beside)| *v == value && allowed.contains(beside)) {
-            return self
-                .about_file(format!("{} is not supported yet", quoted(value)))
-                .with_help(format!("supported: {list}"));
-        }
         let hint = nearest(value, allowed).map_or(String::new(), |n| format!("did you mean \"{n}\"? "));
         self.about_file(format!("{} is not known here", quoted(value)))
             .with_help(format!("{hint}values allowed: {list}"))

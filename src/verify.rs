@@ -11,6 +11,7 @@ use crate::search::loosen::Demand;
 use crate::search::rank::{compare, exact_objective, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
+mod exact;
 mod extras;
 
 /// Figures may differ by this part of themselves ..
@@ -88,6 +89,7 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
         against.candidate(&problem, candidate);
     }
     extras::extras(&problem, record, &mut mismatches);
+    exact::exact(&problem, record, &mut mismatches);
     Ok(mismatches)
 }
 

@@ -62,7 +62,7 @@ pub struct Synth {
     /// Where the results go (several files: a folder for each in it) [default: results/NAME]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// auto, least-squares, differential-evolution or genetic: as `--set solve.method=..`
+    /// auto, least-squares, differential-evolution, genetic or continuation: as `--set solve.method=..`
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
     /// Where every draw comes from: as `--set solve.seed=..`
@@ -74,6 +74,9 @@ pub struct Synth {
     /// Threads [default: all cores]; they change the time, never a digit
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    /// Nine precision points: print every real linkage through them, not the best ones alone
+    #[arg(long)]
+    pub all: bool,
     /// Print the record (several files: an array of records) instead of the table
     #[arg(long)]
     pub json: bool,

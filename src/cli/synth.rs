@@ -6,9 +6,10 @@ use super::{Ended, interrupt, terminal};
 use crate::linkage_file;
 use crate::problem_file::{self, ProblemFile};
 use crate::record::{Reason, Record};
+use crate::report::exact::exact_text;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
-use crate::report::{contact_sheet, csv, svg};
+use crate::report::{contact_sheet, csv, exact_sheet, svg};
 use crate::results_folder::{BUILDABLE, ResultsFolder};
 use crate::run::{Context, Finished, Job, run as run_job};
 use ariadne::ReportKind;
@@ -72,7 +73,8 @@ pub fn run(options: &Synth) -> Ended {
         }
         if !options.json {
             let seconds = (search_s, beside_s);
-            terminal::answer(&page(&record, folder.path(), seconds, several || options.quiet));
+            let brief = several || options.quiet;
+            terminal::answer(&page(&record, folder.path(), seconds, brief, options.all));
         }
         let interrupted = record.termination.reason == Reason::Cancelled;
         if !record.candidates.iter().any(|c| c.accepted) && ended == Ended::Good {
@@ -188,6 +190,9 @@ fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, Str
         let sheet = contact_sheet::contact_sheet_svg(record);
         files.push(("contact-sheet.svg".into(), sheet.into_bytes()));
     }
+    if record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()) {
+        files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
+    }
     Ok(files)
 }
 
@@ -199,8 +204,9 @@ fn numbered(name: &str, n: &str) -> String {
 }
 
 /// What is printed for one problem.
-fn page(record: &Record, folder: &Path, (search_s, beside_s): (f64, f64), brief: bool) -> String {
+fn page(record: &Record, folder: &Path, (search_s, beside_s): (f64, f64), brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
+    text.push_str(&exact_text(record, all, terminal::colour()));
     if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));

@@ -53,7 +53,7 @@ impl Upper {
 
     /// At least the quotient by a positive number that is a lower bound of the divisor.
     #[inline(always)]
-    fn over(self, least: f64) -> Self {
+    pub(super) fn over(self, least: f64) -> Self {
         Upper((self.0 / least).next_up())
     }
 
@@ -115,7 +115,7 @@ impl Disc {
     }
 
     /// At most |z| for every member z; zero when the disc contains or all but contains zero.
-    fn least_magnitude(&self) -> f64 {
+    pub(super) fn least_magnitude(&self) -> f64 {
         let square = |x: f64| (x * x).next_down().max(0.0);
         let sum = (square(self.mid.re) + square(self.mid.im)).next_down().max(0.0);
         let least = sum.sqrt().next_down() - self.radius.0;

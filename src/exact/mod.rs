@@ -12,15 +12,23 @@
 //! are unknowns of their own; in a real linkage they are the conjugates and |T_j| = 1. Generic points have 8652
 //! solutions: 1442 classes of six, three Roberts cognates times two labels of the links.
 //!
+//! [`refinement`] brings a solution to the last digit, [`certificate`] proves that it exists and is alone, [`conjugation`]
+//! that it is real, [`distinct`] that two are of different classes. They stand on [`double_double`] and [`discs`].
+//!
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
+pub mod certificate;
 pub mod classes;
+pub mod conjugation;
 pub mod discs;
+pub mod distinct;
+mod double_discs;
 pub mod double_double;
 pub mod equations;
 pub mod lanes;
 pub mod live;
+pub mod mechanisms;
 pub mod monodromy;
 mod polynomial;
 pub mod refinement;
@@ -29,6 +37,9 @@ pub mod start;
 pub mod target;
 pub mod tracker;
 
+pub use certificate::{Certificate, Refused, certify, certify_all};
 pub use live::{Moved, resolve_from};
+pub use mechanisms::{Driven, Mechanism, mechanisms};
+pub use refinement::{Refined, refine};
 pub use solve::{Census, Class, Completeness, Options, Reality, Solved, solve};
 pub use target::{Displacements, Solution, Target, TargetError};

@@ -157,8 +157,8 @@ impl Linearisation {
     fn step(&self, displacements: &ExactDisplacements, midpoint: &Midpoint) -> [Complex; UNKNOWNS] {
         let residual = residuals(displacements, midpoint);
         let mut step = [Complex::ZERO; UNKNOWNS];
-        for row in 0..UNKNOWNS {
-            let value = residual[row].to_complex() * self.rows[row];
+        for (row, of) in residual.iter().enumerate() {
+            let value = of.to_complex() * self.rows[row];
             for (sum, entry) in step.iter_mut().zip(self.inverse.column(row).iter()) {
                 *sum += entry * value;
             }

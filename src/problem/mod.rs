@@ -6,6 +6,7 @@
 pub mod design_space;
 pub mod fitness;
 pub mod linear_fit;
+pub mod precision;
 pub mod projection;
 pub mod reduced;
 pub mod requirements;

@@ -310,6 +310,8 @@ pub enum Method {
     DifferentialEvolution,
     /// Levenberg-Marquardt from many starts.
     LeastSquares,
+    /// Every linkage through exactly nine points, by following the solutions of the equations from a known set.
+    Continuation,
 }
 
 impl Method {
@@ -320,6 +322,7 @@ impl Method {
             Method::Genetic => "genetic",
             Method::DifferentialEvolution => "differential-evolution",
             Method::LeastSquares => "least-squares",
+            Method::Continuation => "continuation",
         }
     }
 }

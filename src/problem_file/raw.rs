@@ -184,9 +184,28 @@ pub(crate) struct RawExpect {
     pub best_known_sum_sq: Option<Number>,
     /// What a run has to reach to count as a hit; absent: best_known_sum_sq.
     pub goal_sum_sq: Option<Number>,
+    /// How many linkages there are through nine points.
+    pub exact: Option<OnlyTable<RawExpectedCensus>>,
     /// Answers that were published.
     #[serde(default)]
     pub published: Vec<OnlyTable<RawPublished>>,
+}
+
+/// How many linkages there are through nine points, up to cognates.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ExpectedCensus")]
+pub(crate) struct RawExpectedCensus {
+    /// Isolated solutions, real and complex.
+    pub classes: Option<Count>,
+    /// Real linkages.
+    pub real: Option<Count>,
+    /// Of these, on one circuit.
+    pub one_circuit: Option<Count>,
+    /// Of these, in the order of the points.
+    pub in_order: Option<Count>,
+    /// Of these, on one branch.
+    pub free_of_defects: Option<Count>,
 }
 
 /// An answer that was published.

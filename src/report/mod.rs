@@ -8,8 +8,8 @@
 //!
 //! | for | call |
 //! |---|---|
-//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`plot::terminal_plot`] |
-//! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`] |
+//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`plot::terminal_plot`] |
+//! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
 //! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`analysis_sheets::cognates_svg`] |
 //! | several results | [`compare::compare`] |
@@ -26,6 +26,8 @@ mod cognates_sheet;
 pub mod compare;
 pub mod contact_sheet;
 pub mod csv;
+pub mod exact;
+pub mod exact_sheet;
 mod figure;
 mod grid;
 mod labels;

@@ -35,23 +35,30 @@ pub(super) struct Scene {
 
 impl Scene {
     pub(super) fn new(record: &Record, candidate: Option<&Candidate>) -> Self {
-        let positions = candidate.map_or(Vec::new(), positions);
+        match candidate {
+            None => Scene { targets: targets(record, &|_| None), ..Scene::default() },
+            Some(candidate) => Scene::of(record, &candidate.linkage, &positions(candidate), SAMPLES),
+        }
+    }
+
+    /// A linkage at crank angle (radians) and assembly at each point, `samples` positions of each circuit.
+    pub(super) fn of(
+        record: &Record,
+        linkage: &FourBar,
+        positions: &[(f64, AssemblyMode)],
+        samples: usize,
+    ) -> Self {
         let reach = |j: usize| {
             let (angle, assembly) = *positions.get(j)?;
-            Some(candidate?.linkage.position_with(angle, assembly).joints()?.coupler_point)
+            Some(linkage.position_with(angle, assembly).joints()?.coupler_point)
         };
-        let points = &record.problem.resolved.task.path.points;
-        let targets = points
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE))
-            .map(|(index, p)| Target { index, at: point(*p), reached: reach(index) })
-            .collect();
-        let Some(candidate) = candidate else { return Scene { targets, ..Scene::default() } };
-        let circuits = circuits(candidate, SAMPLES);
-        let pose = legible_pose(&candidate.linkage, &positions)
+        let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
+        let first = first.unwrap_or_else(|| middle_position(linkage));
+        let all = std::iter::once(first).chain(positions.iter().copied());
+        let circuits = circuits_through(linkage, all, samples);
+        let pose = legible_pose(linkage, positions)
             .or_else(|| Some(Pose { target: None, joints: *circuits.first()?.first()? }));
-        Scene { linkage: Some(candidate.linkage), targets, circuits, pose }
+        Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
     }
 
     /// The box of the target points and what they are compared with.
@@ -84,6 +91,13 @@ impl Scene {
         }
         bounds
     }
+}
+
+/// The target points that can be drawn, each with where the coupler point is instead.
+fn targets(record: &Record, reached: &dyn Fn(usize) -> Option<Complex>) -> Vec<Target> {
+    let points = record.problem.resolved.task.path.points.iter().enumerate();
+    let usable = points.filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
+    usable.map(|(index, p)| Target { index, at: point(*p), reached: reached(index) }).collect()
 }
 
 /// Crank angle (radians) and assembly at each point that has both.

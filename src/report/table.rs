@@ -193,13 +193,18 @@ fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
 
 /// Method, seed, cost, why it ended.
 fn ending(record: &Record) -> String {
+    let reason = if record.method.used == ["continuation"] && record.termination.reproducible {
+        "every solution path was followed to its end"
+    } else {
+        words::reason(record.termination.reason)
+    };
     let used: Vec<String> =
         record.method.used.iter().map(|m| clean(m)).filter(|m| !m.is_empty()).take(12).collect();
     let used = if used.is_empty() { String::new() } else { format!(" by {}", used.join(", ")) };
     let mut text = format!(
         "Search{used} (seed {}) ended: {}. {} of the objective, {}.",
         record.seed,
-        words::reason(record.termination.reason),
+        reason,
         count(record.evaluations.objective as usize, "evaluation"),
         count(record.evaluations.positions as usize, "position"),
     );

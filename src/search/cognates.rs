@@ -13,7 +13,7 @@
 //! that its transmission angle is the candidate's too; what it may have better is its size and its place.
 
 use super::multistart::unwrapped;
-use super::rank::{exact_sum_sq, size, sort};
+use super::rank::{exact_sum_sq, severity, size, sort};
 use crate::assess::{assess, assess_on_curve};
 use crate::linkage::cognate::{Cognate, OriginalLink};
 use crate::linkage::mobility::wrapped;
@@ -56,19 +56,21 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
 
 /// What tells linkages of the same curve and error apart, on a grid above rounding; the less, the better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Merit {
+pub(super) struct Merit {
     refused: bool,
+    severity: usize,
     unmet: usize,
     lack_of_transmission: i64,
     size: i64,
 }
 
 impl Merit {
-    fn of(candidate: &Candidate) -> Merit {
+    pub(super) fn of(candidate: &Candidate) -> Merit {
         // Near a change point the angle is rounded to the root of the lengths' rounding.
         let (degrees, logarithm) = (1e5, 1e9);
         Merit {
             refused: !candidate.accepted,
+            severity: severity(candidate),
             unmet: candidate.requirements.iter().filter(|r| !r.met).count(),
             lack_of_transmission: -(candidate.transmission_deg.worst * degrees).round() as i64,
             size: (size(candidate).ln() * logarithm).round() as i64,

@@ -69,7 +69,9 @@ pub fn explain(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<Explained, PopulationError> {
-    if budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
+    // Of exact linkages all are known, each with what it does not meet.
+    let listed = problem.spec().solve.method == Method::Continuation;
+    if listed || budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
     }
     let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
@@ -199,7 +201,7 @@ impl Inquiry<'_> {
             best_sum_sq: None,
             accepted: false,
         });
-        let mut outcome = plan::search(&problem, self.budget, &|_| {})?;
+        let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
         // As a run does: a cognate may take its candidate's place.
         cognates::offer(&problem, &mut outcome.candidates);
         let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();

@@ -365,7 +365,7 @@ fn error_without(
     let warm = start_at(&loose, best).and_then(|start| {
         judged(&loose, &polish(&loose, start, LONG_STEPS, LONG_ROUNDS, evaluations.max(1), budget).end?)
     });
-    let found = plan::search(&loose, budget, &|_| {}).map_or(Vec::new(), |outcome| outcome.candidates);
+    let found = plan::approximate(&loose, budget, &|_| {}).map_or(Vec::new(), |outcome| outcome.candidates);
     // A better answer that keeps the demand as well says nothing of its cost.
     let costs_less = |c: &Candidate| {
         c.accepted

@@ -9,7 +9,9 @@ pub mod buildable;
 pub mod coarse;
 pub mod cognates;
 pub mod conflicts;
+pub mod continuation;
 pub mod costs;
+pub mod exact_linkages;
 pub mod family;
 pub mod free;
 pub mod loosen;
@@ -25,7 +27,7 @@ pub mod timed;
 pub mod warm;
 pub mod warnings;
 
-use crate::record::{Candidate, Evaluations, Reason};
+use crate::record::{Candidate, Evaluations, ExactRecord, Reason};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -91,4 +93,6 @@ pub struct SearchOutcome {
     pub reason: Reason,
     /// What it cost.
     pub evaluations: Evaluations,
+    /// Every linkage through nine precision points, where they were asked for.
+    pub exact: Option<ExactRecord>,
 }

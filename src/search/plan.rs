@@ -14,7 +14,7 @@ use super::population::{self, Population};
 use super::rank::{count_distinct, divided, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::Starts;
 use super::{Budget, Observer, Progress, SearchOutcome};
-use super::{free, timed};
+use super::{continuation, free, timed};
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::Method;
@@ -48,11 +48,30 @@ pub const FAR: f64 = 100.0;
 /// Of what else was found there, this many are brought back.
 const FAR_OTHERS: usize = 32;
 
-/// Searches as the problem's `[solve]` table says.
+/// Searches as the problem's `[solve]` table says: where there are nine precision points `continuation` and `auto`
+/// first solve for every linkage through them, and `auto` approximates where these do not give enough.
 ///
 /// # Errors
 /// [`PopulationError`] when a population search cannot be set up.
 pub fn search(
+    problem: &Problem,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<SearchOutcome, PopulationError> {
+    let Some(exact) = continuation::solve(problem, budget, observer) else {
+        return approximate(problem, budget, observer);
+    };
+    if exact.suffices(problem) || budget.stopped() {
+        return Ok(exact.alone(problem, budget));
+    }
+    Ok(exact.beside(problem, approximate(problem, budget, observer)?, budget))
+}
+
+/// As [`search`] without exact answers: what conflicts and costs are looked for with, many times over.
+///
+/// # Errors
+/// As [`search`].
+pub fn approximate(
     problem: &Problem,
     budget: &Budget<'_>,
     observer: &Observer<'_>,
@@ -97,7 +116,8 @@ fn search_here(
             local.finish(problem, limit, budget);
             Ok(local.outcome(problem))
         }
-        Method::Auto => auto(problem, budget, observer),
+        // Exact answers are not approximated; where the points have none, all the same.
+        Method::Auto | Method::Continuation => auto(problem, budget, observer),
     }
 }
 
@@ -116,6 +136,7 @@ fn alone(
         used: vec![which.name().into()],
         reason: budget.stop_reason().unwrap_or(end.reason),
         evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
+        exact: None,
     })
 }
 
@@ -148,6 +169,7 @@ impl Local {
             used: self.used,
             reason: self.reason,
             evaluations: self.evaluations,
+            exact: None,
         }
     }
 }

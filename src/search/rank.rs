@@ -1,7 +1,8 @@
 //! Which answers are really different, and which is the best.
 //!
 //! Ranked by acceptance, then (where tolerances are missed) by how far, then error (errors of exact answers are
-//! equal), then worst transmission angle, then size. Two candidates are one answer when
+//! equal), then (of what is refused) how grave the defects are and how many requirements are unmet, then worst
+//! transmission angle, then size. Two candidates are one answer when
 //!
 //! - they are nearly the same linkage: at the first point their joints A, B, C, D and P lie within [`NEAR`] of
 //!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
@@ -17,6 +18,7 @@ use crate::linkage::{Complex, CouplerCurve};
 use crate::problem::Problem;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Figure};
+use crate::task::Defect;
 use std::cell::OnceCell;
 use std::cmp::Ordering;
 
@@ -69,6 +71,7 @@ struct Key {
     /// Whether more than the tolerances is missed, and how far the tolerances are, in parts of themselves.
     missed: (bool, f64),
     error: f64,
+    severity: usize,
     unmet: usize,
     worst: f64,
     size: f64,
@@ -81,11 +84,23 @@ impl Key {
             refused: !candidate.accepted,
             missed: missed(candidate),
             error: candidate.error.objective.max(floor),
+            severity: severity(candidate),
             unmet: if candidate.accepted { 0 } else { unmet(candidate) },
             worst: candidate.transmission_deg.worst,
             size: size(candidate),
         }
     }
+}
+
+/// How grave the defects of a refused candidate are: a toggle can be pushed through, an order be put up with; between
+/// two circuits the linkage has to be taken apart. 0 for what is accepted.
+pub(super) fn severity(candidate: &Candidate) -> usize {
+    let of = |defect: &Defect| match defect {
+        Defect::Branch { .. } => 1,
+        Defect::Order { .. } => 2,
+        Defect::Circuit { .. } => 4,
+    };
+    if candidate.accepted { 0 } else { candidate.defects.iter().map(of).sum() }
 }
 
 /// Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
@@ -108,6 +123,7 @@ impl Ord for Key {
             .then_with(|| self.missed.0.cmp(&other.missed.0))
             .then_with(|| self.missed.1.total_cmp(&other.missed.1))
             .then_with(|| self.error.total_cmp(&other.error))
+            .then_with(|| self.severity.cmp(&other.severity))
             .then_with(|| self.unmet.cmp(&other.unmet))
             .then_with(|| other.worst.total_cmp(&self.worst))
             .then_with(|| self.size.total_cmp(&other.size))

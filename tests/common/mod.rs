@@ -15,7 +15,7 @@ pub fn root() -> &'static Path {
 
 /// Every file below `problems/` with this extension.
 pub fn shipped(extension: &str) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = ["literature", "examples", "linkages", "seeds"]
+    let mut files: Vec<PathBuf> = ["literature", "examples", "exact", "linkages", "seeds"]
         .iter()
         .flat_map(|folder| std::fs::read_dir(root().join("problems").join(folder)).expect("it is there"))
         .map(|entry| entry.expect("it can be read").path())

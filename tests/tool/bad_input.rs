@@ -140,7 +140,7 @@ fn an_override_gets_the_same_diagnostics_as_the_file() {
     );
     assert!(shown("design.a", "[5, 1]").contains("write [1, 5]"));
     assert!(shown("solve.sed", "1").contains("did you mean `seed`?"));
-    assert!(shown("solve.method", "continuation").contains("not supported yet"));
+    assert!(shown("solve.method", "continuation").contains("exactly 9 points, this path has 2"));
     assert!(shown("task.motion.poses", "[]").contains("two tasks"));
     assert!(shown("name", "../arm").contains("the name is a path"));
     assert!(shown("name", "\u{1b}[31m").contains("--set name=\\x1b[31m"));

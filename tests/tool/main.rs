@@ -4,6 +4,7 @@ mod analysis_sheets;
 mod analyze;
 mod bad_input;
 mod command_line;
+mod continuation;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../reference/mod.rs"]

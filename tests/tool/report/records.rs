@@ -117,6 +117,7 @@ pub fn candidate(
             met: true,
         }],
         accepted,
+        certified: None,
         costs: Vec::new(),
     }
 }
@@ -146,6 +147,7 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         candidates: Vec::new(),
         conflict: None,
         relaxations: Vec::new(),
+        exact: None,
     }
 }
 

@@ -1,0 +1,76 @@
+//! The proof that certified solutions belong to different classes.
+//!
+//! The three foci of a coupler curve are the ground pivots a, b and that of the third Roberts cognate, c = (b x - a y) /
+//! (x - y). The six solutions of a class (three cognates, two labels each) only permute them: exchanging the links
+//! exchanges a and b, and Roberts' map takes (a, b, c) to (c, a, b). So their symmetric functions
+//!
+//! ```text
+//! a + b + c        a b + b c + c a        a b c        and the starred ones
+//! ```
+//!
+//! are the same at all six. Two solutions whose enclosures give disjoint discs for one of these functions belong to
+//! different classes; the curves they draw have different foci.
+
+use super::certificate::Certificate;
+use super::discs::Disc;
+
+/// Discs of the six symmetric functions; `None` where x - y may be zero and c is not defined.
+type Invariants = Option<[Disc; 6]>;
+
+fn invariants(certificate: &Certificate) -> Invariants {
+    let e = certificate.enclosure();
+    let of = |x: Disc, y: Disc, a: Disc, b: Disc| -> Option<[Disc; 3]> {
+        let c = (b * x - a * y) * (x - y).inverse()?;
+        Some([a + b + c, a * b + (a + b) * c, a * b * c])
+    };
+    let ([s1, s2, s3], [t1, t2, t3]) = (of(e[0], e[1], e[2], e[3])?, of(e[4], e[5], e[6], e[7])?);
+    Some([s1, s2, s3, t1, t2, t3])
+}
+
+/// The pairs (first < second, in order) that are *not* proved to be of different classes. An empty answer is the proof
+/// that all classes differ.
+///
+/// Sorted along the real part of a + b + c and swept: only pairs whose intervals there overlap are compared further, so
+/// the cost is O(n log n) plus these pairs. A solution whose third focus cannot be bounded is paired with all others.
+pub fn not_proved_distinct(certificates: &[Certificate]) -> Vec<[usize; 2]> {
+    let invariants: Vec<Invariants> = certificates.iter().map(invariants).collect();
+    let mut intervals: Vec<(f64, f64, usize)> = invariants
+        .iter()
+        .enumerate()
+        .map(|(i, of)| {
+            let (low, high) = interval(of);
+            (low, high, i)
+        })
+        .collect();
+    intervals.sort_by(|one, two| one.0.total_cmp(&two.0).then(one.2.cmp(&two.2)));
+    let mut pairs = Vec::new();
+    for (place, &(_, high, first)) in intervals.iter().enumerate() {
+        let overlapping = intervals[place + 1..].iter().take_while(|(low, ..)| *low <= high);
+        for &(_, _, second) in overlapping {
+            if !apart(&invariants[first], &invariants[second]) {
+                pairs.push([first.min(second), first.max(second)]);
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
+/// An interval that holds the real part of the first invariant.
+fn interval(of: &Invariants) -> (f64, f64) {
+    let bounds = of.as_ref().map(|[sum, ..]| {
+        let (mid, radius) = (sum.mid.re, sum.radius.get());
+        ((mid - radius).next_down(), (mid + radius).next_up())
+    });
+    match bounds {
+        Some((low, high)) if low <= high => (low, high),
+        _ => (f64::NEG_INFINITY, f64::INFINITY),
+    }
+}
+
+fn apart(one: &Invariants, two: &Invariants) -> bool {
+    match (one, two) {
+        (Some(one), Some(two)) => one.iter().zip(two).any(|(a, b)| a.is_disjoint(b)),
+        _ => false,
+    }
+}

@@ -1,0 +1,142 @@
+//! Exact synthesis: every linkage through nine points, counted, and the real ones listed.
+
+use crate::linkage::{AssemblyMode, FourBar, LinkageType};
+use crate::task::Defect;
+use serde::{Deserialize, Serialize};
+
+/// So many classes pass through nine points in general position: C. W. Wampler, A. P. Morgan, A. J. Sommese (1992).
+pub const GENERIC_CLASSES: usize = 1442;
+
+/// What the exact solution of a nine-point problem found.
+///
+/// A class is one coupler curve through the points: three cognates with two labels of their links. That each linkage
+/// marked as certified exists is proved; that no others do is not: that rests on the published count of
+/// [`GENERIC_CLASSES`] for points in general position.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExactRecord {
+    /// How the solutions are counted.
+    pub census: Census,
+    /// Whether as many classes were found as points in general position have.
+    pub generic: bool,
+    /// What may be said of the list as a whole.
+    pub completeness: Completeness,
+    /// Every real class by its best linkage, better first.
+    pub linkages: Vec<ExactLinkage>,
+}
+
+/// What may be said of the list of classes as a whole. None of it is proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Completeness {
+    /// As many as points in general position have: all, by the published count.
+    Complete,
+    /// Points that are not in general position: fewer isolated solutions, and no path was lost.
+    NonGeneric,
+    /// Paths were lost, or ended together: some classes may be missing.
+    Incomplete,
+    /// Stopped before the end.
+    Cancelled,
+}
+
+/// Counts of solutions up to cognates and labels. They add up:
+///
+/// - tracked = finite + singular + failed, finite = classes + duplicate,
+/// - classes = real + real_curve + complex = certified + not_certified,
+/// - real = degenerate + how many linkages are listed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Census {
+    /// Solution paths that were followed.
+    pub tracked: usize,
+    /// Paths that ended in an isolated solution.
+    pub finite: usize,
+    /// Different isolated solutions.
+    pub classes: usize,
+    /// Paths that ended where another one did, after all repeats.
+    pub duplicate: usize,
+    /// Paths that ended at infinity, where solutions meet, or in a whole family of them.
+    pub singular: usize,
+    /// Paths that were lost for no known reason.
+    pub failed: usize,
+    /// Classes that are linkages.
+    pub real: usize,
+    /// Real classes that make no linkage: a link of no length, or one beyond all bounds of numbers in files.
+    pub degenerate: usize,
+    /// Classes with a real curve that no real linkage draws.
+    pub real_curve: usize,
+    /// Classes with a complex curve.
+    pub complex: usize,
+    /// Classes that are proved to exist and to be alone within their radius.
+    pub certified: usize,
+    /// Classes for which the proof did not succeed.
+    pub not_certified: usize,
+    /// Certified classes that are also proved to be what they are counted as: real, a real curve, or complex.
+    pub reality_proved: usize,
+    /// Pairs of certified classes that are not proved to be different ones.
+    pub not_told_apart: usize,
+    /// Real classes that pass all points on one circuit, by some cognate and crank.
+    pub one_circuit: usize,
+    /// Of these, those that pass them in order.
+    pub in_order: usize,
+    /// Of these, those that stay on one branch.
+    pub free_of_defects: usize,
+}
+
+/// A real class.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExactLinkage {
+    /// Its rank among the candidates, 0 where it is none of them.
+    pub rank: usize,
+    /// The best of its six mechanisms under the problem's requirements.
+    pub linkage: FourBar,
+    /// Its crank angle at each point, degrees, unwrapped.
+    pub crank_deg: Vec<f64>,
+    /// Its assembly at each point.
+    pub t1_at: Vec<AssemblyMode>,
+    /// The largest distance of its coupler point from a target point: rounding.
+    pub miss: f64,
+    /// Its type.
+    #[serde(rename = "type")]
+    pub linkage_type: LinkageType,
+    /// Its defects.
+    pub defects: Vec<Defect>,
+    /// min(mu, 180 - mu) at its worst.
+    pub transmission_worst_deg: f64,
+    /// Longest over shortest link.
+    pub link_ratio: f64,
+    /// Whether it is acceptable.
+    pub accepted: bool,
+    /// The requirements that it does not meet.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_met: Vec<String>,
+    /// Whether one of the six stays on one circuit ..
+    pub one_circuit: bool,
+    /// .. passes the points in order ..
+    pub in_order: bool,
+    /// .. and stays on one branch.
+    pub free_of_defects: bool,
+    /// The proof that it exists, where it succeeded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Certified>,
+    /// The other mechanisms of the class: cognates, and the same driven from the other side.
+    pub others: Vec<ExactForm>,
+}
+
+/// Another mechanism of a class.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ExactForm {
+    /// The linkage, assembled as at the first point.
+    pub linkage: FourBar,
+    /// Its type.
+    #[serde(rename = "type")]
+    pub linkage_type: LinkageType,
+    /// Its defects.
+    pub defects: Vec<Defect>,
+}
+
+/// A proof that a linkage through the points exists.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certified {
+    /// One, and only one, real linkage whose coupler point passes exactly through all nine points has its fixed pivots
+    /// and, at the first point, its pins within this distance of those recorded. In the file's unit.
+    pub radius: f64,
+}

@@ -1,0 +1,203 @@
+//! Every linkage through nine points, in words and as a table.
+
+use super::grid::{Align, Colour, Grid, Ink};
+use super::table::COLUMNS;
+use super::text::{grouped, significant, wrapped};
+use super::words;
+use crate::linkage::AssemblyMode;
+use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
+
+/// Rows where not all are asked for.
+const FEW: usize = 8;
+
+/// The census and the real linkages, the best of them or `all`; empty for a record without any.
+pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
+    let Some(exact) = &record.exact else { return String::new() };
+    let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
+    for sentence in [found(exact), real(&exact.census), paths(&exact.census), proof(exact)] {
+        if !sentence.is_empty() {
+            out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
+        }
+    }
+    if exact.linkages.is_empty() {
+        return out;
+    }
+    let shown = if all { exact.linkages.len() } else { exact.linkages.len().min(FEW) };
+    out.push('\n');
+    out.push_str(&rows(record, &exact.linkages[..shown], colour));
+    let mut key = String::from(
+        "curve: what the best of its six mechanisms (three cognates, either link driven) can do. defects, \
+         transmission, ratio: of the one listed. t1: how it is assembled at each point. radius: one exact linkage is \
+         proved to stand this near.",
+    );
+    let more = exact.linkages.len() - shown;
+    if more > 0 {
+        key.push_str(&format!(
+            " {more} more: --all, or exact.linkages in the record; all are drawn in exact.svg."
+        ));
+    }
+    out.push('\n');
+    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    out
+}
+
+fn count(n: usize) -> String {
+    grouped(n as u64)
+}
+
+/// How many solutions there are, and what kind of points.
+fn found(exact: &ExactRecord) -> String {
+    let census = &exact.census;
+    let found = count(census.classes);
+    let all = count(GENERIC_CLASSES);
+    match exact.completeness {
+        Completeness::Complete => {
+            format!("{found} solutions up to cognates: as many as nine points in general position have.")
+        }
+        Completeness::NonGeneric => {
+            let isolated = count(census.certified);
+            let mut text = format!(
+                "The points are non-generic: {isolated} isolated solutions up to cognates were found, where points in \
+                 general position have {all}."
+            );
+            if census.not_certified > 0 {
+                let rest = count(census.not_certified);
+                text.push_str(&format!(" {rest} more may be members of whole families of solutions."));
+            }
+            text
+        }
+        Completeness::Incomplete => {
+            format!(
+                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost."
+            )
+        }
+        Completeness::Cancelled => {
+            format!("{found} of {all} solutions up to cognates were found until the search was stopped.")
+        }
+    }
+}
+
+fn real(census: &Census) -> String {
+    let real = match census.real {
+        1 => "1 is a linkage".to_owned(),
+        n => format!("{} are linkages", count(n)),
+    };
+    let mut text = format!(
+        "{real}, {} more have a real curve that no real linkage draws, {} are complex.",
+        count(census.real_curve),
+        count(census.complex)
+    );
+    if census.degenerate > 0 {
+        text.push_str(&format!(
+            " {} of the real ones cannot be listed: a link has no length.",
+            census.degenerate
+        ));
+    }
+    if census.real > 0 {
+        text.push_str(&format!(
+            " Of the real ones {} can pass all points on one circuit, {} of them in order, {} of these on one branch: \
+             free of defects.",
+            count(census.one_circuit),
+            count(census.in_order),
+            count(census.free_of_defects)
+        ));
+    }
+    text
+}
+
+fn paths(census: &Census) -> String {
+    let others = [
+        (census.duplicate, "at an end found before"),
+        (census.singular, "at infinity or where solutions meet"),
+        (census.failed, "lost"),
+    ];
+    let parts: Vec<String> =
+        others.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{} {what}", count(*n))).collect();
+    let rest = if parts.is_empty() { "none lost".to_owned() } else { parts.join(", ") };
+    format!("{} paths followed: {} different ends, {rest}.", count(census.tracked), count(census.classes))
+}
+
+/// What is proved, and what is not.
+fn proof(exact: &ExactRecord) -> String {
+    let census = &exact.census;
+    let mut text = match (census.certified, census.not_certified) {
+        (0, _) => return "No solution is proved to exist, or to be isolated.".to_owned(),
+        (n, 0) => format!("Proved: each of the {} exists", count(n)),
+        (n, without) => format!("Proved: {} of them exist ({} without a proof)", count(n), count(without)),
+    };
+    text.push_str(", each alone within its radius");
+    text.push_str(&match census.not_told_apart {
+        0 => ", and no two are the same".to_owned(),
+        1 => ", and no two are the same but for 1 pair that may be".to_owned(),
+        n => format!(", and no two are the same but for {} pairs that may be", count(n)),
+    });
+    if census.reality_proved == census.certified {
+        text.push_str("; and each is real or not as counted");
+    } else {
+        text.push_str(&format!("; {} are proved to be real or not as counted", count(census.reality_proved)));
+    }
+    text.push_str(". Not proved: that there are no others; ");
+    text.push_str(if exact.generic {
+        "that rests on the count published by Wampler, Morgan and Sommese (1992)."
+    } else {
+        "and solutions that are not isolated are not listed."
+    });
+    text
+}
+
+/// What a class can do, by the best of its mechanisms.
+pub(super) fn ability(linkage: &ExactLinkage) -> &'static str {
+    match (linkage.free_of_defects, linkage.in_order, linkage.one_circuit) {
+        (true, ..) => "free of defects",
+        (_, true, _) => "in order",
+        (.., true) => "one circuit",
+        _ => "two circuits",
+    }
+}
+
+fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
+    use Align::{Left, Right};
+    let mut grid = Grid::new(&[
+        ("", Right),
+        ("#", Right),
+        ("curve", Left),
+        ("type", Left),
+        ("t1", Left),
+        ("defects", Left),
+        ("transmission", Right),
+        ("ratio", Right),
+        ("radius", Right),
+        ("verdict", Left),
+    ]);
+    for (i, linkage) in linkages.iter().enumerate() {
+        let plain = |text: String| (text, Ink::Plain);
+        let signs = linkage.t1_at.iter().take(COLUMNS / 4);
+        let signs = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
+        let defects: Vec<&str> = linkage.defects.iter().map(crate::task::Defect::name).collect();
+        let ink = if linkage.accepted { Ink::Good } else { Ink::Bad };
+        let others =
+            linkage.not_met.iter().filter(|name| !defects.contains(&name.as_str())).map(String::as_str);
+        let others: Vec<&str> = others.map(|name| name.strip_prefix("design.").unwrap_or(name)).collect();
+        let verdict = match (linkage.accepted, others.as_slice()) {
+            (true, _) => "accepted".to_owned(),
+            (false, []) => "no".to_owned(),
+            (false, [only]) => format!("no: {only}"),
+            (false, [first, rest @ ..]) => format!("no: {first} +{}", rest.len()),
+        };
+        grid.row(vec![
+            plain((i + 1).to_string()),
+            (if linkage.rank > 0 { format!("#{}", linkage.rank) } else { String::new() }, Ink::Strong),
+            plain(ability(linkage).to_owned()),
+            plain(linkage.linkage_type.name().to_owned()),
+            plain(signs),
+            plain(if defects.is_empty() { "none".to_owned() } else { defects.join(", ") }),
+            plain(format!("{}°", significant(linkage.transmission_worst_deg, 3))),
+            plain(significant(linkage.link_ratio, 3)),
+            plain(linkage.certified.map_or("no proof".to_owned(), |c| {
+                format!("{}{}", significant(c.radius, 1), words::unit_suffix(record))
+            })),
+            (super::text::shortened(&super::text::clean(&verdict), 22), ink),
+        ]);
+    }
+    grid.render(colour)
+}

@@ -1,0 +1,95 @@
+//! Every real linkage through nine points, small, side by side.
+
+use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, text_width};
+use super::exact::ability;
+use super::figure::{Detail, draw};
+use super::scene::{Bounds, Scene};
+use super::text::{shortened, significant};
+use super::words;
+use crate::record::{ExactLinkage, Record};
+
+const MARGIN: f64 = 24.0;
+const GAP: f64 = 12.0;
+const CELL: f64 = 190.0;
+/// Where the drawing of a cell ends and its words begin.
+const CELL_DRAWING: f64 = 150.0;
+const HEAD: f64 = 72.0;
+const COLUMNS: usize = 6;
+const MOST_CELLS: usize = 200;
+/// Positions of a circuit: one degree of the crank is below a pixel here.
+const SAMPLES: usize = 360;
+/// What reaches further than this many extents of the target is cut off, or the points would run together.
+const REACH: f64 = 5.0;
+
+/// The listed linkages with curve, type and what they can do (at most two hundred).
+pub fn exact_svg(record: &Record) -> String {
+    let linkages = record.exact.as_ref().map_or(&[][..], |exact| &exact.linkages);
+    let n = linkages.len().min(MOST_CELLS);
+    let columns = n.clamp(3, COLUMNS);
+    let width = 2.0 * MARGIN + columns as f64 * (CELL + GAP) - GAP;
+    let mut canvas = Canvas::default();
+    let name = words::problem_name(record);
+    let free = linkages.iter().filter(|l| l.free_of_defects).count();
+    let counted = match linkages.len() {
+        1 => "1 real linkage".to_owned(),
+        n => format!("{n} real linkages"),
+    };
+    let counted = format!("{counted}, {free} free of defects");
+    let room = ((width - 2.0 * MARGIN) / text_width("x", 19.0)) as usize;
+    let bold = format!(r#"font-size="19" font-weight="600" fill="{}""#, palette::INK);
+    canvas.text(Spot::new(MARGIN, 36.0), Anchor::Start, &bold, &shortened(&name, room));
+    let muted = format!(r#"font-size="13" fill="{}""#, palette::MUTED);
+    canvas.text(Spot::new(MARGIN, 57.0), Anchor::Start, &muted, &counted);
+    for (i, linkage) in linkages.iter().take(n).enumerate() {
+        let corner = Spot::new(
+            MARGIN + (i % columns) as f64 * (CELL + GAP),
+            HEAD + (i / columns) as f64 * (CELL + GAP),
+        );
+        cell(&mut canvas, record, linkage, i + 1, corner);
+    }
+    let rows = n.div_ceil(columns);
+    let height = HEAD + rows as f64 * (CELL + GAP) - GAP + MARGIN;
+    canvas.document(width, height.max(HEAD + MARGIN), &name, &counted)
+}
+
+fn cell(canvas: &mut Canvas, record: &Record, linkage: &ExactLinkage, number: usize, corner: Spot) {
+    let frame = Area { x: corner.x, y: corner.y, width: CELL, height: CELL };
+    let edge = if linkage.free_of_defects { palette::FOLLOWER } else { palette::FAINT };
+    let weight = if linkage.free_of_defects { 2.0 } else { 1.0 };
+    let drawing = Area { height: CELL_DRAWING, ..frame };
+    let positions = linkage.crank_deg.iter().map(|deg| deg.to_radians()).zip(linkage.t1_at.iter().copied());
+    let scene = Scene::of(record, &linkage.linkage, &positions.collect::<Vec<_>>(), SAMPLES);
+    let view = View::fit(&seen(&scene), drawing.shrunk(12.0));
+    canvas.raw(&format!(
+        r#"<clipPath id="cell-{number}"><rect x="{}" y="{}" width="{CELL}" height="{CELL_DRAWING}"/></clipPath>"#,
+        corner.x, corner.y
+    ));
+    canvas.raw(&format!(r##"<g clip-path="url(#cell-{number})">"##));
+    let detail = Detail {
+        weight: 0.45,
+        target_weight: 0.5,
+        letters: false,
+        numbers: false,
+        linkage: true,
+        clip: None,
+    };
+    draw(canvas, &scene, &view, detail);
+    canvas.raw("</g>");
+    canvas.area(frame, &format!(r#"fill="none" stroke="{edge}" stroke-width="{weight}" rx="4""#));
+    let (left, right) = (corner.x + 8.0, corner.x + CELL - 8.0);
+    let text =
+        |weight: u16, colour: &str| format!(r#"font-size="10.5" font-weight="{weight}" fill="{colour}""#);
+    let first = corner.y + CELL_DRAWING + 14.0;
+    canvas.text(Spot::new(left, first), Anchor::Start, &text(600, palette::INK), &number.to_string());
+    canvas.text(Spot::new(right, first), Anchor::End, &text(400, palette::INK), linkage.linkage_type.name());
+    let colour = if linkage.free_of_defects { palette::INK } else { palette::MUTED };
+    canvas.text(Spot::new(left, first + 16.0), Anchor::Start, &text(400, colour), ability(linkage));
+    let worst = format!("{}°", significant(linkage.transmission_worst_deg, 3));
+    canvas.text(Spot::new(right, first + 16.0), Anchor::End, &text(400, palette::MUTED), &worst);
+}
+
+/// The whole motion; of one that reaches far, what lies about the target.
+fn seen(scene: &Scene) -> Bounds {
+    let (all, target) = (scene.bounds(), scene.target_bounds());
+    if all.extent() <= REACH * target.extent() { all } else { target.padded(0.5 * (REACH - 1.0)) }
+}

@@ -1,0 +1,236 @@
+//! `continuation`: every linkage through nine precision points, as candidates, and beside what `auto` approximates.
+//!
+//! The points are solved once ([`crate::exact`]); bounds and requirements do not enter the equations, they choose among the answers.
+//! Where `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate. Exact linkages
+//! that a requirement forbids are no starts for that: they led to no better answer than those that are drawn, at a
+//! tenth to a third more evaluations.
+
+use super::exact_linkages::{Class, classes};
+use super::rank::{count_distinct, divided, exact_sum_sq};
+use super::{Budget, Observer, Progress, SearchOutcome};
+use crate::exact::certificate::{Certificate, certify, certify_all};
+use crate::exact::distinct::not_proved_distinct;
+use crate::exact::mechanisms::solution_of;
+use crate::exact::{self, Options, Reality, Solution, Target, conjugation};
+use crate::linkage::FourBar;
+use crate::problem::Problem;
+use crate::problem::precision::precision_points;
+use crate::problem::spec::Method;
+use crate::record::{
+    Candidate, Census, Certified, Completeness, Evaluations, ExactRecord, GENERIC_CLASSES, Reason,
+};
+use rayon::prelude::*;
+
+/// How the record calls it.
+const NAME: &str = "continuation";
+
+/// The exact answers of a problem.
+#[derive(Clone, Debug)]
+pub struct Exact {
+    /// Census and list, for the record.
+    pub record: ExactRecord,
+    /// The real classes, better first.
+    pub classes: Vec<Class>,
+}
+
+/// Counts what is listed into a census of paths and classes, and lists the classes.
+pub fn listed(
+    problem: &Problem,
+    target: &Target,
+    census: Census,
+    completeness: Completeness,
+    real: &[Solution],
+) -> Exact {
+    let classes = classes(problem, target, real);
+    let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
+    let census = Census {
+        degenerate: real.len() - classes.len(),
+        one_circuit: count(|c| c.one_circuit),
+        in_order: count(|c| c.in_order),
+        free_of_defects: count(|c| c.free_of_defects),
+        ..census
+    };
+    let linkages = classes.par_iter().map(|class| class.listed(certified(target, &class.best))).collect();
+    let generic = census.classes == GENERIC_CLASSES;
+    Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
+}
+
+impl Exact {
+    fn candidates(&self) -> Vec<Candidate> {
+        self.classes.iter().map(|class| class.best.clone()).collect()
+    }
+
+    /// Whether nothing else is to be looked for: exact answers alone were asked for, or there are enough of them.
+    pub fn suffices(&self, problem: &Problem) -> bool {
+        let solve = &problem.spec().solve;
+        let accepted: Vec<Candidate> = self.candidates().into_iter().filter(|c| c.accepted).collect();
+        solve.method == Method::Continuation
+            || count_distinct(problem, &accepted, solve.candidates) >= solve.candidates
+    }
+
+    /// The exact answers as the end of a search.
+    pub fn alone(self, problem: &Problem, budget: &Budget<'_>) -> SearchOutcome {
+        let (candidates, others) = divided(problem, self.candidates(), problem.spec().solve.candidates);
+        let exact = exact_sum_sq(problem);
+        let reached = candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+        let reason = if reached { Reason::TargetReached } else { Reason::Converged };
+        SearchOutcome {
+            candidates,
+            others,
+            used: vec![NAME.into()],
+            reason: budget.stop_reason().unwrap_or(reason),
+            evaluations: Evaluations::default(),
+            exact: Some(self.record),
+        }
+    }
+
+    /// The exact answers together with what a search by approximation found.
+    pub fn beside(self, problem: &Problem, mut outcome: SearchOutcome, budget: &Budget<'_>) -> SearchOutcome {
+        let mut found = self.candidates();
+        found.append(&mut outcome.candidates);
+        found.append(&mut outcome.others);
+        (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+        let exact = exact_sum_sq(problem);
+        let reached = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+        if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
+            outcome.reason = Reason::TargetReached;
+        }
+        outcome.reason = budget.stop_reason().unwrap_or(outcome.reason);
+        outcome.used.insert(0, NAME.into());
+        outcome.exact = Some(self.record);
+        outcome
+    }
+}
+
+/// Certificates and places of the final candidates: a cognate may have taken its candidate's place, and ranks are
+/// given anew. Nothing where there are no exact answers.
+pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
+    let Some(exact) = &mut outcome.exact else { return };
+    let Some(target) = target(problem) else { return };
+    let bar = 1e6 * exact_sum_sq(problem);
+    for candidate in outcome.candidates.iter_mut().filter(|c| c.error.sum_sq <= bar) {
+        candidate.certified = certified(&target, candidate);
+        for class in &mut exact.linkages {
+            let forms = std::iter::once(&class.linkage).chain(class.others.iter().map(|form| &form.linkage));
+            if forms.into_iter().any(|form| same(form, &candidate.linkage)) {
+                class.rank = candidate.rank;
+            }
+        }
+    }
+}
+
+/// Linkages that differ by less than this part of their longest link are the same.
+const SAME: f64 = 1e-7;
+
+/// Whether two linkages are the same but for rounding.
+pub fn same(one: &FourBar, other: &FourBar) -> bool {
+    let numbers = |l: &FourBar| {
+        let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
+        [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
+    };
+    let reach = SAME * one.longest_link().max(one.crank_side());
+    numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
+}
+
+/// The nine points of a problem that has exact answers.
+pub fn target(problem: &Problem) -> Option<Target> {
+    Target::new(precision_points(problem).ok()?).ok()
+}
+
+/// The proof that an exact linkage stands where a candidate does; `None` where it does not succeed.
+///
+/// The distance of the exact pivots and pins from those of the candidate: from it to the refined solution, plus what
+/// that may be off by ([`certify`]), plus what computing that distance rounds.
+pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
+    let linkage = &candidate.linkage;
+    let angles: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let given = solution_of(target, linkage, &angles, &candidate.t1_at)?;
+    let proof = certify(target, &given).ok().filter(Certificate::is_real)?;
+    let joints = linkage.position_with(*angles.first()?, *candidate.t1_at.first()?).joints()?;
+    let recorded = [linkage.crank_pivot(), linkage.follower_pivot(), joints.crank_pin, joints.follower_pin];
+    let refined = proof.refined.grounds.into_iter().chain(proof.refined.pins);
+    let apart = recorded.into_iter().zip(refined).map(|(recorded, refined)| {
+        let exact = target.points[0] + refined * target.scale;
+        let rounded = recorded.norm() + target.points[0].norm() + (refined * target.scale).norm();
+        (recorded - exact).norm() + ROUNDINGS * f64::EPSILON * rounded
+    });
+    // Outward: the sums below are rounded as well.
+    let radius = (apart.fold(0.0, f64::max) + proof.radius * target.scale) * (1.0 + ROUNDINGS * f64::EPSILON);
+    radius.is_finite().then_some(Certified { radius })
+}
+
+/// More roundings than a sum of three points and its length take.
+const ROUNDINGS: f64 = 16.0;
+
+/// Whether a class is proved to be what it was found to be.
+fn agree(found: Reality, proved: conjugation::Reality) -> bool {
+    matches!(
+        (found, proved),
+        (Reality::Linkage, conjugation::Reality::Real)
+            | (Reality::CurveOnly, conjugation::Reality::RealCurve)
+            | (Reality::Complex, conjugation::Reality::Complex)
+    )
+}
+
+/// The proof of a class by another of its cognates: what is badly conditioned in one may be well in the next.
+fn of_a_cognate(target: &Target, solution: &Solution) -> Option<Certificate> {
+    let images = solution.images(&target.displacements);
+    images[1..3].iter().filter(|image| image.is_finite()).find_map(|image| certify(target, image).ok())
+}
+
+/// The exact answers; `None` where the points have none or the method does not ask for them.
+pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) -> Option<Exact> {
+    if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
+        return None;
+    }
+    let target = target(problem)?;
+    let progress = |ended: usize, of: usize| {
+        let (evaluations, budget) = (ended as u64, of as u64);
+        observer(&Progress { phase: NAME, evaluations, budget, best_sum_sq: None, accepted: false });
+    };
+    let solved = exact::solve(&target, &Options::default(), &progress, budget.cancel);
+    let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();
+    let proofs: Vec<Option<Certificate>> = certify_all(&target, &solutions)
+        .into_par_iter()
+        .zip(&solutions)
+        .map(|(proof, solution)| proof.ok().or_else(|| of_a_cognate(&target, solution)))
+        .collect();
+    let certificates: Vec<Certificate> = proofs.iter().flatten().copied().collect();
+    // Real ones as the proof has refined them.
+    let real: Vec<Solution> = solved
+        .classes
+        .iter()
+        .zip(&proofs)
+        .filter(|(class, _)| class.reality == Reality::Linkage)
+        .map(|(class, proof)| proof.as_ref().map_or(class.solution, |proof| proof.refined))
+        .collect();
+    let paths = &solved.census;
+    let census = Census {
+        tracked: paths.tracked,
+        finite: paths.finite,
+        classes: paths.distinct,
+        duplicate: paths.duplicates,
+        singular: paths.singular,
+        failed: paths.failed,
+        real: paths.real,
+        real_curve: paths.curve_only,
+        complex: paths.complex,
+        certified: certificates.len(),
+        not_certified: paths.distinct - certificates.len(),
+        reality_proved: solved
+            .classes
+            .iter()
+            .zip(&proofs)
+            .filter(|(class, proof)| proof.as_ref().is_some_and(|proof| agree(class.reality, proof.reality)))
+            .count(),
+        not_told_apart: not_proved_distinct(&certificates).len(),
+        ..Census::default()
+    };
+    let completeness = match solved.completeness() {
+        exact::Completeness::Complete => Completeness::Complete,
+        exact::Completeness::NonGeneric { .. } => Completeness::NonGeneric,
+        exact::Completeness::Incomplete { .. } => Completeness::Incomplete,
+        exact::Completeness::Cancelled => Completeness::Cancelled,
+    };
+    Some(listed(problem, &target, census, completeness, &real))
+}

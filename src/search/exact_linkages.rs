@@ -1,0 +1,133 @@
+//! Real solutions as candidates: of each class the best of its six mechanisms, judged as every candidate is.
+//!
+//! The better first: accepted, then lighter defects, then fewer requirements unmet, the better worst transmission
+//! angle, the smaller linkage. That is the order of ranks ([`super::rank`]), for exact errors are equal.
+
+use super::cognates::{Merit, not_met};
+use super::multistart::unwrapped;
+use super::rank::compare;
+use crate::assess::{assess, assess_on_curve};
+use crate::exact::mechanisms::solution_of;
+use crate::exact::{Mechanism, Solution, Target, mechanisms};
+use crate::linkage::{AssemblyMode, FourBar};
+use crate::problem::Problem;
+use crate::record::{Candidate, Certified, ExactForm, ExactLinkage};
+use rayon::prelude::*;
+
+/// A real class with its mechanisms judged.
+#[derive(Clone, Debug)]
+pub struct Class {
+    /// The best of the six.
+    pub best: Candidate,
+    /// Whether one of the six stays on one circuit.
+    pub one_circuit: bool,
+    /// Whether one of the six passes the points in order.
+    pub in_order: bool,
+    /// Whether one of the six has no defect.
+    pub free_of_defects: bool,
+    /// The other five, better first.
+    pub others: Vec<ExactForm>,
+}
+
+/// The classes of real solutions, better first. One that makes no linkage (a link of no length, or of one too large)
+/// is left out.
+pub fn classes(problem: &Problem, target: &Target, real: &[Solution]) -> Vec<Class> {
+    let judged: Vec<Option<Class>> =
+        real.par_iter().map(|solution| class(problem, target, solution)).collect();
+    let mut classes: Vec<Class> = judged.into_iter().flatten().collect();
+    // Stable: equals stay in the order of the solver.
+    classes.sort_by(|one, other| compare(problem, &one.best, &other.best));
+    classes
+}
+
+/// A real solution's class; `None` where none of the six is a linkage that passes the points.
+pub fn class(problem: &Problem, target: &Target, solution: &Solution) -> Option<Class> {
+    let list = mechanisms(problem.task(), target, solution);
+    let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
+    let mut to_curve = None;
+    let mut forms = Vec::with_capacity(list.len());
+    for mechanism in list.iter().filter(|m| m.passes) {
+        let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
+        let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+        // One curve, and on it one circuit through the first point: its distances are known after the first.
+        let judged = assess_on_curve(problem, &mechanism.linkage, &crank_deg, &t1_at, to_curve);
+        if let Some(form) = judged {
+            to_curve.get_or_insert(form.error.to_curve);
+            forms.push(form);
+        }
+    }
+    forms.sort_by_cached_key(Merit::of);
+    let mut forms = forms.into_iter();
+    let best = forms.next()?;
+    // Its figures are its own.
+    let best = assess(problem, &best.linkage, &best.crank_deg, &best.t1_at)?;
+    let other =
+        |c: Candidate| ExactForm { linkage: c.linkage, linkage_type: c.linkage_type, defects: c.defects };
+    Some(Class {
+        best,
+        one_circuit: any(Mechanism::on_one_circuit),
+        in_order: any(Mechanism::in_order),
+        free_of_defects: any(Mechanism::is_free_of_defects),
+        others: forms.map(other).collect(),
+    })
+}
+
+impl Class {
+    /// The class as it stands in the record.
+    pub fn listed(&self, certified: Option<Certified>) -> ExactLinkage {
+        let best = &self.best;
+        ExactLinkage {
+            rank: 0,
+            linkage: best.linkage,
+            crank_deg: best.crank_deg.clone(),
+            t1_at: best.t1_at.clone(),
+            miss: best.error.max,
+            linkage_type: best.linkage_type,
+            defects: best.defects.clone(),
+            transmission_worst_deg: best.transmission_deg.worst,
+            link_ratio: best.link_ratio,
+            accepted: best.accepted,
+            not_met: not_met(best),
+            one_circuit: self.one_circuit,
+            in_order: self.in_order,
+            free_of_defects: self.free_of_defects,
+            certified,
+            others: self.others.clone(),
+        }
+    }
+}
+
+/// What is found again of a listed class.
+#[derive(Clone, Debug)]
+pub struct Recomputed {
+    /// The listed linkage, judged; `None` where it cannot be.
+    pub judged: Option<Candidate>,
+    /// On one circuit, in order, free of defects, by one of the six.
+    pub abilities: [bool; 3],
+    /// All mechanisms of the class.
+    pub forms: Vec<FourBar>,
+}
+
+/// The class of a linkage at its positions, found from these alone; `None` where it does not pass the points.
+pub fn class_at(
+    problem: &Problem,
+    target: &Target,
+    (linkage, crank_deg, t1_at): (&FourBar, &[f64], &[AssemblyMode]),
+) -> Option<Recomputed> {
+    let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let given = solution_of(target, linkage, &angles, t1_at)?;
+    let list = mechanisms(problem.task(), target, &given);
+    let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
+    if !any(|m| m.passes) {
+        return None;
+    }
+    Some(Recomputed {
+        judged: assess(problem, linkage, crank_deg, t1_at),
+        abilities: [
+            any(Mechanism::on_one_circuit),
+            any(Mechanism::in_order),
+            any(Mechanism::is_free_of_defects),
+        ],
+        forms: list.iter().map(|m| m.linkage).collect(),
+    })
+}
