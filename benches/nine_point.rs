@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! cargo bench --bench nine_point                     all four parts
-//! cargo bench --bench nine_point -- full             a full solve of problem 3 of 1992, on 1 and on 2 threads
+//! cargo bench --bench nine_point -- full             a full solve of problem 3 of 1992, on 1 and 2 threads,
+//!                                                 without and with certificates
 //! cargo bench --bench nine_point -- move             one point moved by 2 % of the size, a frame after the other, 1 thread
 //! cargo bench --bench nine_point -- targets 100      100 targets each: coupler curves, normal points, noisy ellipses
 //! ```
@@ -14,7 +15,10 @@
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::exact::{Completeness, Options, Reality, Solved, Target, resolve_from, solve};
+use linkwright::exact::{
+    Certificate, Completeness, Options, Reality, Solution, Solved, Target, certify_all, not_proved_distinct,
+    resolve_from, solve,
+};
 use linkwright::linkage::{Complex, FourBar};
 use linkwright::solve::streams::{Stream, normal, stream, uniform};
 use random::{TYPES, linkage, one_of, trace};
@@ -60,17 +64,37 @@ fn pool(threads: usize) -> rayon::ThreadPool {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
 }
 
+/// The certificates of all classes; every one is there and no two are of one class.
+fn proved(answer: &Solved) -> Vec<Certificate> {
+    let solutions: Vec<Solution> = answer.classes.iter().map(|class| class.solution).collect();
+    let proofs: Vec<Certificate> = certify_all(&answer.target, &solutions).into_iter().flatten().collect();
+    assert_eq!(proofs.len(), CLASSES);
+    assert!(not_proved_distinct(&proofs).is_empty());
+    proofs
+}
+
 fn full() {
     let reference = solved(wms3());
     assert_eq!(reference.completeness(), Completeness::Complete);
     assert_eq!((reference.census.distinct, reference.census.real), (CLASSES, 64));
+    let certificates = proved(&reference);
     for threads in [1, 2] {
+        let pool = pool(threads);
         let times = (0..RUNS).map(|_| {
             let clock = Instant::now();
-            assert_eq!(pool(threads).install(|| solved(wms3())), reference, "threads change no digit");
-            clock.elapsed().as_secs_f64()
+            let answer = pool.install(|| solved(wms3()));
+            let found = clock.elapsed().as_secs_f64();
+            let proofs = pool.install(|| proved(&answer));
+            let all = clock.elapsed().as_secs_f64();
+            assert_eq!((&answer, &proofs), (&reference, &certificates), "threads change no digit");
+            (found, all)
         });
-        println!("full solve, {threads} thread(s): {:.3} s", median(times.collect()));
+        let (found, all): (Vec<f64>, Vec<f64>) = times.unzip();
+        println!(
+            "full solve, {threads} thread(s): {:.3} s; with all certificates {:.3} s",
+            median(found),
+            median(all)
+        );
     }
 }
 
@@ -101,7 +125,7 @@ fn holds(answer: &Solved, linkage: &FourBar, joints: [Complex; 2]) -> bool {
     let [a, b] = [linkage.crank_pivot(), linkage.follower_pivot()];
     let wanted = [a, joints[0], b, joints[1]];
     let size = wanted.iter().map(|z| (z - target.points[0]).norm()).fold(0.0, f64::max);
-    answer.classes.iter().filter(|class| class.reality == Reality::Linkage).any(|class| {
+    answer.classes.iter().filter(|class| class.reality == Reality::Real).any(|class| {
         class.solution.images(&target.displacements).iter().any(|image| {
             let places = [image.grounds[0], image.pins[0], image.grounds[1], image.pins[1]];
             places

@@ -25,7 +25,7 @@ use crate::linkage::lane::Lane;
 /// Unknowns in all.
 pub const UNKNOWNS: usize = ORDER + STEPS;
 /// Unknowns of one leg: x, u, x*, u*.
-const LEG: usize = 4;
+pub(super) const LEG: usize = 4;
 
 /// Sixteen numbers, eight paths each: [x, u, x*, u*, y, v, y*, v*, tau_1 .. tau_8] with u = x - a, v = y - b,
 /// tau = T - 1, or their changes.

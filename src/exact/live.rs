@@ -10,7 +10,8 @@
 //! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position.
 
 use super::classes::first_of_class;
-use super::solve::{Fate, Fates, Options, Solved, isolated, judged, settle, solve};
+use super::settle::{Fate, Fates, SAME, isolated, settle};
+use super::solve::{Options, Solved, judged, solve};
 use super::target::{Displacements, STEPS, Solution, Target};
 use super::tracker::Segment;
 use crate::linkage::Complex;
@@ -47,7 +48,7 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
     let there: Vec<Solution> = isolated(&first.fates).map(|(_, class)| class.solution).collect();
     let second = settle(&there, &Segment { from: middle, to }, options, &quiet, cancel);
     let foci: Vec<_> = isolated(&second.fates).map(|(_, class)| class.solution.foci()).collect();
-    let kept = first_of_class(&foci, super::solve::SAME)
+    let kept = first_of_class(&foci, SAME)
         .iter()
         .enumerate()
         .filter(|(at, first)| at == *first)

@@ -11,7 +11,8 @@
 
 use super::classes::first_of_class;
 use super::target::{Displacements, STEPS, Solution};
-use super::tracker::{Ending, Parameters, Segment, correct, track};
+use super::correction::correct;
+use super::tracker::{Ending, Parameters, Segment, track};
 use crate::linkage::Complex;
 use std::sync::atomic::AtomicBool;
 

@@ -54,7 +54,7 @@ fn holds_the_stored_solution(name: &str, reals: usize) {
     assert_eq!(answer.census.real, reals);
     assert_eq!(answer.census.curve_only as u64, curves);
     assert_eq!(linkages.len(), reals);
-    let real: Vec<_> = answer.classes.iter().filter(|class| class.reality == Reality::Linkage).collect();
+    let real: Vec<_> = answer.classes.iter().filter(|class| class.reality == Reality::Real).collect();
     let mut met: Vec<usize> = linkages
         .iter()
         .map(|linkage| {
