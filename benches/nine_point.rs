@@ -16,8 +16,8 @@
 mod random;
 
 use linkwright::exact::{
-    Certificate, Completeness, Options, Reality, Solution, Solved, Target, certify_all, not_proved_distinct,
-    resolve_from, solve,
+    Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
+    not_proved_distinct, resolve_from, solve,
 };
 use linkwright::linkage::{Complex, FourBar};
 use linkwright::solve::streams::{Stream, normal, stream, uniform};
@@ -113,6 +113,12 @@ fn moved() {
         let whole = solved(points);
         assert_eq!(moved.solved.census.real, whole.census.real, "frame {frame}");
         assert_eq!(moved.solved.census.distinct, whole.census.distinct, "frame {frame}");
+        assert!(!moved.fell_back, "frame {frame}");
+        let real = |of: &Solved| of.classes[..of.census.real].to_vec();
+        for class in real(&whole) {
+            let same = |other: &Class| other.solution.is_in_class_of(&class.solution, 1e-7);
+            assert!(real(&moved.solved).iter().any(same), "frame {frame}");
+        }
         kept.push(moved.kept);
         before = moved.solved;
     }

@@ -237,7 +237,6 @@ fn eliminate(matrix: &mut [[DoubleComplex; ORDER]; ORDER], right: &mut [[DoubleC
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::classes::class_distance;
     use crate::exact::start::StartSet;
     use crate::exact::tracker::track;
 
@@ -257,7 +256,7 @@ mod tests {
             let followed = follow(start, &along, &with, &cancel);
             assert_eq!((followed.ending, end.ending), (Ending::Arrived, Ending::Arrived));
             assert!(followed.newton_step < 1e-20, "{:e}", followed.newton_step);
-            assert!(class_distance(&followed.solution.foci(), &end.solution.foci()) < 1e-8);
+            assert!(followed.solution.is_in_class_of(&end.solution, 1e-8));
         }
     }
 }

@@ -112,8 +112,10 @@ pub(super) fn settle(
         };
         if CAREFUL_ROUNDS.contains(&round) && open.len() <= CAREFUL_FEW {
             let with = options.parameters.tightened(1);
-            let ends: Vec<Fate> =
-                open.par_iter().map(|path| careful_fate(&follow(&image(path), along, &with, cancel))).collect();
+            let ends: Vec<Fate> = open
+                .par_iter()
+                .map(|path| careful_fate(&follow(&image(path), along, &with, cancel)))
+                .collect();
             for (&path, fate) in open.iter().zip(ends) {
                 fates[path] = fate;
                 rough[path] = false;
@@ -205,9 +207,15 @@ const ASIDE: f64 = 0.005;
 
 /// Where few classes are missing: all paths once more on a wide detour, which permutes the ends; classes that only it
 /// finds take the place of paths that were lost, singular or second in their class.
-pub(super) fn complete(ends: &mut Fates, starts: &[Solution], along: &Segment, options: &Options, cancel: &AtomicBool) {
-    let foci = |fates: &[Fate]| isolated(fates).map(|(_, class)| class.solution.foci()).collect::<Vec<_>>();
-    let first = first_of_class(&foci(&ends.fates), SAME);
+pub(super) fn complete(
+    ends: &mut Fates,
+    starts: &[Solution],
+    along: &Segment,
+    options: &Options,
+    cancel: &AtomicBool,
+) {
+    let solutions = |fates: &[Fate]| isolated(fates).map(|(_, class)| class.solution).collect::<Vec<_>>();
+    let first = first_of_class(&solutions(&ends.fates), SAME);
     let paths: Vec<usize> = isolated(&ends.fates).map(|(path, _)| path).collect();
     let mut is_first = vec![false; starts.len()];
     for (at, &path) in paths.iter().enumerate() {
@@ -225,7 +233,7 @@ pub(super) fn complete(ends: &mut Fates, starts: &[Solution], along: &Segment, o
         (0..starts.len()).filter(|&path| is_first[path]).map(|path| ends.fates[path]).collect();
     let all: Vec<Fate> =
         known.iter().chain(&detour).copied().filter(|f| matches!(f, Fate::Isolated(_))).collect();
-    let first = first_of_class(&foci(&all), SAME);
+    let first = first_of_class(&solutions(&all), SAME);
     let new = (known.len()..all.len()).filter(|&at| first[at] == at);
     for (path, at) in spare.into_iter().zip(new) {
         ends.fates[path] = all[at];
@@ -244,9 +252,9 @@ fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
     if singular.len() <= if round == 0 { MANY } else { FEW } {
         open.extend(singular);
     }
-    let (paths, foci): (Vec<usize>, Vec<_>) =
-        isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
-    let first = first_of_class(&foci, SAME);
+    let (paths, solutions): (Vec<usize>, Vec<_>) =
+        isolated(fates).map(|(path, class)| (path, class.solution)).unzip();
+    let first = first_of_class(&solutions, SAME);
     let mut shared = vec![false; paths.len()];
     for (at, &first) in first.iter().enumerate() {
         if first != at {
@@ -265,4 +273,3 @@ pub(super) fn isolated(fates: &[Fate]) -> impl Iterator<Item = (usize, &Class)> 
         Fate::Singular | Fate::Lost => None,
     })
 }
-

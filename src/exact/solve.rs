@@ -1,7 +1,7 @@
 //! All classes of a target: from the start set along straight paths, lost ones again and again, the ends judged.
 
 use super::certificate::certify;
-use super::classes::{class_distance, first_of_class, key};
+use super::classes::{first_of_class, key};
 use super::conjugation::Reality;
 use super::settle::{Fate, Fates, SAME, complete, isolated, settle};
 use super::start::{CLASSES, StartSet};
@@ -152,11 +152,13 @@ fn proved(target: &Target, end: Fate) -> Fate {
 /// Distinct classes, what is real about them, and the census.
 pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     let finite: Vec<Class> = isolated(&ends.fates).map(|(_, class)| *class).collect();
-    let foci: Vec<_> = finite.iter().map(|class| class.solution.foci()).collect();
-    let first = first_of_class(&foci, SAME);
+    let solutions: Vec<Solution> = finite.iter().map(|class| class.solution).collect();
+    let first = first_of_class(&solutions, SAME);
     let mut classes: Vec<(f64, Class)> = (0..finite.len())
         .filter(|&at| first[at] == at)
-        .map(|at| (key(&foci[at]), Class { reality: reality(&finite[at].solution), ..finite[at] }))
+        .map(|at| {
+            (key(&solutions[at].foci()), Class { reality: reality(&finite[at].solution), ..finite[at] })
+        })
         .collect();
     classes.sort_by(|(one, a), (other, b)| a.reality.cmp(&b.reality).then(one.total_cmp(other)));
     let classes: Vec<Class> = classes.into_iter().map(|(_, class)| class).collect();
@@ -185,7 +187,7 @@ const REAL: f64 = 1e-8;
 fn reality(of: &Solution) -> Reality {
     if of.imaginary_part() <= REAL {
         Reality::Real
-    } else if class_distance(&of.foci(), &of.conjugate().foci()) <= REAL {
+    } else if of.is_in_class_of(&of.conjugate(), REAL) {
         Reality::RealCurve
     } else {
         Reality::Complex

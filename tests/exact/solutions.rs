@@ -1,7 +1,9 @@
 //! Complete solutions: published counts, every real linkage, targets in special position, targets that move.
 
+use linkwright::exact::certificate::check;
 use linkwright::exact::{
-    Census, Completeness, Options, Reality, Solution, Solved, Target, resolve_from, solve,
+    Census, Certificate, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
+    not_proved_distinct, resolve_from, solve,
 };
 use linkwright::linkage::Complex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -69,6 +71,15 @@ fn holds_the_stored_solution(name: &str, reals: usize) {
     met.dedup();
     assert_eq!(met.len(), reals, "every stored class is another one of ours");
     assert!(answer.classes.iter().all(|class| class.newton_step <= 1e-9));
+    let proofs = proofs(&answer);
+    assert_eq!(proofs.len(), 1442);
+    assert!(answer.classes.iter().zip(&proofs).all(|(class, proof)| class.reality == proof.reality));
+    assert_eq!(not_proved_distinct(&proofs), Vec::<[usize; 2]>::new());
+    // Moved by a part in a thousand they are no solutions, and no proof takes them for some.
+    for class in answer.classes.iter().step_by(7) {
+        let moved = class.solution.in_other_units(Complex::new(1.001, 0.0), Complex::new(1.001, 0.0));
+        assert!(check(&answer.target, &moved, 1e-5).is_err());
+    }
 }
 
 #[test]
@@ -106,18 +117,65 @@ fn a_moved_point_keeps_every_class_and_gives_what_a_full_solve_gives() {
     assert_eq!(resolve_from(&before, &target, &Options::default(), &quiet), moved);
 }
 
-#[test]
-fn special_targets_have_fewer_isolated_solutions_and_none_is_called_failed() {
-    let ellipse = std::array::from_fn(|j| {
-        let angle = std::f64::consts::TAU * (j as f64 + 0.1) / 9.0;
-        Complex::new(angle.cos(), 0.5 * angle.sin())
-    });
-    let answer = solved(ellipse);
+fn proofs(of: &Solved) -> Vec<Certificate> {
+    let solutions: Vec<Solution> = of.classes.iter().map(|class| class.solution).collect();
+    certify_all(&of.target, &solutions).into_iter().flatten().collect()
+}
+
+/// Says that the target is special, lists only what is proved, and proves that all of it is distinct.
+fn is_special(points: [Complex; 9]) -> usize {
+    let answer = solved(points);
     adds_up(&answer.census);
-    assert_eq!((answer.census.failed, answer.census.duplicates), (0, 0), "{:?}", answer.census);
+    assert_eq!(answer.census.failed, 0, "{:?}", answer.census);
     let isolated = answer.census.distinct;
-    assert!((1000..1442).contains(&isolated), "{isolated}");
     assert_eq!(answer.completeness(), Completeness::NonGeneric { isolated });
+    let proofs = proofs(&answer);
+    assert_eq!(proofs.len(), isolated);
+    assert_eq!(not_proved_distinct(&proofs), Vec::<[usize; 2]>::new());
+    isolated
+}
+
+#[test]
+fn points_on_a_circle_or_a_line_have_no_isolated_solution() {
+    // A coupler curve that is no circle meets a circle in six points at most, and a line as well.
+    let on_a_circle =
+        std::array::from_fn(|j| Complex::from_polar(1.0, 0.5 * j as f64 + 0.1 * (j as f64).sin()));
+    assert_eq!(is_special(on_a_circle), 0);
+    let on_a_line = std::array::from_fn(|j| Complex::new(j as f64 + 0.3 * (j as f64).sin(), 0.0));
+    assert_eq!(is_special(on_a_line), 0);
+}
+
+#[test]
+fn mirror_symmetric_points_have_fewer_isolated_solutions() {
+    let symmetric =
+        [(-4.0, 2.0), (-3.0, 1.7), (-2.0, 0.4), (-1.0, 0.9), (0.0, 0.3)].map(|(x, y)| Complex::new(x, y));
+    let points = std::array::from_fn(|j| if j < 5 { symmetric[j] } else { -symmetric[8 - j].conj() });
+    assert!((1300..1442).contains(&is_special(points)));
+}
+
+#[test]
+fn the_nine_points_of_the_ten_point_ellipse_have_fewer_isolated_solutions() {
+    // Acharyya and Mandal's, without the tenth, which is the first.
+    let points = [
+        (20.0, 10.0),
+        (17.66, 15.142),
+        (11.736, 17.878),
+        (5.0, 16.928),
+        (0.60307, 12.736),
+        (0.60307, 7.2638),
+        (5.0, 3.0718),
+        (11.736, 2.1215),
+        (17.66, 4.8577),
+    ];
+    // Rounded to five digits they lie only nearly on an ellipse, and all classes are there.
+    let rounded = solved(points.map(|(x, y)| Complex::new(x, y)));
+    adds_up(&rounded.census);
+    assert_eq!(rounded.completeness(), Completeness::Complete, "{:?}", rounded.census);
+    let exact = std::array::from_fn(|j| {
+        let angle = std::f64::consts::TAU * j as f64 / 9.0;
+        Complex::new(10.0 + 10.0 * angle.cos(), 10.0 + 8.0 * angle.sin())
+    });
+    assert!((1200..1442).contains(&is_special(exact)));
 }
 
 #[test]
