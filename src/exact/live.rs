@@ -9,8 +9,8 @@
 //!
 //! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position.
 
-use super::classes::first_of_class;
-use super::settle::{Fate, Fates, SAME, isolated, settle};
+use super::certificate::certify;
+use super::settle::{Fate, Fates, firsts, isolated, settle};
 use super::solve::{Options, Solved, judged, solve};
 use super::target::{Displacements, STEPS, Solution, Target};
 use super::tracker::{Parameters, Segment};
@@ -49,7 +49,8 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
     let there: Vec<Solution> = isolated(&first.fates).map(|(_, class)| class.solution).collect();
     let second = settle(&there, &Segment { from: middle, to }, &legs, &quiet, cancel);
     let ends: Vec<Solution> = isolated(&second.fates).map(|(_, class)| class.solution).collect();
-    let kept = first_of_class(&ends, SAME).iter().enumerate().filter(|(at, first)| at == *first).count();
+    let kept =
+        firsts(&ends, |s| certify(target, s)).iter().enumerate().filter(|(at, first)| at == *first).count();
     let cancelled = cancel.load(Ordering::Relaxed);
     if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
         let lost = starts.len() - there.len();

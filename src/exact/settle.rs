@@ -1,9 +1,11 @@
 //! The paths of all classes: tracked together, lost ones again and again, each end judged.
 
 use super::careful::{Followed, follow};
+use super::certificate::{Certificate, Refused, certify_displacements};
 use super::classes::first_of_class;
 use super::conjugation::Reality;
 use super::correction::{Corrected, correct};
+use super::distinct::not_proved_distinct;
 use super::refinement::refine;
 use super::solve::{Class, Options};
 use super::target::{Displacements, Solution};
@@ -39,7 +41,7 @@ const SINGULAR_SPEED: f64 = 1e9;
 /// Paths that stop in the last part of their way have met the end's singularity, not one of the way.
 const NEAR_THE_END: f64 = 1e-3;
 /// Classes nearer than this are one.
-pub(super) const SAME: f64 = 1e-8;
+const SAME: f64 = 1e-8;
 /// The fate of one end.
 fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
     match end.ending {
@@ -139,7 +141,7 @@ pub(super) fn settle(
                 obstructed[path] |= matches!(fate, Fate::Lost | Fate::Singular);
             }
         }
-        open = unsettled(&fates, round);
+        open = unsettled(&fates, round, &along.to);
         progress(starts.len() - open.len(), starts.len());
         if round == 0 {
             again = open.len();
@@ -215,7 +217,7 @@ pub(super) fn complete(
     cancel: &AtomicBool,
 ) {
     let solutions = |fates: &[Fate]| isolated(fates).map(|(_, class)| class.solution).collect::<Vec<_>>();
-    let first = first_of_class(&solutions(&ends.fates), SAME);
+    let first = firsts(&solutions(&ends.fates), |s| certify_displacements(&along.to, s));
     let paths: Vec<usize> = isolated(&ends.fates).map(|(path, _)| path).collect();
     let mut is_first = vec![false; starts.len()];
     for (at, &path) in paths.iter().enumerate() {
@@ -233,7 +235,7 @@ pub(super) fn complete(
         (0..starts.len()).filter(|&path| is_first[path]).map(|path| ends.fates[path]).collect();
     let all: Vec<Fate> =
         known.iter().chain(&detour).copied().filter(|f| matches!(f, Fate::Isolated(_))).collect();
-    let first = first_of_class(&solutions(&all), SAME);
+    let first = firsts(&solutions(&all), |s| certify_displacements(&along.to, s));
     let new = (known.len()..all.len()).filter(|&at| first[at] == at);
     for (path, at) in spare.into_iter().zip(new) {
         ends.fates[path] = all[at];
@@ -244,9 +246,28 @@ pub(super) fn complete(
 /// The round whose way around is a wide one: t = 1/2 + 0.32 i.
 const WIDE: u32 = 8;
 
+/// As [`first_of_class`]; what seems one class to rounding is two where certificates tell them
+/// apart.
+pub(super) fn firsts(
+    solutions: &[Solution],
+    certify: impl Fn(&Solution) -> Result<Certificate, Refused>,
+) -> Vec<usize> {
+    let near = first_of_class(solutions, SAME);
+    let mut first = near.clone();
+    let apart = |i: usize, j: usize| {
+        let proofs = [i, j].map(|k| certify(&solutions[k]));
+        matches!(proofs, [Ok(one), Ok(other)] if not_proved_distinct(&[one, other]).is_empty())
+    };
+    for i in (0..solutions.len()).filter(|&i| near[i] != i) {
+        let met = (near[i]..i).find(|&j| near[j] == near[i] && first[j] == j && !apart(i, j));
+        first[i] = met.unwrap_or(i);
+    }
+    first
+}
+
 /// Paths that another round may help: lost ones, those that share a class, and those that seemed to end in singular
 /// solutions, when they are few, or not too many after the first round.
-fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
+fn unsettled(fates: &[Fate], round: u32, at: &Displacements) -> Vec<usize> {
     let mut open: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Lost).collect();
     let singular: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Singular).collect();
     if singular.len() <= if round == 0 { MANY } else { FEW } {
@@ -254,7 +275,7 @@ fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
     }
     let (paths, solutions): (Vec<usize>, Vec<_>) =
         isolated(fates).map(|(path, class)| (path, class.solution)).unzip();
-    let first = first_of_class(&solutions, SAME);
+    let first = firsts(&solutions, |s| certify_displacements(at, s));
     let mut shared = vec![false; paths.len()];
     for (at, &first) in first.iter().enumerate() {
         if first != at {

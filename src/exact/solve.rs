@@ -1,9 +1,9 @@
 //! All classes of a target: from the start set along straight paths, lost ones again and again, the ends judged.
 
 use super::certificate::certify;
-use super::classes::{first_of_class, key};
+use super::classes::key;
 use super::conjugation::Reality;
-use super::settle::{Fate, Fates, SAME, complete, isolated, settle};
+use super::settle::{Fate, Fates, complete, firsts, isolated, settle};
 use super::start::{CLASSES, StartSet};
 use super::target::{Solution, Target};
 use super::tracker::{Parameters, Segment};
@@ -53,7 +53,8 @@ pub struct Census {
     pub failed: usize,
     /// Classes.
     pub distinct: usize,
-    /// Paths that ended in the class of an earlier one.
+    /// Paths that ended in the class of an earlier one: astray, or, on a special target, in the same linkage with another
+    /// rotation at a point that its curve passes twice.
     pub duplicates: usize,
     /// Paths that were tracked more than once.
     pub again: usize,
@@ -153,7 +154,7 @@ fn proved(target: &Target, end: Fate) -> Fate {
 pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     let finite: Vec<Class> = isolated(&ends.fates).map(|(_, class)| *class).collect();
     let solutions: Vec<Solution> = finite.iter().map(|class| class.solution).collect();
-    let first = first_of_class(&solutions, SAME);
+    let first = firsts(&solutions, |s| certify(target, s));
     let mut classes: Vec<(f64, Class)> = (0..finite.len())
         .filter(|&at| first[at] == at)
         .map(|at| {
