@@ -204,6 +204,7 @@ fn magnitude(z: DoubleComplex) -> f64 {
 }
 
 /// Solves A x = b with row pivoting, rows weighed by their largest entries; x replaces b.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations")]
 fn eliminate(matrix: &mut [[DoubleComplex; ORDER]; ORDER], right: &mut [[DoubleComplex; 2]; ORDER]) {
     let mut weights = matrix.map(|row| row.into_iter().map(magnitude).fold(0.0, f64::max));
     for k in 0..ORDER {
