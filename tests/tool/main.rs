@@ -4,9 +4,9 @@ mod analysis_sheets;
 mod analyze;
 mod bad_input;
 mod command_line;
-mod continuation;
 #[path = "../common/mod.rs"]
 mod common;
+mod continuation;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;
