@@ -4,6 +4,9 @@ use super::{SchemaKind, schema};
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
+/// The order of the tables at the top of a problem file; others follow by name.
+const ORDER: [&str; 5] = ["task", "design", "require", "solve", "expect"];
+
 /// The reference of a kind of file as a page of Markdown: every table with its keys, what each may be, its default and
 /// its meaning.
 ///
@@ -50,7 +53,9 @@ impl<'a> Page<'a> {
         let Some(keys) = table["properties"].as_object() else { return };
         let required: Vec<&str> =
             table["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
-        let (inner, rows): (Vec<_>, Vec<_>) = keys.iter().partition(|(_, value)| self.inner(value).is_some());
+        let (mut inner, rows): (Vec<_>, Vec<_>) =
+            keys.iter().partition(|(_, value)| self.inner(value).is_some());
+        inner.sort_by_key(|(key, _)| ORDER.iter().position(|first| first == key).unwrap_or(ORDER.len()));
         if !rows.is_empty() {
             self.text.push_str("\n| key | what | default | meaning |\n|---|---|---|---|\n");
         }
@@ -104,7 +109,8 @@ impl<'a> Page<'a> {
     fn what(&self, value: &'a Value) -> String {
         let value = self.resolved(value);
         if let Some(alternatives) = value["anyOf"].as_array() {
-            return alternatives.iter().map(|one| self.what(one)).collect::<Vec<_>>().join(" or ");
+            let several: Vec<String> = alternatives.iter().map(|one| self.what(one)).collect();
+            return several.join(" or ").replace("number or [number, number]", "number or [min, max]");
         }
         if let Some(choices) = self.words(value) {
             return if choices.is_empty() { "text".into() } else { "a word".into() };

@@ -12,6 +12,7 @@
 //! the lines that differ in digits or words right where they can be told apart, and copies the figures anew.
 
 use crate::common::root;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -30,11 +31,9 @@ const OF_THE_BUILD: [&str; 9] = [
     "LINKWRIGHT_WRITE_DOCS=1 cargo test",
 ];
 
-/// Commands that run for minutes and what runs in their place: as many flags, less work.
-const SHORTER: [(&str, &str); 2] = [
-    ("suite k18 --seeds 100", "suite e5 --seeds 1 --problems problems/literature"),
-    ("cargo run --release -- suite ", "cargo run --release -- suite e5 --seeds 1 "),
-];
+/// The README's whole suite runs for minutes: one problem stands for it.
+const WHOLE_SUITE: &str = "cargo run --release -- suite ";
+const SHORT_SUITE: &str = "linkwright suite e5 --seeds 1 # ";
 
 /// README.md and every page of docs/.
 fn documents() -> Vec<PathBuf> {
@@ -64,7 +63,9 @@ fn blocks(page: &[String]) -> Vec<Block> {
     let mut open: Option<Block> = None;
     for (i, line) in page.iter().enumerate() {
         match (&mut open, line.strip_prefix("```")) {
-            (None, Some(info)) => open = Some(Block { info: info.trim().into(), first: i + 1, lines: vec![] }),
+            (None, Some(info)) => {
+                open = Some(Block { info: info.trim().into(), first: i + 1, lines: vec![] })
+            }
             (Some(_), Some(_)) => found.extend(open.take()),
             (Some(block), None) => block.lines.push(line.clone()),
             (None, None) => {}
@@ -121,19 +122,13 @@ struct Answer {
     stderr: String,
 }
 
-/// The words of a command as the shell sees them, with `linkwright` found on the path.
+/// Runs a command in the shell, with `linkwright` found on the path.
 fn answer(folder: &Path, command: &str) -> Answer {
-    let mut command = command.replace("cargo run --release --", "linkwright");
-    for (long, short) in SHORTER {
-        let long = long.replace("cargo run --release --", "linkwright");
-        if command.contains(&long) {
-            command = command.replace(&long, &short.replace("cargo run --release --", "linkwright"));
-            break;
-        }
-    }
+    let command = command.replace(WHOLE_SUITE, SHORT_SUITE).replace("cargo run --release --", "linkwright");
     let program = Path::new(env!("CARGO_BIN_EXE_linkwright")).parent().expect("a folder");
     let path = std::env::var_os("PATH").unwrap_or_default();
-    let path = std::env::join_paths(std::iter::once(program.to_path_buf()).chain(std::env::split_paths(&path)));
+    let path =
+        std::env::join_paths(std::iter::once(program.to_path_buf()).chain(std::env::split_paths(&path)));
     let output = Command::new("sh")
         .args(["-c", &command])
         .current_dir(folder)
@@ -285,6 +280,7 @@ fn faults(place: &Path) -> Vec<String> {
         }
     }
     faults.extend(figures(&page, &name, folder.path()));
+    faults.extend(fields(&name, folder.path()));
     let mended = page.join("\n") + "\n";
     if writing() && mended != text {
         fs::write(place, mended).expect("it can be written");
@@ -313,6 +309,62 @@ fn figures(page: &[String], name: &str, folder: &Path) -> Vec<String> {
             Ok(svg) if svg.len() < 120_000 && roxmltree::Document::parse(&svg).is_ok() => {}
             _ => faults.push(format!("{name}: {figure} is no drawing of less than 120 kB")),
         }
+    }
+    faults
+}
+
+/// The keys that docs/results.md explains: `a.b[].c`, or `a.b.*` for all that stands below `a.b`.
+fn explained() -> BTreeSet<String> {
+    let page = fs::read_to_string(root().join("docs/results.md")).expect("the page");
+    let rows = page.split_once("\n## record.json").expect("a section").1;
+    let rows = rows.split("\n## ").next().expect("a section");
+    let cells = rows.lines().filter_map(|line| line.strip_prefix("| `")?.split_once(" |"));
+    cells
+        .flat_map(|(keys, _)| keys.split('`').filter(|key| key.trim_matches([',', ' ']) != ""))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The keys of a value as they are written there.
+fn keys(value: &serde_json::Value, path: &str, found: &mut BTreeSet<String>) {
+    match value {
+        serde_json::Value::Object(table) => {
+            for (key, value) in table {
+                keys(value, &format!("{path}.{key}"), found);
+            }
+        }
+        serde_json::Value::Array(list) if list.iter().any(serde_json::Value::is_object) => {
+            list.iter().for_each(|value| keys(value, &format!("{path}[]"), found));
+        }
+        _ => {
+            let path = path.trim_start_matches('.');
+            found.insert(
+                path.strip_prefix("buildable.").map_or(path.into(), |rest| format!("candidates[].{rest}")),
+            );
+        }
+    }
+}
+
+/// Every key of the records that the commands have written is explained; and the guide's hold every key explained.
+fn fields(name: &str, folder: &Path) -> Vec<String> {
+    let (mut found, explained) = (BTreeSet::new(), explained());
+    for entry in fs::read_dir(folder.join("results")).into_iter().flatten() {
+        let place = entry.expect("it can be read").path().join("record.json");
+        let Ok(text) = fs::read_to_string(place) else { continue };
+        keys(&serde_json::from_str(&text).expect("a record"), "", &mut found);
+    }
+    let covers = |row: &str, key: &str| {
+        row == key || row.strip_suffix('*').is_some_and(|start| key.starts_with(start))
+    };
+    let unknown = found.iter().filter(|key| !explained.iter().any(|row| covers(row, key)));
+    let mut faults: Vec<String> = unknown
+        .map(|key| format!("{name}: docs/results.md does not explain `{key}` of the record"))
+        .collect();
+    if name == "guide.md" {
+        let unused = explained.iter().filter(|row| !found.iter().any(|key| covers(row, key)));
+        faults.extend(
+            unused.map(|row| format!("docs/results.md explains `{row}`, which no record of the guide holds")),
+        );
     }
     faults
 }
