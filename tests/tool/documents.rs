@@ -4,14 +4,18 @@
 //! - A fenced `console` block is a session: `$ ` begins a command, what follows is what it prints. A line `...` stands
 //!   for any number of lines; a line that ends in `...` for any rest of it. `$ echo $?` shows the exit code of the
 //!   command before, which is otherwise 0.
-//! - A fenced `toml`, `csv` or `xml` block with a file name after the word is written to that file first.
+//! - A fenced `toml`, `csv` or `xml` block with a file name after the word is written to that file first. A whole TOML
+//!   file (`format = 1`) must pass `linkwright check`.
 //! - `linkwright` is the built program; `cargo run --release --` is the same. The commands of one document run in one
 //!   folder, in their order, beside a copy of `problems/`.
 //!
 //! Times are masked. After a change of the program: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool documents` puts
 //! the lines that differ in digits or words right where they can be told apart, and copies the figures anew.
 
+mod session;
+
 use crate::common::root;
+use session::{Block, blocks, matches, mended, of_console, of_sh, shape};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -51,71 +55,6 @@ fn writing() -> bool {
     std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some()
 }
 
-/// A fenced block: its words after the fence, the number of its first line in the page, its lines.
-struct Block {
-    info: String,
-    first: usize,
-    lines: Vec<String>,
-}
-
-fn blocks(page: &[String]) -> Vec<Block> {
-    let mut found = Vec::new();
-    let mut open: Option<Block> = None;
-    for (i, line) in page.iter().enumerate() {
-        match (&mut open, line.strip_prefix("```")) {
-            (None, Some(info)) => {
-                open = Some(Block { info: info.trim().into(), first: i + 1, lines: vec![] })
-            }
-            (Some(_), Some(_)) => found.extend(open.take()),
-            (Some(block), None) => block.lines.push(line.clone()),
-            (None, None) => {}
-        }
-    }
-    assert!(open.is_none(), "a fence is not closed");
-    found
-}
-
-/// A command of a page and what is shown of its output: (line of the page, text) each.
-struct Step {
-    line: usize,
-    command: String,
-    shown: Option<Vec<(usize, String)>>,
-}
-
-/// The commands of an `sh` block: one a line, `\` at the end of a line continues it.
-fn of_sh(block: &Block) -> Vec<Step> {
-    let mut steps: Vec<Step> = Vec::new();
-    let mut continues = false;
-    for (i, text) in block.lines.iter().enumerate() {
-        match steps.last_mut() {
-            Some(step) if continues => step.command.push_str(&format!("\n{text}")),
-            _ if text.trim().is_empty() || text.starts_with('#') => continue,
-            _ => steps.push(Step { line: block.first + i, command: text.clone(), shown: None }),
-        }
-        continues = text.ends_with('\\');
-    }
-    steps
-}
-
-/// The commands of a `console` block with what is shown of their output.
-fn of_console(block: &Block) -> Vec<Step> {
-    let mut steps: Vec<Step> = Vec::new();
-    let mut continues = false;
-    for (i, text) in block.lines.iter().enumerate() {
-        let line = block.first + i;
-        match (text.strip_prefix("$ "), steps.last_mut()) {
-            (Some(command), _) => {
-                steps.push(Step { line, command: command.into(), shown: Some(vec![]) });
-            }
-            (None, Some(step)) if continues => step.command.push_str(&format!("\n{text}")),
-            (None, Some(step)) => step.shown.as_mut().expect("a session").push((line, text.clone())),
-            (None, None) => panic!("line {}: a session begins with `$ `", line + 1),
-        }
-        continues = text.ends_with('\\');
-    }
-    steps
-}
-
 struct Answer {
     code: i32,
     stdout: String,
@@ -144,82 +83,14 @@ fn answer(folder: &Path, command: &str) -> Answer {
     }
 }
 
-/// A line without its times and without blanks at its end.
-fn masked(line: &str) -> String {
-    let mut text = line.trim_end().to_owned();
-    for unit in [" s of search", " s more for the buildable one", " s more for"] {
-        while let Some(end) = text.find(unit) {
-            let start = text[..end].rfind(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(0, |at| at + 1);
-            if start == end {
-                break;
-            }
-            text.replace_range(start..end, "");
-        }
-    }
-    text
-}
-
-/// Whether a shown line stands for this one.
-fn agrees(shown: &str, printed: &str) -> bool {
-    match shown.trim_end().strip_suffix("...") {
-        Some(start) if !start.is_empty() => masked(printed).starts_with(&masked(start)),
-        _ => masked(shown) == masked(printed),
-    }
-}
-
-/// Whether the lines shown are the lines printed, `...` standing for any number of lines.
-fn matches(shown: &[&str], printed: &[&str]) -> bool {
-    match (shown.first(), printed.first()) {
-        (None, None) => true,
-        (Some(&"..."), _) => {
-            matches(&shown[1..], printed) || (!printed.is_empty() && matches(shown, &printed[1..]))
-        }
-        (Some(s), Some(p)) => agrees(s, p) && matches(&shown[1..], &printed[1..]),
-        _ => false,
-    }
-}
-
-/// A line without digits: what stays the same when figures change.
-fn shape(line: &str) -> String {
-    let mut shape = String::new();
-    for c in line.chars() {
-        let c = if c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+' | 'e') { '0' } else { c };
-        if (c == '0' || c == ' ') && shape.ends_with(c) {
-            continue;
-        }
-        shape.push(c);
-    }
-    shape.trim().to_owned()
-}
-
-/// Puts lines right that differ from what is printed in figures alone. A line that nothing resembles stays.
-fn mended(shown: &[(usize, String)], printed: &[&str], page: &mut [String]) {
-    let mut from = 0;
-    for (line, text) in shown {
-        if text == "..." || text.trim_end().ends_with("...") {
-            continue;
-        }
-        let rest = || printed.iter().enumerate().skip(from);
-        let found = rest()
-            .find(|(_, p)| agrees(text, p))
-            .or_else(|| rest().find(|(_, p)| shape(p) == shape(text)))
-            .map(|(at, _)| at);
-        if let Some(at) = found {
-            if !agrees(text, printed[at]) {
-                page[*line] = printed[at].trim_end().to_owned();
-            }
-            from = at + 1;
-        }
-    }
-}
-
-/// Writes the block's text to the file that stands after its language.
-fn wrote_file(block: &Block, folder: &Path) -> bool {
+/// Writes a file of a page to the name that stands after its language; a whole TOML file without one, too.
+fn written(block: &Block, folder: &Path) -> Option<String> {
     let mut words = block.info.split_whitespace();
-    let (language, name) = (words.next(), words.next());
-    let Some(name) = name.filter(|_| matches!(language, Some("toml" | "csv" | "xml"))) else { return false };
+    let language = words.next().filter(|language| matches!(*language, "toml" | "csv" | "xml"))?;
+    let whole = language == "toml" && block.lines.iter().any(|line| line == "format = 1");
+    let name = words.next().or(whole.then_some("unnamed.toml"))?;
     fs::write(folder.join(name), block.lines.join("\n") + "\n").expect("it can be written");
-    true
+    Some(name.to_owned())
 }
 
 fn copied(from: &Path, to: &Path) {
@@ -244,8 +115,12 @@ fn faults(place: &Path) -> Vec<String> {
     copied(&root().join("problems"), &folder.path().join("problems"));
     let mut faults = Vec::new();
     for block in blocks(&page) {
-        if wrote_file(&block, folder.path()) {
-            continue;
+        let file = written(&block, folder.path());
+        if let Some(name) = file.filter(|_| block.lines.iter().any(|line| line == "format = 1")) {
+            let answer = answer(folder.path(), &format!("linkwright check {name}"));
+            if answer.code != 0 {
+                faults.push(format!("{name}:{}: a file that is refused\n{}", block.first, answer.stderr));
+            }
         }
         let steps = match block.info.as_str() {
             "sh" => of_sh(&block),
@@ -288,7 +163,7 @@ fn faults(place: &Path) -> Vec<String> {
     faults
 }
 
-/// `<!-- drawn: FILE -->` after a figure names the file that a command above has drawn it in.
+/// `<!-- drawn: FILE -->` after a figure names the file that a command has drawn it in: the same but for its numbers.
 fn figures(page: &[String], name: &str, folder: &Path) -> Vec<String> {
     let mut faults = Vec::new();
     for line in page.iter().filter(|line| line.starts_with("![")) {
@@ -298,8 +173,11 @@ fn figures(page: &[String], name: &str, folder: &Path) -> Vec<String> {
         if let Some((drawn, _)) = drawn {
             match fs::read_to_string(folder.join(drawn)) {
                 Ok(svg) if roxmltree::Document::parse(&svg).is_ok() => {
+                    let same = fs::read_to_string(&kept).is_ok_and(|old| shape(&old) == shape(&svg));
                     if writing() {
                         fs::write(&kept, svg).expect("it can be written");
+                    } else if !same {
+                        faults.push(format!("{name}: {figure} is drawn otherwise now"));
                     }
                 }
                 _ => faults.push(format!("{name}: no command draws {drawn}")),
@@ -416,6 +294,31 @@ fn every_link_between_the_pages_leads_somewhere() {
                 let there = page.lines().any(|line| line.starts_with('#') && heading(line) == anchor);
                 assert!(there, "{}: no heading for {link}", place.display());
             }
+        }
+    }
+}
+
+#[test]
+fn every_message_that_is_explained_is_one_of_the_program() {
+    fn sources(folder: &Path, text: &mut String) {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("it can be read").path();
+            if path.is_dir() {
+                sources(&path, text);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                text.push_str(&fs::read_to_string(&path).expect("it can be read"));
+            }
+        }
+    }
+    let mut source = String::new();
+    sources(&root().join("src"), &mut source);
+    let page = fs::read_to_string(root().join("docs/troubleshooting.md")).expect("the page");
+    let messages: Vec<&str> =
+        page.lines().filter_map(|line| Some(line.strip_prefix("| `")?.split_once('`')?.0)).collect();
+    assert!(messages.len() > 10);
+    for message in messages {
+        for part in message.split("..").map(str::trim).filter(|part| part.len() > 6) {
+            assert!(source.contains(part), "no source says {part:?}");
         }
     }
 }
