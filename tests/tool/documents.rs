@@ -116,10 +116,10 @@ fn faults(place: &Path) -> Vec<String> {
     let mut faults = Vec::new();
     for block in blocks(&page) {
         let file = written(&block, folder.path());
-        if let Some(name) = file.filter(|_| block.lines.iter().any(|line| line == "format = 1")) {
-            let answer = answer(folder.path(), &format!("linkwright check {name}"));
+        if let Some(file) = file.filter(|_| block.lines.iter().any(|line| line == "format = 1")) {
+            let answer = answer(folder.path(), &format!("linkwright check {file}"));
             if answer.code != 0 {
-                faults.push(format!("{name}:{}: a file that is refused\n{}", block.first, answer.stderr));
+                faults.push(format!("{name}:{}: {file} is refused\n{}", block.first, answer.stderr));
             }
         }
         let steps = match block.info.as_str() {
@@ -198,7 +198,7 @@ fn explained() -> BTreeSet<String> {
     let rows = rows.split("\n## ").next().expect("a section");
     let cells = rows.lines().filter_map(|line| line.strip_prefix("| `")?.split_once(" |"));
     cells
-        .flat_map(|(keys, _)| keys.split('`').filter(|key| key.trim_matches([',', ' ']) != ""))
+        .flat_map(|(keys, _)| keys.split('`').filter(|key| !key.trim_matches([',', ' ']).is_empty()))
         .map(str::to_owned)
         .collect()
 }
