@@ -12,7 +12,7 @@ mod exact;
 mod extras;
 
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
-pub use extras::{Alternative, Family, Warning, WarningKind};
+pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 
 /// The format that this program writes and reads.
 pub const FORMAT: u32 = 1;

@@ -46,6 +46,12 @@ pub enum FolderError {
         /// The folder.
         path: String,
     },
+    /// No record there.
+    #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
+    NoRecord {
+        /// Which file was looked for.
+        path: String,
+    },
     /// A record that is none.
     #[error("{path}:{line}:{column}: this is not a linkwright record: {message}")]
     NotARecord {
@@ -226,7 +232,13 @@ impl Drop for ResultsFolder {
 /// [`FolderError`] with the file and, where it is no record, the line.
 pub fn read_record(path: &Path) -> Result<Record, FolderError> {
     let file = if path.is_dir() { path.join(RECORD) } else { path.to_path_buf() };
-    let bytes = fs::metadata(&file).map_err(|e| FolderError::io(&file, e))?.len();
+    let bytes = match fs::metadata(&file) {
+        Ok(metadata) => metadata.len(),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            return Err(FolderError::NoRecord { path: file.display().to_string() });
+        }
+        Err(e) => return Err(FolderError::io(&file, e)),
+    };
     if bytes > MAX_RECORD_BYTES {
         return Err(FolderError::TooLarge { path: file.display().to_string(), bytes });
     }

@@ -7,6 +7,8 @@ mod command_line;
 #[path = "../common/mod.rs"]
 mod common;
 mod continuation;
+mod documents;
+mod problem_file_document;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;
