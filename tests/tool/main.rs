@@ -5,6 +5,8 @@ mod analyze;
 mod bad_input;
 mod command_line;
 mod continuation;
+mod corpora;
+mod faults;
 #[path = "../common/mod.rs"]
 mod common;
 #[path = "../reference/mod.rs"]
