@@ -180,16 +180,16 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
     let mut written = Vec::new();
     for (i, linkage) in found.iter().enumerate() {
         let name = format!("{}-cognate-{}", file.name, i + 1);
-        let path = options.out.join(format!("{name}.toml"));
+        let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
         if path.exists() {
             terminal::complain(&format!("{} exists already; give another folder with --out", path.display()));
             return Err(Ended::Refused);
         }
         written.push((path, linkage_file::to_toml(&name, file.unit, linkage)));
     }
-    if !options.out.as_os_str().is_empty() {
-        std::fs::create_dir_all(&options.out).map_err(|e| {
-            terminal::complain(&format!("{}: {e}", options.out.display()));
+    if let Some(out) = &options.out {
+        std::fs::create_dir_all(out).map_err(|e| {
+            terminal::complain(&format!("{}: {e}", out.display()));
             Ended::Refused
         })?;
     }

@@ -178,8 +178,8 @@ pub struct Cognates {
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
-    #[arg(long, value_name = "DIR", default_value = "", hide_default_value = true)]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Draw all three together
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,

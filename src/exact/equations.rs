@@ -102,7 +102,13 @@ struct Linearised {
 }
 
 #[inline(always)]
-fn linearised(z: &Unknowns, at: &DisplacementLanes, leg: usize, j: usize, inverse: ComplexLanes) -> Linearised {
+fn linearised(
+    z: &Unknowns,
+    at: &DisplacementLanes,
+    leg: usize,
+    j: usize,
+    inverse: ComplexLanes,
+) -> Linearised {
     let [x, u, x_s, u_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
     let tau = z[ORDER + j];
     let sigma = -tau * inverse;

@@ -35,8 +35,11 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
         delta: previous.target.displacements.delta.map(|d| d * ratio),
         starred: previous.target.displacements.starred.map(|d| d * ratio),
     };
-    let starts: Vec<Solution> =
-        previous.classes.iter().map(|class| class.solution.in_other_units(ratio.into(), ratio.into())).collect();
+    let starts: Vec<Solution> = previous
+        .classes
+        .iter()
+        .map(|class| class.solution.in_other_units(ratio.into(), ratio.into()))
+        .collect();
     let to = target.displacements;
     let middle = midpoint(&from, &to);
     let quiet = |_: usize, _: usize| {};
@@ -44,7 +47,11 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
     let there: Vec<Solution> = isolated(&first.fates).map(|(_, class)| class.solution).collect();
     let second = settle(&there, &Segment { from: middle, to }, options, &quiet, cancel);
     let foci: Vec<_> = isolated(&second.fates).map(|(_, class)| class.solution.foci()).collect();
-    let kept = first_of_class(&foci, super::solve::SAME).iter().enumerate().filter(|(at, first)| at == *first).count();
+    let kept = first_of_class(&foci, super::solve::SAME)
+        .iter()
+        .enumerate()
+        .filter(|(at, first)| at == *first)
+        .count();
     let cancelled = cancel.load(Ordering::Relaxed);
     if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
         let lost = starts.len() - there.len();

@@ -66,7 +66,8 @@ fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
     let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
     let rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
     let (c_1, c_2) = ((x - a) * (x_s - a_s), (y - b) * (y_s - b_s));
-    let mut displacements = Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
+    let mut displacements =
+        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
     for (j, &t) in rotations.iter().enumerate() {
         let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
         // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
@@ -92,10 +93,7 @@ fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements
 
 /// Random displacements of moderate size.
 fn random_displacements(uniform: Uniform) -> Displacements {
-    Displacements {
-        delta: [(); STEPS].map(|()| ring(uniform)),
-        starred: [(); STEPS].map(|()| ring(uniform)),
-    }
+    Displacements { delta: [(); STEPS].map(|()| ring(uniform)), starred: [(); STEPS].map(|()| ring(uniform)) }
 }
 
 /// Walks loops until `limits` say stop.

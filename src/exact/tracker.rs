@@ -202,7 +202,8 @@ impl State {
         let mut z = [ComplexLanes::ZERO; UNKNOWNS];
         for (i, z) in z.iter_mut().enumerate() {
             for node in 0..NODES {
-                *z = *z + self.values[node][i].scale(weights[0][node])
+                *z = *z
+                    + self.values[node][i].scale(weights[0][node])
                     + self.tangents[node][i].scale(weights[1][node]);
             }
         }

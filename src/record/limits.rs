@@ -11,7 +11,7 @@ const MAX_FORMS: usize = 100;
 
 /// A key of a record that is beyond its limit.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{key} is {found}, beyond {limit}")]
+#[error("{key} is {}, at most {} is read", shown(*found), shown(*limit))]
 pub struct BeyondLimits {
     /// The key.
     pub key: String,
@@ -35,7 +35,11 @@ impl Record {
                 raw.map_or(0, |raw| raw.points.len()),
                 if smoothed { MAX_SMOOTHED } else { MAX_POINTS },
             ),
-            ("problem.resolved.task.path.raw.samples", raw.and_then(|raw| raw.samples).unwrap_or(0), MAX_POINTS),
+            (
+                "problem.resolved.task.path.raw.samples",
+                raw.and_then(|raw| raw.samples).unwrap_or(0),
+                MAX_POINTS,
+            ),
             ("candidates", self.candidates.len(), MAX_CANDIDATES),
             ("relaxations", self.relaxations.len(), MAX_LIST),
             ("exact.linkages", exact.map_or(0, |exact| exact.linkages.len()), MAX_LIST),
@@ -55,6 +59,11 @@ impl Record {
         });
         forms.or_else(|| self.candidates.iter().chain(&self.buildable).find_map(of_candidate))
     }
+}
+
+/// A count as it is, what is larger with its power of ten.
+fn shown(value: f64) -> String {
+    if value.abs() < 1e9 { value.to_string() } else { format!("{value:e}") }
 }
 
 fn too_many(key: String, found: usize, limit: usize) -> BeyondLimits {

@@ -82,7 +82,11 @@ pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
 
 /// Where the record of a folder is: that of a new result which is whole but not yet in its place, or the visible one.
 pub(super) fn records(folder: &Path) -> [PathBuf; 3] {
-    [folder.join(MOVING).join(super::RECORD), folder.join(WHOLE).join(super::RECORD), folder.join(super::RECORD)]
+    [
+        folder.join(MOVING).join(super::RECORD),
+        folder.join(WHOLE).join(super::RECORD),
+        folder.join(super::RECORD),
+    ]
 }
 
 /// Whether there is a folder of this name; a link to one is none.

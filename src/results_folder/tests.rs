@@ -110,7 +110,10 @@ fn a_write_that_fails_is_told_and_leaves_a_whole_result() {
             assert_eq!(shown(&path), as_shown(&new()), "step {k}");
             assert!(hidden(&path).is_empty());
         }
-        assert!(kept > 2 * new().len(), "a full disk is found before anything is replaced: {kept} of {count}");
+        assert!(
+            kept > 2 * new().len(),
+            "a full disk is found before anything is replaced: {kept} of {count}"
+        );
     }
 }
 

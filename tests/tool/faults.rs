@@ -135,7 +135,10 @@ fn a_search_that_is_killed_at_any_instant_leaves_a_whole_result_and_can_be_run_a
     let status = job(folder.path(), "1").status().expect("it runs");
     assert!(matches!(status.code(), Some(0 | 1)));
     assert_eq!(settled(visible(&place)), results[0]);
-    assert!(fs::read_dir(&place).expect("it is there").count() == results[0].len() + 1, "nothing is left over");
+    assert!(
+        fs::read_dir(&place).expect("it is there").count() == results[0].len() + 1,
+        "nothing is left over"
+    );
 }
 
 /// Runs a command whose files cannot be larger than so many blocks of 512 bytes, as on a disk that is full.
@@ -281,17 +284,18 @@ fn altered(change: impl Fn(&mut serde_json::Value)) -> (TempDir, Output) {
 #[test]
 fn a_record_that_no_run_writes_is_refused_with_the_key_and_its_limit() {
     let cases: [(&str, &dyn Fn(&mut serde_json::Value)); 4] = [
-        ("raw.samples is 1000000000000000, beyond 100000", &|record| {
-            record["problem"]["resolved"]["task"]["path"]["raw"]["samples"] = 1_000_000_000_000_000_u64.into();
+        ("raw.samples is 1e15, at most 100000 is read", &|record| {
+            record["problem"]["resolved"]["task"]["path"]["raw"]["samples"] =
+                1_000_000_000_000_000_u64.into();
         }),
-        ("candidates is 101, beyond 100", &|record| {
+        ("candidates is 101, at most 100 is read", &|record| {
             let one = record["candidates"][0].clone();
             record["candidates"] = vec![one; 101].into();
         }),
-        ("a coordinate of problem.resolved.task.path is 1e13, beyond 1e12", &|record| {
+        ("a coordinate of problem.resolved.task.path is 1e13, at most 1e12 is read", &|record| {
             record["problem"]["resolved"]["task"]["path"]["points"][1] = vec![1e13, 0.0].into();
         }),
-        ("candidate 1: alternatives is 101, beyond 100", &|record| {
+        ("candidate 1: alternatives is 101, at most 100 is read", &|record| {
             let one = record["candidates"][0]["alternatives"][0].clone();
             record["candidates"][0]["alternatives"] = vec![one; 101].into();
         }),
@@ -301,7 +305,10 @@ fn a_record_that_no_run_writes_is_refused_with_the_key_and_its_limit() {
         let said = said(&output);
         assert_eq!(output.status.code(), Some(2), "{said}");
         let file = folder.path().join("record.json").display().to_string();
-        assert!(said.contains(&file) && said.contains(words) && said.contains("run the problem again"), "{said}");
+        assert!(
+            said.contains(&file) && said.contains(words) && said.contains("run the problem again"),
+            "{said}"
+        );
     }
     let (folder, output) = altered(|_| {});
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
@@ -333,7 +340,8 @@ fn brackets_in_brackets_are_refused_in_every_kind_of_file() {
         assert!(said(&output).len() < 2000, "{name}");
     }
     fs::write(folder.path().join("small.toml"), PROBLEM).expect("there is room");
-    for (key, value) in [(format!("a{}", ".a".repeat(20_000)), "1".into()), ("a".into(), "[".repeat(60_000))] {
+    for (key, value) in [(format!("a{}", ".a".repeat(20_000)), "1".into()), ("a".into(), "[".repeat(60_000))]
+    {
         let set = format!("{key}={value}");
         let output = Command::new(PROGRAM)
             .current_dir(folder.path())

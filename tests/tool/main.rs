@@ -4,11 +4,11 @@ mod analysis_sheets;
 mod analyze;
 mod bad_input;
 mod command_line;
+#[path = "../common/mod.rs"]
+mod common;
 mod continuation;
 mod corpora;
 mod faults;
-#[path = "../common/mod.rs"]
-mod common;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;
