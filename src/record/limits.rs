@@ -49,7 +49,7 @@ impl Record {
             return Some(too_many(key.to_owned(), found, limit));
         }
         let points = path.points.iter().chain(raw.iter().flat_map(|raw| &raw.points)).flatten();
-        if let Some(far) = points.copied().find(|v| !(v.abs() <= MAX_MAGNITUDE)) {
+        if let Some(far) = points.copied().find(|v| v.is_nan() || v.abs() > MAX_MAGNITUDE) {
             let key = "a coordinate of problem.resolved.task.path".to_owned();
             return Some(BeyondLimits { key, found: far, limit: MAX_MAGNITUDE });
         }

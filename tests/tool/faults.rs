@@ -270,8 +270,10 @@ fn a_place_that_takes_no_files_is_told_before_the_search() {
     assert_eq!(visible(folder.path()).len(), 1, "nothing is left behind");
 }
 
+type Change<'a> = &'a dyn Fn(&mut serde_json::Value);
+
 /// A folder with a record of a small problem in which `change` was made.
-fn altered(change: impl Fn(&mut serde_json::Value)) -> (TempDir, Output) {
+fn altered(change: Change<'_>) -> (TempDir, Output) {
     let folder = TempDir::new().expect("a folder");
     let text = fs::read(root().join("tests/corpora/record/conflict.json")).expect("it is there");
     let mut record: serde_json::Value = serde_json::from_slice(&text).expect("it is JSON");
@@ -283,7 +285,7 @@ fn altered(change: impl Fn(&mut serde_json::Value)) -> (TempDir, Output) {
 
 #[test]
 fn a_record_that_no_run_writes_is_refused_with_the_key_and_its_limit() {
-    let cases: [(&str, &dyn Fn(&mut serde_json::Value)); 4] = [
+    let cases: [(&str, Change<'_>); 4] = [
         ("raw.samples is 1e15, at most 100000 is read", &|record| {
             record["problem"]["resolved"]["task"]["path"]["raw"]["samples"] =
                 1_000_000_000_000_000_u64.into();
@@ -310,7 +312,7 @@ fn a_record_that_no_run_writes_is_refused_with_the_key_and_its_limit() {
             "{said}"
         );
     }
-    let (folder, output) = altered(|_| {});
+    let (folder, output) = altered(&|_| {});
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     // Brackets in brackets are refused by the JSON reader before they fill the stack.
     fs::write(folder.path().join("record.json"), "[".repeat(1 << 20)).expect("there is room");
