@@ -353,3 +353,43 @@ fn brackets_in_brackets_are_refused_in_every_kind_of_file() {
         assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     }
 }
+
+/// A search of 0.7 s whose folder meets something once it is taken; `temporary` is where temporary files go.
+fn under_way(meet: impl Fn(&Path)) -> (TempDir, Output) {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("small.toml"), PROBLEM).expect("there is room");
+    fs::create_dir(folder.path().join("temporary")).expect("a folder");
+    let place = folder.path().join("r");
+    let mut command =
+        linkwright(folder.path(), &["synth", "small.toml", "--out", "r", "--method", "genetic"]);
+    command.args(["--set", "solve.evaluations=1e9", "--set", "solve.time_limit_s=0.7", "--threads", "1"]);
+    command.env("TMPDIR", folder.path().join("temporary")).env("TMP", folder.path().join("temporary"));
+    let child = command.stderr(Stdio::piped()).spawn().expect("it starts");
+    while !place.join(".lock").exists() {
+        sleep(Duration::from_millis(1));
+    }
+    sleep(Duration::from_millis(100));
+    meet(&place);
+    let output = child.wait_with_output().expect("it ends");
+    (folder, output)
+}
+
+#[cfg(unix)]
+#[test]
+fn a_result_whose_folder_vanished_or_is_taken_is_not_lost() {
+    let (folder, output) = under_way(|place| fs::remove_dir_all(place).expect("it is ours"));
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", said(&output));
+    read_record(&folder.path().join("r")).expect("the folder was made anew");
+    let (folder, output) = under_way(|place| {
+        fs::remove_dir_all(place).expect("it is ours");
+        fs::write(place, "in the way").expect("there is room");
+    });
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    let (_, saved) = said.split_once("the result was saved in ").expect("it says where");
+    let saved = Path::new(saved.trim());
+    assert!(saved.starts_with(folder.path().join("temporary")), "{said}");
+    let status = linkwright(folder.path(), &["verify"]).arg(saved).status().expect("it runs");
+    assert_eq!(status.code(), Some(0));
+    assert_eq!(fs::read(folder.path().join("r")).expect("it stays"), b"in the way");
+}
