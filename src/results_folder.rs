@@ -15,6 +15,7 @@ pub use output_file::{create_file, write_file};
 
 const LOCK: &str = ".lock";
 const RECORD: &str = "record.json";
+const CHECKPOINT: &str = "checkpoint.json";
 const TEMPORARY: &str = ".linkwright-";
 /// What stands in the place of a rank in the names of the buildable answer's files.
 pub const BUILDABLE: &str = "buildable";
@@ -127,7 +128,7 @@ fn is_ours(name: &str) -> bool {
     matches!(
         name,
         LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
-    ) || name == "checkpoint.json"
+    ) || name == CHECKPOINT
         || name.starts_with(TEMPORARY)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")
@@ -174,7 +175,8 @@ impl ResultsFolder {
             return Err(FolderError::Foreign { path: shown(), foreign });
         }
         let lock = locked(path)?;
-        replacement::finish(path, &[LOCK]).map_err(|(path, e)| FolderError::io(&path, e))?;
+        // A replacement that was broken off may be that of a search half done: its checkpoint is not thrown away here.
+        replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
         Ok(ResultsFolder { path: path.to_path_buf(), lock: Some(lock), created })
     }
 
