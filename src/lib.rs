@@ -36,7 +36,7 @@
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
-//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files | record |
+//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;

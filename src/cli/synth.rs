@@ -10,7 +10,7 @@ use crate::report::exact::exact_text;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use crate::report::{contact_sheet, csv, exact_sheet, svg};
-use crate::results_folder::{BUILDABLE, ResultsFolder};
+use crate::results_folder::{BUILDABLE, ResultsFolder, rescue};
 use crate::run::{Context, Finished, Job, run as run_job};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ pub fn run(options: &Synth) -> Ended {
             total_s: begun.elapsed().as_secs_f64(),
             threads: pool.current_num_threads(),
         };
-        if let Err(e) = files(&record, &timing).and_then(|f| folder.replace(&f).map_err(|e| e.to_string())) {
+        if let Err(e) = files(&record, &timing).and_then(|files| save(&mut folder, &files)) {
             terminal::complain(&e);
             return Ended::Refused;
         }
@@ -100,6 +100,14 @@ pub fn run(options: &Synth) -> Ended {
         terminal::answer(&batch_summary(&rows, terminal::colour()));
     }
     ended
+}
+
+/// Puts a result into its folder; one that the folder does not take is saved elsewhere, and that is told.
+fn save(folder: &mut ResultsFolder, files: &[(String, Vec<u8>)]) -> Result<(), String> {
+    folder.replace(files).map_err(|e| match rescue(files) {
+        Ok(place) => format!("{e}; the result was saved in {}", place.display()),
+        Err(also) => format!("{e}; nor can it be saved elsewhere: {also}"),
+    })
 }
 
 /// Reads every file; `None` after the diagnostics of those that are no problems.

@@ -7,7 +7,9 @@ mod command_line;
 #[path = "../common/mod.rs"]
 mod common;
 mod continuation;
+mod corpora;
 mod documents;
+mod faults;
 mod problem_file_document;
 #[path = "../reference/mod.rs"]
 mod reference;
