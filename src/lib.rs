@@ -24,7 +24,7 @@
 //! | [`resampling`] | digitised points smoothed and spread evenly | |
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`exact`] | every linkage through nine precision points | linkage, task |
+//! | [`exact`] | every linkage through nine precision points | linkage, task, solve (random streams) |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |

@@ -44,7 +44,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("linkage", &["linkage"]),
         ("task", &["task", "linkage"]),
         ("solve", &["solve"]),
-        ("exact", &["exact", "linkage", "task"]),
+        ("exact", &["exact", "linkage", "task", "solve"]),
         ("problem", &["problem", "task", "linkage", "solve", "resampling"]),
         ("resampling.rs", &[]),
         ("svg_file.rs", &["diagnostic", "input_text", "linkage", "record"]),
