@@ -30,7 +30,7 @@ pub fn read(path: &Path) -> Result<String, Box<Diagnostic>> {
     if metadata.is_dir() {
         return Err(refuse(
             "this is a folder, not a file".into(),
-            "name a file in it (for a folder of results: `linkwright verify`, `compare` or `report`)",
+            "name a file in it (for a folder of results: `linkwright verify` or `compare`)",
         ));
     }
     let too_large = |size: String| {

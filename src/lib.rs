@@ -24,7 +24,7 @@
 //! | [`resampling`] | digitised points smoothed and spread evenly | |
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`exact`] | every linkage through nine precision points | linkage, task |
+//! | [`exact`] | every linkage through nine precision points | linkage, task, solve (random streams) |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
@@ -37,7 +37,7 @@
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
-//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files | record |
+//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;

@@ -7,8 +7,7 @@ use crate::toml_text::nearest;
 use std::ops::Range;
 use std::path::Path;
 
-/// The most points of a target.
-pub const MAX_POINTS: usize = 100_000;
+pub use crate::problem::spec::MAX_POINTS;
 
 /// The columns that are read.
 const COLUMNS: [&str; 5] = ["x", "y", "crank_deg", "weight", "tolerance"];

@@ -10,9 +10,11 @@ use serde::{Deserialize, Serialize};
 
 mod exact;
 mod extras;
+mod limits;
 
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
-pub use extras::{Alternative, Family, Warning, WarningKind};
+pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
+pub use limits::BeyondLimits;
 
 /// The format that this program writes and reads.
 pub const FORMAT: u32 = 1;

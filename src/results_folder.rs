@@ -1,9 +1,17 @@
 //! A result's folder: locked while it is written to, replaced as a whole, never mixed with foreign files.
 
-use crate::record::Record;
+use crate::record::{BeyondLimits, Record};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+
+mod disk;
+mod output_file;
+mod replacement;
+#[cfg(test)]
+mod tests;
+
+pub use output_file::{create_file, write_file};
 
 const LOCK: &str = ".lock";
 const RECORD: &str = "record.json";
@@ -19,7 +27,7 @@ pub const MAX_RECORD_BYTES: u64 = 256 << 20;
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// The folder or a file in it cannot be used.
-    #[error("{path}: {source}")]
+    #[error("{path}: {source}; {}", remedy(source))]
     Io {
         /// Which path.
         path: String,
@@ -48,6 +56,12 @@ pub enum FolderError {
         /// The folder.
         path: String,
     },
+    /// No record there.
+    #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
+    NoRecord {
+        /// Which file was looked for.
+        path: String,
+    },
     /// A record that is none.
     #[error("{path}:{line}:{column}: this is not a linkwright record: {message}")]
     NotARecord {
@@ -60,6 +74,14 @@ pub enum FolderError {
         /// What is wrong.
         message: String,
     },
+    /// A record that no run has written.
+    #[error("{path}: {beyond}; run the problem again to have a true record")]
+    BeyondLimits {
+        /// Which file.
+        path: String,
+        /// What is beyond its limit.
+        beyond: BeyondLimits,
+    },
     /// A file over the limit.
     #[error("{path} has {bytes} bytes; a record has at most {MAX_RECORD_BYTES}")]
     TooLarge {
@@ -68,6 +90,23 @@ pub enum FolderError {
         /// Its size.
         bytes: u64,
     },
+}
+
+/// What to do about a failure of the system.
+fn remedy(error: &io::Error) -> &'static str {
+    match error.kind() {
+        io::ErrorKind::NotFound => "check the spelling and the folder you are in",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "change its permissions or name another place"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+            "make room on the disk or name another place"
+        }
+        io::ErrorKind::AlreadyExists => "choose another name",
+        io::ErrorKind::NotADirectory => "a part of this path is a file: name another place",
+        io::ErrorKind::IsADirectory => "this is a folder: name a file",
+        _ => "try again or name another place",
+    }
 }
 
 impl FolderError {
@@ -125,7 +164,7 @@ impl ResultsFolder {
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
                 let missing = path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists());
                 let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
-                fs::create_dir_all(path).map_err(|e| FolderError::io(path, e))?;
+                disk::create_folders(path).map_err(|e| FolderError::io(path, e))?;
                 missing
             }
             Err(e) => return Err(FolderError::io(path, e)),
@@ -153,18 +192,9 @@ impl ResultsFolder {
             let foreign = format!("a {RECORD} that is not a linkwright record");
             return Err(FolderError::Foreign { path: shown(), foreign });
         }
-        let lock_path = path.join(LOCK);
-        let lock = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&lock_path)
-            .map_err(|e| FolderError::io(&lock_path, e))?;
-        match lock.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(FolderError::Locked { path: shown() }),
-            Err(TryLockError::Error(e)) => return Err(FolderError::io(&lock_path, e)),
-        }
+        let lock = locked(path)?;
+        // A replacement that was broken off may be that of a search half done: its checkpoint is not thrown away here.
+        replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
         Ok(ResultsFolder { path: path.to_path_buf(), lock: Some(lock), created, half_done: false })
     }
 
@@ -195,27 +225,36 @@ impl ResultsFolder {
         }
     }
 
-    /// Replaces what the folder holds by `files`, each written to a temporary file first and renamed; the
-    /// record goes first, and what is left of an earlier result goes last.
+    /// Replaces what the folder holds by `files`, as a whole: whatever breaks it off, the folder holds the old result
+    /// or the new one. A folder that was taken away under way is made anew.
     ///
     /// # Errors
-    /// [`FolderError::Io`] with the file that could not be written; files already renamed stay.
+    /// [`FolderError::Io`] with the file that could not be written; the old result stays.
     pub fn replace(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
-        let record_first = files.iter().filter(|(name, _)| name == RECORD);
-        for (name, bytes) in record_first.chain(files.iter().filter(|(name, _)| name != RECORD)) {
-            // What the record holds is on the disk before anything else happens. The other files follow from it: to
-            // wait for the disk with each would take longer than a small search.
-            renamed_in(&self.path, name, bytes, name == RECORD)?;
+        if !self.path.is_dir() {
+            disk::create_folders(&self.path).map_err(|e| FolderError::io(&self.path, e))?;
+            self.lock = Some(locked(&self.path)?);
         }
+        let kept: &[&str] = if self.half_done { &[LOCK, CHECKPOINT] } else { &[LOCK] };
+        replacement::replace(&self.path, files, kept).map_err(|(path, e)| FolderError::io(&path, e))?;
         self.created.clear();
-        for entry in fs::read_dir(&self.path).map_err(|e| FolderError::io(&self.path, e))?.flatten() {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let stays = name == LOCK || (self.half_done && name == CHECKPOINT);
-            if is_ours(&name) && !stays && files.iter().all(|(kept, _)| *kept != name) {
-                fs::remove_file(entry.path()).map_err(|e| FolderError::io(&entry.path(), e))?;
-            }
-        }
         Ok(())
+    }
+}
+
+/// The lock of a folder, held until it is dropped.
+fn locked(folder: &Path) -> Result<File, FolderError> {
+    let path = folder.join(LOCK);
+    let lock = File::options()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(&path)
+        .map_err(|e| FolderError::io(&path, e))?;
+    match lock.try_lock() {
+        Ok(()) => Ok(lock),
+        Err(TryLockError::WouldBlock) => Err(FolderError::Locked { path: folder.display().to_string() }),
+        Err(TryLockError::Error(e)) => Err(FolderError::io(&path, e)),
     }
 }
 
@@ -225,29 +264,22 @@ impl ResultsFolder {
 /// # Errors
 /// [`FolderError::Io`] with the file; what was there before stays.
 pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
-    renamed_in(folder, name, bytes, true)
+    let target = folder.join(name);
+    output_file::over(&target, bytes).map_err(|e| FolderError::io(&target, e))
 }
 
-/// Writes beside and renames; where it is `durable` the bytes are on the disk before the name is.
-fn renamed_in(folder: &Path, name: &str, bytes: &[u8], durable: bool) -> Result<(), FolderError> {
-    let target = folder.join(name);
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(TEMPORARY);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // Readable as any new file: what the user's mask leaves of it.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+/// Saves the files of a result that its folder does not take in a new folder of the system's for temporary files.
+///
+/// # Errors
+/// [`FolderError::Io`] where that has no room either.
+pub fn rescue(files: &[(String, Vec<u8>)]) -> Result<PathBuf, FolderError> {
+    let place = std::env::temp_dir();
+    let folder = tempfile::Builder::new().prefix("linkwright-rescued-").tempdir_in(&place);
+    let folder = folder.map_err(|e| FolderError::io(&place, e))?;
+    for (name, bytes) in files {
+        replace_file(folder.path(), name, bytes)?;
     }
-    let written = builder.tempfile_in(folder).and_then(|mut file| {
-        file.write_all(bytes)?;
-        if durable {
-            file.as_file().sync_data()?;
-        }
-        file.persist(&target).map_err(|e| e.error)?;
-        Ok(())
-    });
-    written.map_err(|e| FolderError::io(&target, e))
+    Ok(folder.keep())
 }
 
 impl Drop for ResultsFolder {
@@ -266,16 +298,55 @@ impl Drop for ResultsFolder {
 /// # Errors
 /// [`FolderError`] with the file and, where it is no record, the line.
 pub fn read_record(path: &Path) -> Result<Record, FolderError> {
-    let file = if path.is_dir() { path.join(RECORD) } else { path.to_path_buf() };
-    let bytes = fs::metadata(&file).map_err(|e| FolderError::io(&file, e))?.len();
+    if !path.is_dir() {
+        return read_record_file(path);
+    }
+    let records = replacement::records(path);
+    let there = records.iter().find(|file| file.exists()).unwrap_or(&records[2]);
+    match read_record_file(there) {
+        // It was moved to its place just now.
+        Err(FolderError::Io { .. } | FolderError::NoRecord { .. }) if there != &records[2] => {
+            read_record_file(&records[2])
+        }
+        read => read,
+    }
+}
+
+fn read_record_file(file: &Path) -> Result<Record, FolderError> {
+    let bytes = match fs::metadata(file) {
+        Ok(metadata) => metadata.len(),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            return Err(FolderError::NoRecord { path: file.display().to_string() });
+        }
+        Err(e) => return Err(FolderError::io(file, e)),
+    };
     if bytes > MAX_RECORD_BYTES {
         return Err(FolderError::TooLarge { path: file.display().to_string(), bytes });
     }
-    let text = fs::read_to_string(&file).map_err(|e| FolderError::io(&file, e))?;
-    serde_json::from_str(&text).map_err(|e| FolderError::NotARecord {
-        path: file.display().to_string(),
+    // A pipe or a device tells no length: the limit holds while reading too.
+    let mut text = Vec::new();
+    File::open(file)
+        .and_then(|f| f.take(MAX_RECORD_BYTES + 1).read_to_end(&mut text))
+        .map_err(|e| FolderError::io(file, e))?;
+    if text.len() as u64 > MAX_RECORD_BYTES {
+        return Err(FolderError::TooLarge { path: file.display().to_string(), bytes: text.len() as u64 });
+    }
+    parse_record(&file.display().to_string(), &text)
+}
+
+/// The record of a text; `path` is shown in errors.
+///
+/// # Errors
+/// [`FolderError`] with the line where it is no record, or the key that is beyond its limit.
+pub fn parse_record(path: &str, text: &[u8]) -> Result<Record, FolderError> {
+    let record: Record = serde_json::from_slice(text).map_err(|e| FolderError::NotARecord {
+        path: path.to_owned(),
         line: e.line(),
         column: e.column(),
         message: e.to_string(),
-    })
+    })?;
+    match record.beyond_limits() {
+        None => Ok(record),
+        Some(beyond) => Err(FolderError::BeyondLimits { path: path.to_owned(), beyond }),
+    }
 }

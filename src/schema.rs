@@ -1,5 +1,9 @@
 //! JSON Schemas of the files that are read, made from the types that read them.
 
+mod reference;
+
+pub use reference::reference;
+
 use crate::linkage_file::RawLinkageFile;
 use crate::problem_file::RawProblem;
 

@@ -12,8 +12,9 @@ use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
 use crate::report::analysis_text::{analysis_head, analysis_table};
 use crate::report::chain_sheet::chain_svg;
 use crate::report::chain_text::{chain_csv, chain_head, chain_table};
+use crate::results_folder::{create_file, write_file};
 use ariadne::ReportKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The crank angles when none are asked for: every 30 degrees.
 const DEFAULT_POSITIONS: usize = 12;
@@ -26,10 +27,25 @@ fn refused(diagnostic: &crate::diagnostic::Diagnostic) -> Ended {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Ended> {
-    std::fs::write(path, text).map_err(|e| {
-        terminal::complain(&format!("{}: {e}", path.display()));
+    write_file(path, text.as_bytes()).map_err(|e| {
+        terminal::complain(&e.to_string());
         Ended::Refused
     })
+}
+
+/// Writes files that are not there yet: all of them or none.
+fn create_all(files: &[(PathBuf, String)]) -> Result<(), Ended> {
+    for (i, (path, text)) in files.iter().enumerate() {
+        if let Err(e) = create_file(path, text.as_bytes()) {
+            terminal::complain(&e.to_string());
+            for (made, _) in &files[..i] {
+                // What was made a moment ago and stays is named by the next try.
+                let _ = std::fs::remove_file(made);
+            }
+            return Err(Ended::Refused);
+        }
+    }
+    Ok(())
 }
 
 /// Runs `analyze`.
@@ -164,21 +180,21 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
     let mut written = Vec::new();
     for (i, linkage) in found.iter().enumerate() {
         let name = format!("{}-cognate-{}", file.name, i + 1);
-        let path = options.out.join(format!("{name}.toml"));
+        let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
         if path.exists() {
             terminal::complain(&format!("{} exists already; give another folder with --out", path.display()));
             return Err(Ended::Refused);
         }
         written.push((path, linkage_file::to_toml(&name, file.unit, linkage)));
     }
-    if !options.out.as_os_str().is_empty() {
-        std::fs::create_dir_all(&options.out).map_err(|e| {
-            terminal::complain(&format!("{}: {e}", options.out.display()));
+    if let Some(out) = &options.out {
+        std::fs::create_dir_all(out).map_err(|e| {
+            terminal::complain(&format!("{}: {e}", out.display()));
             Ended::Refused
         })?;
     }
-    for (path, toml) in &written {
-        write(path, toml)?;
+    create_all(&written)?;
+    for (path, _) in &written {
         text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
     }
     if let Some(path) = &options.svg {

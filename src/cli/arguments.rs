@@ -40,11 +40,14 @@ pub enum Command {
     Cognates(Cognates),
     /// Run problems whose answer is known from many seeds, beside what was published
     Suite(Suite),
-    /// Print the JSON Schema of a file, for editors
+    /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
         /// problem or linkage
         #[arg(value_parser = schema_kind)]
         kind: SchemaKind,
+        /// Print a reference page (Markdown) of its keys instead
+        #[arg(long)]
+        markdown: bool,
     },
     /// Print a completion script for a shell
     Completions {
@@ -181,8 +184,8 @@ pub struct Cognates {
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
-    #[arg(long, value_name = "DIR", default_value = "", hide_default_value = true)]
-    pub out: PathBuf,
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Draw all three together
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,

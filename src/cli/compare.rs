@@ -7,7 +7,7 @@ use crate::diagnostic::escaped;
 use crate::problem::Problem;
 use crate::problem_file::ProblemFile;
 use crate::report::compare::{Entry, compare};
-use crate::results_folder::read_record;
+use crate::results_folder::{read_record, write_file};
 use crate::search::nearest::nearest_positions;
 use crate::{linkage_file, problem_file};
 use ariadne::ReportKind;
@@ -32,9 +32,9 @@ pub fn run(options: &Compare) -> Ended {
     }
     let comparison = compare(&entries, options.sort);
     if let Some(path) = &options.csv
-        && let Err(e) = std::fs::write(path, comparison.csv())
+        && let Err(e) = write_file(path, comparison.csv().as_bytes())
     {
-        terminal::complain(&format!("{}: {e}", path.display()));
+        terminal::complain(&e.to_string());
         return Ended::Refused;
     }
     terminal::answer(&comparison.table(terminal::colour()));

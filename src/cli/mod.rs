@@ -76,8 +76,11 @@ fn dispatch(command: Command) -> Ended {
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
         Command::Suite(options) => suite::run(&options),
-        Command::Schema { kind } => {
-            terminal::answer(&format!("{:#}\n", crate::schema::schema(kind)));
+        Command::Schema { kind, markdown } => {
+            terminal::answer(&match markdown {
+                true => crate::schema::reference(kind),
+                false => format!("{:#}\n", crate::schema::schema(kind)),
+            });
             Ended::Good
         }
         Command::Completions { shell } => {

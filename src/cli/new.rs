@@ -2,8 +2,9 @@
 
 use super::arguments::New;
 use super::{Ended, terminal};
+use crate::results_folder::{FolderError, create_file};
 use ariadne::ReportKind;
-use std::io::Write;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Runs the command.
@@ -41,19 +42,18 @@ pub fn run(options: &New) -> Ended {
         return Ended::Refused;
     }
     let path = PathBuf::from(format!("{name}.toml"));
-    let written = std::fs::File::create_new(&path).and_then(|mut file| file.write_all(text.as_bytes()));
-    match written {
+    match create_file(&path, text.as_bytes()) {
         Ok(()) => {
             let shown = path.display();
             terminal::answer(&format!("Wrote {shown}. Next: linkwright synth {shown:?}\n"));
             Ended::Good
         }
-        Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {
+        Err(FolderError::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => {
             terminal::complain(&format!("{} exists already; choose another name", path.display()));
             Ended::Refused
         }
         Err(e) => {
-            terminal::complain(&format!("{}: {e}", path.display()));
+            terminal::complain(&e.to_string());
             Ended::Refused
         }
     }

@@ -5,7 +5,7 @@ use super::progress::Shown;
 use super::{synth, terminal};
 use crate::checkpoint::{Checkpoint, Writer};
 use crate::record::{Reason, Record};
-use crate::results_folder::{CHECKPOINT, ResultsFolder, read_record, replace_file};
+use crate::results_folder::{CHECKPOINT, ResultsFolder, read_record, replace_file, rescue};
 use crate::run::{Context, Finished, Job, digest, run_kept};
 use crate::search::keeper::{Keeper, Pace, SearchState};
 use std::path::{Path, PathBuf};
@@ -75,8 +75,16 @@ pub fn run(
     let total_s = begun.elapsed().as_secs_f64();
     let timing = synth::Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
     let files = synth::files(&record, &timing)?;
-    folder.replace(&files).map_err(|e| e.to_string())?;
+    save(&mut folder, &files)?;
     Ok(Done { record, folder: place.to_path_buf(), seconds: Some((search_s, beside_s)) })
+}
+
+/// Puts a result into its folder; one that the folder does not take is saved elsewhere, and that is told.
+fn save(folder: &mut ResultsFolder, files: &[(String, Vec<u8>)]) -> Result<(), String> {
+    folder.replace(files).map_err(|e| match rescue(files) {
+        Ok(place) => format!("{e}; the result was saved in {}", place.display()),
+        Err(also) => format!("{e}; nor can it be saved elsewhere: {also}"),
+    })
 }
 
 /// The record of a run of the same problem that has nothing left to do: of the same version, for as many candidates,

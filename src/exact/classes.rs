@@ -7,8 +7,10 @@
 //! (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a),    T_j -> (x T_j + delta_j - a) / (x - a)
 //! ```
 //!
-//! starred alike: a group of order six. All six stand on two of the same three foci a, b, c = (b x - a y) / (x - y), so
-//! that the set of the three pairs (focus, starred focus) tells a class.
+//! starred alike: a group of order six. All six stand on two of the same three foci a, b, c = (b x - a y) / (x - y). At a
+//! focus a stand two pins, x and in another cognate a - x; their product x (a - x) belongs to the focus. So the set of
+//! the three (focus, product), with their starred twins, tells a class. The foci alone do so in general: linkages that
+//! are mirror images, of foci on a symmetric target's axis, share them.
 
 use super::target::{Displacements, STEPS, Solution};
 use crate::linkage::Complex;
@@ -82,6 +84,35 @@ impl Solution {
         [[a[0], b[0]], [a[1], b[1]], [third(self.pins, a), third(self.pins_starred, b)]]
     }
 
+    /// x (a - x) for the pins x that stand at the foci a, in their order, each with its starred twin.
+    fn products(&self) -> [[Complex; 2]; 3] {
+        let of = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| {
+            let coupler = (x - y).inv();
+            let (p, c) = ((x - a) * y * coupler, (b * x - a * y) * coupler);
+            [x * (a - x), y * (b - y), p * (c - p)]
+        };
+        let (one, starred) = (of(self.pins, self.grounds), of(self.pins_starred, self.grounds_starred));
+        std::array::from_fn(|i| [one[i], starred[i]])
+    }
+
+    /// Whether another solution is an image of this one, to rounding: foci within `tolerance` of one another, each
+    /// against 1 + its size, in the same order the products of the pins within the root of it.
+    pub fn is_in_class_of(&self, other: &Solution, tolerance: f64) -> bool {
+        let (one, two) = (self.foci(), other.foci());
+        let (products, others) = (self.products(), other.products());
+        ORDERS.iter().any(|order| {
+            (0..3).all(|i| {
+                (0..2).all(|k| {
+                    let (a, b) = (one[i][k], two[order[i]][k]);
+                    let (n, m) = (products[i][k], others[order[i]][k]);
+                    // A product's rounding is that of a square of what is subtracted.
+                    let scale = 1.0 + n.norm().min(m.norm()) + a.norm_sqr();
+                    distance(a, b) <= tolerance && (n - m).norm() <= tolerance.sqrt() * scale
+                })
+            })
+        })
+    }
+
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
         super::equations::unknowns(self).iter().all(|z| z.re.is_finite() && z.im.is_finite())
@@ -104,22 +135,6 @@ fn distance(one: Complex, other: Complex) -> f64 {
     if distance.is_nan() { f64::INFINITY } else { distance }
 }
 
-/// The smallest over all orders of the largest distance between the foci of one and those of the other, each against
-/// 1 + its size: zero for two images of one solution.
-pub fn class_distance(one: &[[Complex; 2]; 3], other: &[[Complex; 2]; 3]) -> f64 {
-    ORDERS
-        .iter()
-        .map(|order| {
-            (0..3)
-                .map(|i| {
-                    let ([p, q], [r, s]) = (one[i], other[order[i]]);
-                    distance(p, r).max(distance(q, s))
-                })
-                .fold(0.0, f64::max)
-        })
-        .fold(f64::INFINITY, f64::min)
-}
-
 /// A number that the images of a solution share and that stays of moderate size when foci go to infinity:
 /// sum 1 / (focus - z0) over the foci and their twins, z0 in general position.
 pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
@@ -130,24 +145,24 @@ pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
 
 /// Groups of equal classes: for each solution the number of the first one of its class.
 ///
-/// Two are of one class where their [`class_distance`] is at most `tolerance`. The answer does not depend on more
-/// than the solutions and their order.
-pub fn first_of_class(foci: &[[[Complex; 2]; 3]], tolerance: f64) -> Vec<usize> {
-    let keys: Vec<f64> = foci.iter().map(key).collect();
-    let mut order: Vec<usize> = (0..foci.len()).collect();
+/// Two are of one class where [`Solution::is_in_class_of`] says so. The answer does not depend on more than the
+/// solutions and their order.
+pub fn first_of_class(solutions: &[Solution], tolerance: f64) -> Vec<usize> {
+    let keys: Vec<f64> = solutions.iter().map(|solution| key(&solution.foci())).collect();
+    let mut order: Vec<usize> = (0..solutions.len()).collect();
     order.sort_by(|&i, &j| keys[i].total_cmp(&keys[j]).then(i.cmp(&j)));
-    let mut first: Vec<usize> = (0..foci.len()).collect();
+    let mut first: Vec<usize> = (0..solutions.len()).collect();
     for (at, &i) in order.iter().enumerate() {
         // The key's own error: its derivative by a focus is at most |key|^2, roughly.
         let window = 100.0 * tolerance * (1.0 + keys[i] * keys[i]);
         for &j in order[at + 1..].iter().take_while(|&&j| keys[j] - keys[i] <= window) {
-            if class_distance(&foci[i], &foci[j]) <= tolerance {
+            if solutions[i].is_in_class_of(&solutions[j], tolerance) {
                 let (one, other) = (root(&first, i), root(&first, j));
                 first[one.max(other)] = one.min(other);
             }
         }
     }
-    (0..foci.len()).map(|i| root(&first, i)).collect()
+    (0..solutions.len()).map(|i| root(&first, i)).collect()
 }
 
 fn root(first: &[usize], mut at: usize) -> usize {

@@ -29,16 +29,16 @@ use super::refinement::Midpoint;
 use super::target::STEPS;
 use crate::linkage::Complex;
 
-/// What conjugation does to a certified solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What conjugation does to a solution: found to rounding in a [`super::Class`], proved in a [`super::Certificate`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reality {
-    /// Proved real: a linkage of the plane, and so are its cognates.
+    /// Real: a linkage of the plane, and so are its cognates.
     Real,
-    /// Proved to be in one class with its conjugate, but not real: a real coupler curve drawn by no real linkage.
+    /// In one class with its conjugate, but not real: a real coupler curve drawn by no real linkage.
     RealCurve,
-    /// Proved to be neither: the conjugate is of another class.
+    /// Neither: the conjugate is of another class.
     Complex,
-    /// Not decided, or the displacements are not those of real points.
+    /// Not proved either way, or the displacements are not those of real points.
     Undecided,
 }
 

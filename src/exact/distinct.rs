@@ -8,23 +8,32 @@
 //! a + b + c        a b + b c + c a        a b c        and the starred ones
 //! ```
 //!
-//! are the same at all six. Two solutions whose enclosures give disjoint discs for one of these functions belong to
-//! different classes; the curves they draw have different foci.
+//! are the same at all six. So is the sum over the foci of the products of the two pins that cognates have there, with p =
+//! (x - a) y / (x - y) the pin at c:
+//!
+//! ```text
+//! x (a - x) + y (b - y) + p (c - p)        and the starred one
+//! ```
+//!
+//! It tells apart linkages that are mirror images of one another and have their foci on the axis. Two solutions whose enclosures give disjoint discs for one of these functions belong to
+//! different classes.
 
 use super::certificate::Certificate;
 use super::discs::Disc;
 
-/// Discs of the six symmetric functions; `None` where x - y may be zero and c is not defined.
-type Invariants = Option<[Disc; 6]>;
+/// Discs of these eight functions; `None` where x - y may be zero and c is not defined.
+type Invariants = Option<[Disc; 8]>;
 
 fn invariants(certificate: &Certificate) -> Invariants {
     let e = certificate.enclosure();
-    let of = |x: Disc, y: Disc, a: Disc, b: Disc| -> Option<[Disc; 3]> {
-        let c = (b * x - a * y) * (x - y).inverse()?;
-        Some([a + b + c, a * b + (a + b) * c, a * b * c])
+    let of = |x: Disc, y: Disc, a: Disc, b: Disc| -> Option<[Disc; 4]> {
+        let coupler = (x - y).inverse()?;
+        let (c, p) = ((b * x - a * y) * coupler, (x - a) * y * coupler);
+        let products = x * (a - x) + y * (b - y) + p * (c - p);
+        Some([a + b + c, a * b + (a + b) * c, a * b * c, products])
     };
-    let ([s1, s2, s3], [t1, t2, t3]) = (of(e[0], e[1], e[2], e[3])?, of(e[4], e[5], e[6], e[7])?);
-    Some([s1, s2, s3, t1, t2, t3])
+    let ([s1, s2, s3, s4], [t1, t2, t3, t4]) = (of(e[0], e[1], e[2], e[3])?, of(e[4], e[5], e[6], e[7])?);
+    Some([s1, s2, s3, s4, t1, t2, t3, t4])
 }
 
 /// The pairs (first < second, in order) that are *not* proved to be of different classes. An empty answer is the proof

@@ -25,7 +25,7 @@ use crate::linkage::lane::Lane;
 /// Unknowns in all.
 pub const UNKNOWNS: usize = ORDER + STEPS;
 /// Unknowns of one leg: x, u, x*, u*.
-const LEG: usize = 4;
+pub(super) const LEG: usize = 4;
 
 /// Sixteen numbers, eight paths each: [x, u, x*, u*, y, v, y*, v*, tau_1 .. tau_8] with u = x - a, v = y - b,
 /// tau = T - 1, or their changes.
@@ -102,7 +102,13 @@ struct Linearised {
 }
 
 #[inline(always)]
-fn linearised(z: &Unknowns, at: &DisplacementLanes, leg: usize, j: usize, inverse: ComplexLanes) -> Linearised {
+fn linearised(
+    z: &Unknowns,
+    at: &DisplacementLanes,
+    leg: usize,
+    j: usize,
+    inverse: ComplexLanes,
+) -> Linearised {
     let [x, u, x_s, u_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
     let tau = z[ORDER + j];
     let sigma = -tau * inverse;
@@ -128,6 +134,7 @@ fn size(z: ComplexLanes) -> F64x8 {
 /// The first right-hand side is Newton's, -f. With R = 2 the second is Davidenko's, -(df/ddelta delta' + df/ddelta*
 /// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so.
 /// With them comes the smallest pivot, squared.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 pub fn steps<const R: usize>(
     z: &Unknowns,

@@ -128,6 +128,7 @@ pub const ORDER: usize = 8;
 /// `matrix[i][j]` is a_ij and `right[i][r]` is b_i of the r-th side; x_i replaces b_i. A lane whose matrix is
 /// singular gets numbers that are not finite. The answer is the smallest pivot of each lane, squared: with rows whose
 /// largest entry is about one a measure of how far the matrix is from a singular one.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 pub fn solve<const R: usize>(
     matrix: &mut [[ComplexLanes; ORDER]; ORDER],

@@ -9,10 +9,11 @@
 //!
 //! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position.
 
-use super::classes::first_of_class;
-use super::solve::{Fate, Fates, Options, Solved, isolated, judged, settle, solve};
+use super::certificate::certify;
+use super::settle::{Fate, Fates, firsts, isolated, settle};
+use super::solve::{Options, Solved, judged, solve};
 use super::target::{Displacements, STEPS, Solution, Target};
-use super::tracker::Segment;
+use super::tracker::{Parameters, Segment};
 use crate::linkage::Complex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -35,16 +36,21 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
         delta: previous.target.displacements.delta.map(|d| d * ratio),
         starred: previous.target.displacements.starred.map(|d| d * ratio),
     };
-    let starts: Vec<Solution> =
-        previous.classes.iter().map(|class| class.solution.in_other_units(ratio.into(), ratio.into())).collect();
+    let starts: Vec<Solution> = previous
+        .classes
+        .iter()
+        .map(|class| class.solution.in_other_units(ratio.into(), ratio.into()))
+        .collect();
     let to = target.displacements;
     let middle = midpoint(&from, &to);
     let quiet = |_: usize, _: usize| {};
-    let first = settle(&starts, &Segment { from, to: middle }, options, &quiet, cancel);
+    let legs = Options { parameters: short(&options.parameters), ..*options };
+    let first = settle(&starts, &Segment { from, to: middle }, &legs, &quiet, cancel);
     let there: Vec<Solution> = isolated(&first.fates).map(|(_, class)| class.solution).collect();
-    let second = settle(&there, &Segment { from: middle, to }, options, &quiet, cancel);
-    let foci: Vec<_> = isolated(&second.fates).map(|(_, class)| class.solution.foci()).collect();
-    let kept = first_of_class(&foci, super::solve::SAME).iter().enumerate().filter(|(at, first)| at == *first).count();
+    let second = settle(&there, &Segment { from: middle, to }, &legs, &quiet, cancel);
+    let ends: Vec<Solution> = isolated(&second.fates).map(|(_, class)| class.solution).collect();
+    let kept =
+        firsts(&ends, |s| certify(target, s)).iter().enumerate().filter(|(at, first)| at == *first).count();
     let cancelled = cancel.load(Ordering::Relaxed);
     if kept == previous.classes.len() && kept == previous.census.tracked || cancelled {
         let lost = starts.len() - there.len();
@@ -53,6 +59,17 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
         return Moved { solved: judged(target, &ends, cancelled), kept, fell_back: false };
     }
     Moved { solved: solve(target, options, &quiet, cancel), kept, fell_back: true }
+}
+
+/// Long steps for short ways. A path that goes astray on one ends where another does, and is tracked again.
+fn short(with: &Parameters) -> Parameters {
+    Parameters {
+        accept: 3.0 * with.accept,
+        aim: 5.0 * with.aim,
+        first_step: 10.0 * with.first_step,
+        longest_step: 5.0 * with.longest_step,
+        ..*with
+    }
 }
 
 /// Displacements half way, moved off the real ones by as much as the targets differ.

@@ -18,9 +18,11 @@
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
 
+mod careful;
 pub mod certificate;
 pub mod classes;
 pub mod conjugation;
+pub mod correction;
 pub mod discs;
 pub mod distinct;
 mod double_discs;
@@ -32,14 +34,17 @@ pub mod mechanisms;
 pub mod monodromy;
 mod polynomial;
 pub mod refinement;
+mod settle;
 pub mod solve;
 pub mod start;
 pub mod target;
 pub mod tracker;
 
 pub use certificate::{Certificate, Refused, certify, certify_all};
+pub use conjugation::Reality;
+pub use distinct::not_proved_distinct;
 pub use live::{Moved, resolve_from};
 pub use mechanisms::{Driven, Mechanism, mechanisms};
 pub use refinement::{Refined, refine};
-pub use solve::{Census, Class, Completeness, Options, Reality, Solved, solve};
+pub use solve::{Census, Class, Completeness, Options, Solved, solve};
 pub use target::{Displacements, Solution, Target, TargetError};

@@ -5,13 +5,11 @@
 //! A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations keep
 //! their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v* D*), and
 //! goes straight back. The six images of a solution move as one, so that one of them is carried for all.
-//!
-//! Source: M. M. Plecnik, J. M. McCarthy and others use loops for regeneration; the idea for polynomial systems in
-//! general is A. J. Sommese, J. Verschelde, C. W. Wampler, SIAM J. Numer. Anal. 38 (2001) 2022-2046.
 
 use super::classes::first_of_class;
+use super::correction::correct;
 use super::target::{Displacements, STEPS, Solution};
-use super::tracker::{Ending, Parameters, Segment, correct, track};
+use super::tracker::{Ending, Parameters, Segment, track};
 use crate::linkage::Complex;
 use std::sync::atomic::AtomicBool;
 
@@ -66,7 +64,8 @@ fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
     let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
     let rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
     let (c_1, c_2) = ((x - a) * (x_s - a_s), (y - b) * (y_s - b_s));
-    let mut displacements = Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
+    let mut displacements =
+        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
     for (j, &t) in rotations.iter().enumerate() {
         let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
         // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
@@ -92,10 +91,7 @@ fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements
 
 /// Random displacements of moderate size.
 fn random_displacements(uniform: Uniform) -> Displacements {
-    Displacements {
-        delta: [(); STEPS].map(|()| ring(uniform)),
-        starred: [(); STEPS].map(|()| ring(uniform)),
-    }
+    Displacements { delta: [(); STEPS].map(|()| ring(uniform)), starred: [(); STEPS].map(|()| ring(uniform)) }
 }
 
 /// Walks loops until `limits` say stop.
@@ -123,8 +119,7 @@ pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
                 orbit.solutions.push(end.solution);
             }
         }
-        let foci: Vec<_> = orbit.solutions.iter().map(Solution::foci).collect();
-        let mut firsts = first_of_class(&foci, SAME).into_iter().enumerate();
+        let mut firsts = first_of_class(&orbit.solutions, SAME).into_iter().enumerate();
         orbit.solutions.retain(|_| firsts.next().is_some_and(|(at, first)| at == first));
         orbit.loops += 1;
         // A loop that carries few solutions tells nothing when it brings no new one.

@@ -1,11 +1,12 @@
 //! All classes of a target: from the start set along straight paths, lost ones again and again, the ends judged.
 
-use super::classes::{class_distance, first_of_class, key};
-use super::refinement::refine;
+use super::certificate::certify;
+use super::classes::key;
+use super::conjugation::Reality;
+use super::settle::{Fate, Fates, complete, firsts, isolated, settle};
 use super::start::{CLASSES, StartSet};
-use super::target::{Displacements, Solution, Target};
-use super::tracker::{Corrected, Ending, Parameters, Segment, Tracked, correct, track};
-use crate::linkage::Complex;
+use super::target::{Solution, Target};
+use super::tracker::{Parameters, Segment};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -23,17 +24,6 @@ impl Default for Options {
     fn default() -> Self {
         Options { parameters: Parameters::default(), retries: 7 }
     }
-}
-
-/// What is real about a class.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Reality {
-    /// A real linkage (and so are its cognates).
-    Linkage,
-    /// The conjugate is another image of the class: the coupler curve is real, the linkage is complex. No mechanism.
-    CurveOnly,
-    /// The conjugate is another class.
-    Complex,
 }
 
 /// One class of six solutions.
@@ -57,13 +47,14 @@ pub struct Census {
     pub tracked: usize,
     /// Ended in an isolated solution.
     pub finite: usize,
-    /// Ended at infinity or in a singular solution, or in one of a family.
+    /// Ended at infinity, in a singular or double solution, or in one of a family.
     pub singular: usize,
     /// Were lost on the way, and again in every further round.
     pub failed: usize,
     /// Classes.
     pub distinct: usize,
-    /// Paths that ended in the class of an earlier one.
+    /// Paths that ended in the class of an earlier one: astray, or, on a special target, in the same linkage with another
+    /// rotation at a point that its curve passes twice.
     pub duplicates: usize,
     /// Paths that were tracked more than once.
     pub again: usize,
@@ -81,9 +72,10 @@ pub enum Completeness {
     /// As many distinct classes as a target in general position has.
     Complete,
     /// Paths ended at infinity or in singular solutions, and none was lost: the target is not in general position and
-    /// has fewer isolated solutions.
+    /// has fewer isolated solutions. Paths that stay together in spite of all rounds are counted as duplicates here:
+    /// they end in multiple solutions.
     NonGeneric {
-        /// Distinct isolated classes that were found.
+        /// Distinct isolated classes that were found; no claim that there are no more.
         isolated: usize,
     },
     /// Paths were lost or ended together: so many classes may be missing.
@@ -116,10 +108,10 @@ impl Solved {
             Completeness::Cancelled
         } else if census.distinct == CLASSES {
             Completeness::Complete
-        } else if census.failed + census.duplicates > 0 || census.tracked < CLASSES {
-            Completeness::Incomplete { missing: CLASSES.saturating_sub(census.distinct + census.singular) }
-        } else {
+        } else if census.failed == 0 && census.singular > 0 && census.singular >= census.duplicates {
             Completeness::NonGeneric { isolated: census.distinct }
+        } else {
+            Completeness::Incomplete { missing: CLASSES.saturating_sub(census.distinct + census.singular) }
         }
     }
 }
@@ -136,186 +128,38 @@ pub fn solve(
 ) -> Solved {
     let start = StartSet::embedded();
     let along = Segment { from: start.displacements, to: target.displacements };
-    let ends = settle(&start.solutions, &along, options, progress, cancel);
-    judged(target, &ends, cancel.load(Ordering::Relaxed))
+    let mut ends = settle(&start.solutions, &along, options, progress, cancel);
+    complete(&mut ends, &start.solutions, &along, options, cancel);
+    let solved = judged(target, &ends, cancel.load(Ordering::Relaxed));
+    if solved.cancelled || solved.census.distinct == CLASSES {
+        return solved;
+    }
+    ends.fates.par_iter_mut().for_each(|end| *end = proved(target, *end));
+    judged(target, &ends, false)
 }
 
-/// What a path came to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Fate {
-    /// An isolated solution.
-    Isolated(Class),
-    /// Infinity, a singular solution or a family of them.
-    Singular,
-    /// Lost on the way.
-    Lost,
-}
-
-/// The fates of all paths after all rounds, with the number of paths that took more than one.
-pub(super) struct Fates {
-    pub(super) fates: Vec<Fate>,
-    pub(super) again: usize,
-}
-
-/// Solutions whose Newton step is larger are refined in double-double before they are compared.
-const ROUGH: f64 = 1e-11;
-/// An isolated solution's last Newton step is at most this.
-const CONVERGED: f64 = 1e-9;
-/// Speeds, relative to the solution and over the whole path, above which an end counts as singular.
-const SINGULAR_SPEED: f64 = 1e9;
-/// Paths that stop in the last part of their way have met the end's singularity, not one of the way.
-const NEAR_THE_END: f64 = 1e-3;
-/// Classes nearer than this are one.
-pub(super) const SAME: f64 = 1e-8;
-/// Solutions nearer to a real linkage than this are real: rounding after refinement is far below it, pairs of nearly
-/// equal solutions are further apart.
-const REAL: f64 = 1e-8;
-
-/// The fate of one end.
-fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
-    match end.ending {
-        Ending::Cancelled => return Fate::Lost,
-        Ending::Stalled { t } | Ending::OutOfSteps { t } => {
-            return if 1.0 - t < NEAR_THE_END { Fate::Singular } else { Fate::Lost };
-        }
-        Ending::Arrived => {}
+/// Where the target is not in general position an end counts as isolated if one of its cognates is proved to be: what
+/// looks isolated to rounding may be a multiple solution.
+fn proved(target: &Target, end: Fate) -> Fate {
+    let Fate::Isolated(class) = end else { return end };
+    let proof = |solution: &Solution| certify(target, solution).ok().map(|proof| proof.refined);
+    let cognates = || class.solution.images(&target.displacements)[1..3].iter().find_map(proof);
+    match proof(&class.solution).or_else(cognates) {
+        Some(solution) => Fate::Isolated(Class { solution, ..class }),
+        None => Fate::Singular,
     }
-    let (mut solution, mut newton_step) = (corrected.solution, corrected.newton_step);
-    if !(newton_step <= ROUGH) {
-        match refine(&along.to, &end.solution) {
-            Ok(refined) => (solution, newton_step) = (refined.solution, refined.last_step),
-            Err(_) => return Fate::Singular,
-        }
-    }
-    if !(newton_step <= CONVERGED && corrected.speed <= SINGULAR_SPEED) {
-        return Fate::Singular;
-    }
-    Fate::Isolated(Class { solution, reality: Reality::Complex, newton_step, speed: corrected.speed })
-}
-
-/// Tracks `starts` along the segment; lost and coinciding paths again, more carefully, from other images, and lost ones
-/// in the end around what was in their way.
-pub(super) fn settle(
-    starts: &[Solution],
-    along: &Segment,
-    options: &Options,
-    progress: &(dyn Fn(usize, usize) + Sync),
-    cancel: &AtomicBool,
-) -> Fates {
-    let mut fates = vec![Fate::Lost; starts.len()];
-    let mut open: Vec<usize> = (0..starts.len()).collect();
-    let mut obstructed = vec![false; starts.len()];
-    let mut again = 0;
-    for round in 0..=options.retries {
-        let image = |path: usize| match round {
-            0 => starts[path],
-            _ => starts[path].images(&along.from)[round as usize % 3],
-        };
-        let (around, straight): (Vec<usize>, Vec<usize>) =
-            open.iter().partition(|&&path| round >= 2 && obstructed[path]);
-        let images: Vec<Solution> = straight.iter().map(|&path| image(path)).collect();
-        let with = options.parameters.tightened(round.min(3));
-        let mut ends = track(&images, along, &with, cancel);
-        let images: Vec<Solution> = around.iter().map(|&path| image(path)).collect();
-        ends.extend(track_around(&images, along, round, &options.parameters.tightened(1), cancel));
-        let paths: Vec<usize> = straight.into_iter().chain(around).collect();
-        let arrived: Vec<Solution> = ends.iter().map(|end| end.solution).collect();
-        let corrected = correct(&arrived, along, CORRECTIONS);
-        let judged: Vec<Fate> =
-            ends.par_iter().zip(&corrected).map(|(end, corrected)| fate(end, corrected, along)).collect();
-        for (&path, fate) in paths.iter().zip(judged) {
-            fates[path] = fate;
-            obstructed[path] |= fate == Fate::Lost;
-        }
-        open = unsettled(&fates, round);
-        progress(starts.len() - open.len(), starts.len());
-        if round == 0 {
-            again = open.len();
-        }
-        if open.is_empty() || cancel.load(Ordering::Relaxed) {
-            break;
-        }
-    }
-    Fates { fates, again }
-}
-
-/// Newton steps on arrival.
-const CORRECTIONS: usize = 2;
-
-/// Through t = 1/2 + i e instead of straight, e small and another one each round: around a place close to the straight
-/// path where the solution is all but infinite. Should a branch point lie between the two routes, the path ends where
-/// another one does, which shows.
-fn track_around(
-    starts: &[Solution],
-    along: &Segment,
-    round: u32,
-    with: &Parameters,
-    cancel: &AtomicBool,
-) -> Vec<Tracked> {
-    let e = ASIDE * f64::from(round / 2) * if round % 2 == 0 { 1.0 } else { -1.0 };
-    let t = Complex::new(0.5, e);
-    let middle = Displacements {
-        delta: std::array::from_fn(|j| along.from.delta[j] * (-t + 1.0) + along.to.delta[j] * t),
-        starred: std::array::from_fn(|j| along.from.starred[j] * (-t + 1.0) + along.to.starred[j] * t),
-    };
-    let mut ends = track(starts, &Segment { from: along.from, to: middle }, with, cancel);
-    let arrived: Vec<usize> = (0..ends.len()).filter(|&at| ends[at].ending == Ending::Arrived).collect();
-    for end in &mut ends {
-        // Where the first leg stopped counts as its half of the way.
-        end.ending = match end.ending {
-            Ending::Stalled { t } => Ending::Stalled { t: 0.5 * t },
-            Ending::OutOfSteps { t } => Ending::OutOfSteps { t: 0.5 * t },
-            other => other,
-        };
-    }
-    let there: Vec<Solution> = arrived.iter().map(|&at| ends[at].solution).collect();
-    let seconds = track(&there, &Segment { from: middle, to: along.to }, with, cancel);
-    for (&at, second) in arrived.iter().zip(seconds) {
-        ends[at] = Tracked { steps: ends[at].steps + second.steps, ..second };
-    }
-    ends
-}
-
-/// How far from the straight path the first way around leads, in t.
-const ASIDE: f64 = 0.02;
-
-/// Paths that another round may help: lost ones, those that share a class, and after the first round also those that
-/// seemed to end in singular solutions.
-fn unsettled(fates: &[Fate], round: u32) -> Vec<usize> {
-    let mut open: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Lost).collect();
-    if round == 0 {
-        open.extend((0..fates.len()).filter(|&path| fates[path] == Fate::Singular));
-    }
-    let (paths, foci): (Vec<usize>, Vec<_>) =
-        isolated(fates).map(|(path, class)| (path, class.solution.foci())).unzip();
-    let first = first_of_class(&foci, SAME);
-    let mut shared = vec![false; paths.len()];
-    for (at, &first) in first.iter().enumerate() {
-        if first != at {
-            (shared[first], shared[at]) = (true, true);
-        }
-    }
-    open.extend(paths.iter().zip(&shared).filter(|(_, shared)| **shared).map(|(&path, _)| path));
-    open.sort_unstable();
-    open
-}
-
-/// The isolated solutions with the numbers of their paths.
-pub(super) fn isolated(fates: &[Fate]) -> impl Iterator<Item = (usize, &Class)> {
-    fates.iter().enumerate().filter_map(|(path, fate)| match fate {
-        Fate::Isolated(class) => Some((path, class)),
-        Fate::Singular | Fate::Lost => None,
-    })
 }
 
 /// Distinct classes, what is real about them, and the census.
 pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     let finite: Vec<Class> = isolated(&ends.fates).map(|(_, class)| *class).collect();
-    let foci: Vec<_> = finite.iter().map(|class| class.solution.foci()).collect();
-    let first = first_of_class(&foci, SAME);
+    let solutions: Vec<Solution> = finite.iter().map(|class| class.solution).collect();
+    let first = firsts(&solutions, |s| certify(target, s));
     let mut classes: Vec<(f64, Class)> = (0..finite.len())
         .filter(|&at| first[at] == at)
-        .map(|at| (key(&foci[at]), Class { reality: reality(&finite[at].solution), ..finite[at] }))
+        .map(|at| {
+            (key(&solutions[at].foci()), Class { reality: reality(&finite[at].solution), ..finite[at] })
+        })
         .collect();
     classes.sort_by(|(one, a), (other, b)| a.reality.cmp(&b.reality).then(one.total_cmp(other)));
     let classes: Vec<Class> = classes.into_iter().map(|(_, class)| class).collect();
@@ -329,19 +173,23 @@ pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
         distinct: classes.len(),
         duplicates: finite.len() - classes.len(),
         again: ends.again,
-        real: count(Reality::Linkage),
-        curve_only: count(Reality::CurveOnly),
+        real: count(Reality::Real),
+        curve_only: count(Reality::RealCurve),
         complex: count(Reality::Complex),
     };
     Solved { target: *target, classes, census, cancelled }
 }
 
-/// What is real about a solution of a real target.
+/// Solutions nearer to a real linkage than this are real: rounding after refinement is far below it, pairs of nearly
+/// equal solutions are further apart.
+const REAL: f64 = 1e-8;
+
+/// What is real about a solution of a real target, to rounding: [`super::conjugation`] proves it.
 fn reality(of: &Solution) -> Reality {
     if of.imaginary_part() <= REAL {
-        Reality::Linkage
-    } else if class_distance(&of.foci(), &of.conjugate().foci()) <= REAL {
-        Reality::CurveOnly
+        Reality::Real
+    } else if of.is_in_class_of(&of.conjugate(), REAL) {
+        Reality::RealCurve
     } else {
         Reality::Complex
     }

@@ -14,10 +14,11 @@
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::classes::first_of_class;
+use super::correction::correct;
 use super::equations::{UNKNOWNS, residuals, solution, unknowns};
 use super::lanes::ORDER;
 use super::target::{Displacements, STEPS, Solution};
-use super::tracker::{Segment, correct};
+use super::tracker::Segment;
 use crate::linkage::Complex;
 use std::sync::OnceLock;
 use thiserror::Error;
@@ -122,9 +123,9 @@ impl StartSet {
     /// How many classes of this set the other has not, both being sets of the same target; their own duplicates count
     /// as well.
     pub fn distinct_from(&self, other: &StartSet) -> usize {
-        let foci: Vec<_> = other.solutions.iter().chain(&self.solutions).map(Solution::foci).collect();
+        let all: Vec<Solution> = other.solutions.iter().chain(&self.solutions).copied().collect();
         let others = other.solutions.len();
-        let first = first_of_class(&foci, SAME);
+        let first = first_of_class(&all, SAME);
         let mut met = vec![false; others];
         let mut new = 0;
         for &first in &first[others..] {

@@ -106,7 +106,7 @@ pub struct Tracked {
 }
 
 /// Nodes that the predictor remembers.
-const NODES: usize = 3;
+pub(super) const NODES: usize = 3;
 
 /// What the predictor knows of eight paths, the newest node first.
 struct State {
@@ -125,7 +125,7 @@ struct State {
 
 /// Weights of values and tangents that continue the Hermite polynomial through `nodes` to t.
 #[inline(always)]
-fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
+pub(super) fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
     let (mut of_value, mut of_tangent) = ([0.0; NODES], [0.0; NODES]);
     for (i, &node) in nodes.iter().enumerate() {
         let (mut lagrange, mut slope) = (1.0, 0.0);
@@ -146,7 +146,7 @@ fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
 /// The relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR), with T_j in place of tau_j.
 /// Not finite where a step is not.
 #[inline(always)]
-fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
+pub(super) fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
     let one = ComplexLanes::splat(Complex::ONE);
     let mut sum = F64x8([0.0; LANES]);
     for (i, (step, z)) in step.iter().zip(of).enumerate() {
@@ -187,6 +187,7 @@ impl State {
     }
 
     /// The point that the next step predicts, and its t.
+    #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
     #[inline(always)]
     fn predicted(&self) -> (Unknowns, [f64; LANES]) {
         let mut weights = [[F64x8([0.0; LANES]); NODES]; 2];
@@ -202,7 +203,8 @@ impl State {
         let mut z = [ComplexLanes::ZERO; UNKNOWNS];
         for (i, z) in z.iter_mut().enumerate() {
             for node in 0..NODES {
-                *z = *z + self.values[node][i].scale(weights[0][node])
+                *z = *z
+                    + self.values[node][i].scale(weights[0][node])
                     + self.tangents[node][i].scale(weights[1][node]);
             }
         }
@@ -281,7 +283,7 @@ fn displaced(from: &DisplacementLanes, velocity: &DisplacementLanes, t: F64x8) -
     at
 }
 
-fn velocity(along: &Segment) -> Displacements {
+pub(super) fn velocity(along: &Segment) -> Displacements {
     Displacements {
         delta: std::array::from_fn(|j| along.to.delta[j] - along.from.delta[j]),
         starred: std::array::from_fn(|j| along.to.starred[j] - along.from.starred[j]),
@@ -311,6 +313,7 @@ pub fn track(starts: &[Solution], along: &Segment, with: &Parameters, cancel: &A
 }
 
 /// One thread's eight lanes: takes paths until none is left.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 fn worker(
     starts: &[Solution],
@@ -363,57 +366,10 @@ fn worker(
 }
 
 #[inline(always)]
-fn add(z: &mut Unknowns, step: &Unknowns) {
+pub(super) fn add(z: &mut Unknowns, step: &Unknowns) {
     for (z, step) in z.iter_mut().zip(step) {
         *z = *z + *step;
     }
-}
-
-/// A solution corrected at fixed displacements.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corrected {
-    /// After the last Newton step.
-    pub solution: Solution,
-    /// The relative size of the last Newton step.
-    pub newton_step: f64,
-    /// The relative size of dz/dt along `velocity`: infinite or huge where the solution is singular.
-    pub speed: f64,
-    /// The smallest pivot of the elimination: near rounding where the solution is singular.
-    pub pivot: f64,
-}
-
-/// Newton steps at t = 1 of the segment: at most `most`, ended when the last is below 1e-15 for all or grows no more.
-pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected> {
-    use rayon::prelude::*;
-    let correct = |chunk: &[Solution]| {
-        vectorised(|| {
-            let at = DisplacementLanes::splat(&along.to);
-            let velocity = DisplacementLanes::splat(&velocity(along));
-            let mut z = [ComplexLanes::ZERO; UNKNOWNS];
-            for lane in 0..LANES {
-                let from = unknowns(&chunk[lane.min(chunk.len() - 1)]);
-                for (z, from) in z.iter_mut().zip(from) {
-                    z.set(lane, from);
-                }
-            }
-            let [mut change, mut speed, mut pivot] = [F64x8([f64::INFINITY; LANES]); 3];
-            for _ in 0..most.max(1) {
-                let ([step, tangent], smallest) = steps::<2>(&z, &at, &velocity);
-                add(&mut z, &step);
-                change = change_sq(&step, &z);
-                speed = change_sq(&tangent, &z);
-                pivot = smallest;
-            }
-            let corrected = |lane: usize| Corrected {
-                solution: solution(&std::array::from_fn(|i| z[i].get(lane))),
-                newton_step: change.0[lane].sqrt(),
-                speed: speed.0[lane].sqrt(),
-                pivot: pivot.0[lane].sqrt(),
-            };
-            (0..chunk.len()).map(corrected).collect::<Vec<_>>()
-        })
-    };
-    ends.par_chunks(LANES).flat_map_iter(correct).collect()
 }
 
 const _: () = assert!(ORDER == STEPS);

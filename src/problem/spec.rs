@@ -438,6 +438,10 @@ impl Default for SolveSpec {
     }
 }
 
+pub use crate::resampling::MAX_SMOOTHED;
+
+/// The most points of a target.
+pub const MAX_POINTS: usize = 100_000;
 /// The most candidates that a run gives.
 pub const MAX_CANDIDATES: usize = 100;
 /// The largest budget of evaluations.

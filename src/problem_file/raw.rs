@@ -17,14 +17,14 @@ use serde::Deserialize;
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "ProblemFile")]
 pub(crate) struct RawProblem {
-    /// 1.
+    /// The format of the file: 1.
     #[schemars(required)]
     pub format: Option<Count>,
-    /// 1 to 64 letters, digits, blanks and - _ . ; absent: the name of the file.
+    /// 1 to 64 letters, digits, blanks and `- _ .`, not starting with a dot; where silent, the name of the file.
     pub name: Option<String>,
-    /// Where the problem comes from.
+    /// Where the problem comes from, in words.
     pub source: Option<String>,
-    /// The unit of lengths.
+    /// The unit of lengths: it labels them and scales drawings.
     pub unit: Option<Unit>,
     /// What is wanted.
     #[schemars(required)]
@@ -57,11 +57,11 @@ pub(crate) struct RawTask {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Path")]
 pub(crate) struct RawPath {
-    /// The target points, each [x, y]; this or file or svg.
+    /// The target points in their order, each [x, y]. Give one of points, file and svg.
     pub points: Option<Vec<XY>>,
-    /// A CSV file beside the problem file, with columns x, y and optionally crank_deg, weight, tolerance.
+    /// A CSV file, named from the problem file's folder: columns x, y and optionally crank_deg, weight, tolerance.
     pub file: Option<String>,
-    /// An SVG drawing beside the problem file: its first path, polyline, polygon, circle or ellipse.
+    /// An SVG drawing, named from the problem file's folder: its first path, polyline, polygon, circle or ellipse.
     pub svg: Option<String>,
     /// The id of the drawing's shape, where it is not the first.
     pub svg_id: Option<String>,
@@ -69,11 +69,11 @@ pub(crate) struct RawPath {
     pub samples: Option<Count>,
     /// Smooths digitised points: the standard deviation of the window, a length along the path.
     pub smooth: Option<Number>,
-    /// Whether the target is a closed curve; absent: false, of a drawing: as it is drawn.
+    /// Whether the target is a closed curve; where silent, false, of a drawing as it is drawn.
     pub closed: Option<bool>,
-    /// The largest error accepted at any point.
+    /// The largest error accepted at any point; where silent, any.
     pub tolerance: Option<Number>,
-    /// Prescribed crank angles; absent: any.
+    /// Prescribed crank angles; where silent, the timing is free: each point is met at whatever angle suits it.
     pub timing: Option<OnlyTable<RawTiming>>,
 }
 
@@ -82,7 +82,7 @@ pub(crate) struct RawPath {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Timing")]
 pub(crate) struct RawTiming {
-    /// One a point, degrees, counter-clockwise positive.
+    /// One a point, degrees, counter-clockwise positive; or a column of the CSV file.
     pub crank_deg: Option<Vec<Number>>,
     /// What they are measured from.
     #[serde(default)]
@@ -94,13 +94,13 @@ pub(crate) struct RawTiming {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Design")]
 pub(crate) struct RawDesign {
-    /// The fixed pivot of the crank.
+    /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
     #[serde(rename = "A")]
     pub crank_pivot: Option<BoundedXY>,
-    /// The fixed pivot of the follower.
+    /// The fixed pivot of the follower, likewise.
     #[serde(rename = "B")]
     pub follower_pivot: Option<BoundedXY>,
-    /// |AC|, the crank.
+    /// |AC|, the crank; where silent, 0.02 to 5 sizes of the target, as are b, c and ground.
     pub a: Option<Bounds>,
     /// |CD|, the coupler.
     pub b: Option<Bounds>,
@@ -114,9 +114,9 @@ pub(crate) struct RawDesign {
     pub ground: Option<Bounds>,
     /// The direction from A to B, degrees from the x axis.
     pub ground_angle_deg: Option<Bounds>,
-    /// P along the line from C to D, from C.
+    /// P along the line from C to D, from C; where silent, at most 5 sizes of the target either way.
     pub coupler_x: Option<Bounds>,
-    /// P across the line from C to D, positive to its left.
+    /// P across the line from C to D, positive to its left; likewise.
     pub coupler_y: Option<Bounds>,
 }
 
@@ -125,18 +125,18 @@ pub(crate) struct RawDesign {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Require")]
 pub(crate) struct RawRequire {
-    /// The types allowed; absent: any.
+    /// The types allowed; where silent, any.
     #[serde(rename = "type")]
     pub types: Option<OneOrMore<LinkageType>>,
-    /// The least transmission angle, min(mu, 180 - mu), 0 to 90 degrees.
+    /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
     pub transmission_deg_min: Option<Number>,
-    /// Over which motion it is judged.
+    /// Over which motion it is judged; where silent, the cycle where the crank turns fully.
     pub transmission_over: Option<TransmissionOver>,
-    /// The longest over the shortest of ground, a, b, c.
+    /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
     pub link_ratio_max: Option<Number>,
-    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    /// The box [xmin, ymin, xmax, ymax] that must hold both fixed pivots.
     pub pivots_in: Option<Corners>,
-    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
+    /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
     pub footprint_in: Option<Corners>,
     /// Whether the points must be passed in order.
     #[serde(default)]
@@ -166,13 +166,13 @@ pub(crate) struct RawSolve {
     /// In which variables genetic and differential-evolution move.
     #[serde(default)]
     pub variables: Variables,
-    /// Every draw comes from this number.
+    /// Every draw comes from this number; 1 where silent.
     pub seed: Option<Count>,
-    /// How many distinct answers are wanted.
+    /// How many distinct answers are wanted, 1 to 100; 5 where silent.
     pub candidates: Option<Count>,
-    /// How many evaluations of the objective at most.
+    /// How many evaluations of the objective at most; 200000 where silent.
     pub evaluations: Option<Count>,
-    /// Seconds of search at most.
+    /// Seconds of search at most; a run that the clock ends cannot be repeated to the digit.
     pub time_limit_s: Option<Number>,
     /// The genetic algorithm's parameters.
     #[serde(default)]
@@ -189,7 +189,7 @@ pub(crate) struct RawSolve {
 pub(crate) struct RawExpect {
     /// The least sum of squared errors that is known.
     pub best_known_sum_sq: Option<Number>,
-    /// What a run has to reach to count as a hit; absent: best_known_sum_sq.
+    /// What a run has to reach to count as a hit; where silent, best_known_sum_sq.
     pub goal_sum_sq: Option<Number>,
     /// How many linkages there are through nine points.
     pub exact: Option<OnlyTable<RawExpectedCensus>>,

@@ -29,6 +29,9 @@ impl WarningKind {
     }
 }
 
+/// How the text of a [`WarningKind::OnBound`] ends, after the key and its limit.
+pub const ON_BOUND_TEXT: &str = " is on its limit: the problem's bounds decide it";
+
 /// One reason to look twice before building a candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Warning {

@@ -2,7 +2,7 @@
 
 use super::text::{clean, significant, wrapped};
 use super::words;
-use crate::record::{Candidate, Record, WarningKind};
+use crate::record::{Candidate, ON_BOUND_TEXT, Record, WarningKind};
 
 /// The text is no longer than this many lines of warnings and cognates each.
 const MOST_LINES: usize = 20;
@@ -29,9 +29,24 @@ pub(super) fn lines(record: &Record, columns: usize) -> String {
     format!("\n{text}")
 }
 
-/// The warnings of a candidate in one line; empty without any.
+/// The warnings of a candidate in one line; empty without any. Several limits are told in one clause.
 pub(super) fn warnings(candidate: &Candidate) -> String {
-    candidate.warnings.iter().take(MOST_LINES).map(|w| clean(&w.text)).collect::<Vec<_>>().join("; ")
+    let (mut said, mut limits) = (Vec::new(), Vec::new());
+    for warning in candidate.warnings.iter().take(MOST_LINES) {
+        match warning.text.strip_suffix(ON_BOUND_TEXT) {
+            Some(limit) if warning.kind == WarningKind::OnBound => limits.push(clean(limit)),
+            _ => said.push(clean(&warning.text)),
+        }
+    }
+    match limits.as_slice() {
+        [] => {}
+        [limit] => said.push(format!("{limit}{ON_BOUND_TEXT}")),
+        [first @ .., last] => said.push(format!(
+            "{} and {last} are on their limits: the problem's bounds decide them",
+            first.join(", ")
+        )),
+    }
+    said.join("; ")
 }
 
 fn buildable(record: &Record, candidate: &Candidate) -> String {

@@ -43,6 +43,12 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
                 None => continue,
             }
         }
+        // Near a change point far from the origin a cognate's own rounding can move its curve: none is offered.
+        let size = problem.task().size();
+        forms.retain(|form| {
+            let one: At<'_> = (&candidate.linkage, &candidate.crank_deg, &candidate.t1_at);
+            first_apart(size, one, (&form.linkage, &form.crank_deg, &form.t1_at)).is_none()
+        });
         candidate.alternatives = forms.iter().map(alternative).collect();
     }
     if candidates.iter().any(|candidate| candidate.accepted) {
@@ -53,6 +59,25 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
         candidate.rank = rank;
     }
 }
+
+/// Coupler points of cognates agree within this part of the larger linkage and the target's size.
+const SAME_POINT: f64 = 1e-7;
+
+/// The first point at which two linkages with their crank angles (degrees) and assemblies do not have one coupler
+/// point, to [`SAME_POINT`] of the target's `size` or their longest link; `None` where they have everywhere.
+pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
+    let span = one.0.longest_link().max(other.0.longest_link()).max(size);
+    let point = |(linkage, crank_deg, t1_at): At<'_>, i: usize| {
+        let joints = linkage.position_with(crank_deg.get(i)?.to_radians(), *t1_at.get(i)?).joints()?;
+        Some(joints.coupler_point)
+    };
+    (0..one.1.len().min(other.1.len())).find(|&i| {
+        !point(one, i).zip(point(other, i)).is_some_and(|(p, q)| (p - q).norm() <= SAME_POINT * span)
+    })
+}
+
+/// A linkage with its crank angle (degrees) and assembly at each point.
+pub type At<'a> = (&'a FourBar, &'a [f64], &'a [AssemblyMode]);
 
 /// What tells linkages of the same curve and error apart, on a grid above rounding; the less, the better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]

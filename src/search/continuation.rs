@@ -11,7 +11,7 @@ use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::exact::certificate::{Certificate, certify, certify_all};
 use crate::exact::distinct::not_proved_distinct;
 use crate::exact::mechanisms::solution_of;
-use crate::exact::{self, Options, Reality, Solution, Target, conjugation};
+use crate::exact::{self, Options, Reality, Solution, Target};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
 use crate::problem::precision::precision_points;
@@ -162,16 +162,6 @@ pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
 /// More roundings than a sum of three points and its length take.
 const ROUNDINGS: f64 = 16.0;
 
-/// Whether a class is proved to be what it was found to be.
-fn agree(found: Reality, proved: conjugation::Reality) -> bool {
-    matches!(
-        (found, proved),
-        (Reality::Linkage, conjugation::Reality::Real)
-            | (Reality::CurveOnly, conjugation::Reality::RealCurve)
-            | (Reality::Complex, conjugation::Reality::Complex)
-    )
-}
-
 /// The proof of a class by another of its cognates: what is badly conditioned in one may be well in the next.
 fn of_a_cognate(target: &Target, solution: &Solution) -> Option<Certificate> {
     let images = solution.images(&target.displacements);
@@ -201,7 +191,7 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
         .classes
         .iter()
         .zip(&proofs)
-        .filter(|(class, _)| class.reality == Reality::Linkage)
+        .filter(|(class, _)| class.reality == Reality::Real)
         .map(|(class, proof)| proof.as_ref().map_or(class.solution, |proof| proof.refined))
         .collect();
     let paths = &solved.census;
@@ -221,7 +211,7 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
             .classes
             .iter()
             .zip(&proofs)
-            .filter(|(class, proof)| proof.as_ref().is_some_and(|proof| agree(class.reality, proof.reality)))
+            .filter(|(class, proof)| proof.as_ref().is_some_and(|proof| class.reality == proof.reality))
             .count(),
         not_told_apart: not_proved_distinct(&certificates).len(),
         ..Census::default()

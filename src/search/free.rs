@@ -76,13 +76,13 @@ pub const NEARLY: f64 = 1e-3;
 /// Batches at least for a sparse target.
 const LEAST_BATCHES: u64 = 5;
 /// Batches at least for a dense target.
-const DENSE_BATCHES: u64 = 3;
+const DENSE_BATCHES: u64 = 2;
 /// Batches at least for a dense target whose errors are not noise.
 const PATIENT_BATCHES: u64 = 24;
 /// Errors of neighbouring points that are more alike than this are not noise.
 const ALIKE: f64 = 0.3;
 /// From this batch on a dense target of at most so many points is also explored on all of them.
-const WHOLE_FROM: u64 = 3;
+const WHOLE_FROM: u64 = 1;
 const WHOLE_MOST: usize = 200;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;

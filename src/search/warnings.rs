@@ -5,7 +5,7 @@
 
 use crate::linkage::LinkageType;
 use crate::problem::Problem;
-use crate::record::{Candidate, Figure, Requirement, Warning, WarningKind};
+use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
 
 /// Below this worst transmission angle, in degrees, a loaded linkage may jam.
 pub const LEAST_TRANSMISSION_DEG: f64 = 10.0;
@@ -47,8 +47,7 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     }
     for requirement in &candidate.requirements {
         on_bound(problem, requirement, &mut |key, side, value, limit| {
-            let text =
-                format!("{key}{side} = {} is on its limit: the problem's bounds decide it", shown(limit));
+            let text = format!("{key}{side} = {}{ON_BOUND_TEXT}", shown(limit));
             push(WarningKind::OnBound, key, value, limit, text);
         });
     }

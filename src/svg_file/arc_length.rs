@@ -77,7 +77,9 @@ impl Measured {
         let index = after.saturating_sub(1).min(self.segments.len() - 1);
         let (start, end) = (self.starts[index], self.starts[index + 1]);
         let t = match &self.unit[index] {
-            PathSeg::Line(_) if end > start => ((s - start) / (end - start)).clamp(0.0, 1.0),
+            // Strokes without length are drawn too, and nothing divides by them.
+            _ if end <= start => 0.0,
+            PathSeg::Line(_) => ((s - start) / (end - start)).clamp(0.0, 1.0),
             segment => segment.inv_arclen(s - start, self.accuracy),
         };
         self.segments[index].eval(t)

@@ -4,13 +4,10 @@ use super::{ABSOLUTE, Against, Mismatch};
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::record::{Alternative, Candidate, Record};
-use crate::search::cognates::{SAME_ERROR, not_met};
+use crate::search::cognates::{SAME_ERROR, first_apart, not_met};
 use crate::search::family::family;
 use crate::search::rank::exact_sum_sq;
 use crate::search::warnings::{is_serious, warnings};
-
-/// Coupler points of cognates agree within this part of the larger linkage and the target's size.
-const SAME_POINT: f64 = 1e-7;
 
 /// Everything of the record that is no candidate's figure.
 pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mismatch>) {
@@ -108,16 +105,11 @@ impl Against<'_> {
             self.differ(&what("not_met"), recorded.not_met.join(", "), not_met(&found).join(", "));
         }
         // The same curve: the same coupler point at every point of the target.
-        let span = found.linkage.longest_link().max(candidate.linkage.longest_link()).max(size);
-        let point = |linkage: &crate::linkage::FourBar, deg: f64, t1| {
-            linkage.position_with(deg.to_radians(), t1).joints().map(|joints| joints.coupler_point)
-        };
-        let apart = (0..n.min(candidate.crank_deg.len())).find(|&i| {
-            let own = point(&recorded.linkage, recorded.crank_deg[i], recorded.t1_at[i]);
-            let theirs =
-                candidate.t1_at.get(i).and_then(|t1| point(&candidate.linkage, candidate.crank_deg[i], *t1));
-            !own.zip(theirs).is_some_and(|(p, q)| (p - q).norm() <= SAME_POINT * span)
-        });
+        let apart = first_apart(
+            problem.task().size(),
+            (&candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
+            (&recorded.linkage, &recorded.crank_deg, &recorded.t1_at),
+        );
         if let Some(i) = apart {
             self.differ(
                 &what("the coupler point"),

@@ -171,6 +171,9 @@ fn cognates_are_written_as_linkage_files_that_trace_the_same_curve() {
         }
     }
     assert!(fs::read_to_string(folder.path().join("all.svg")).expect("drawn").starts_with("<"));
+    let here = linkwright(folder.path(), &["cognates", &hoeken]);
+    assert_eq!(here.code, 0, "{}", here.stderr);
+    assert!(folder.path().join("hoeken-cognate-1.toml").is_file(), "{}", here.stdout);
     let again = linkwright(folder.path(), &["cognates", &hoeken, "--out", "two"]);
     assert_eq!(again.code, 2, "existing files are not overwritten");
 }

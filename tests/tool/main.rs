@@ -5,9 +5,13 @@ mod analyze;
 mod bad_input;
 mod batches;
 mod command_line;
-mod continuation;
 #[path = "../common/mod.rs"]
 mod common;
+mod continuation;
+mod corpora;
+mod documents;
+mod faults;
+mod problem_file_document;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;

@@ -1,6 +1,6 @@
 //! `docs/seeds.md`: each example of the three seed papers beside our figure, with the errata. The document is
 //! made from the figures that the library computes, so it cannot go stale: this test makes it again and
-//! compares. To write it after a change of wording: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test seeds_document`.
+//! compares. To write it after a change of wording: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool seeds_document`.
 
 use crate::reference::shipped_linkage;
 use linkwright::linkage::loop_closure::{

@@ -1,0 +1,215 @@
+//! Exact synthesis: how long nine points take, and how often everything is found.
+//!
+//! ```text
+//! cargo bench --bench nine_point                     all four parts
+//! cargo bench --bench nine_point -- full             a full solve of problem 3 of 1992, on 1 and 2 threads,
+//!                                                 without and with certificates
+//! cargo bench --bench nine_point -- move             one point moved by 2 % of the size, a frame after the other, 1 thread
+//! cargo bench --bench nine_point -- targets 100      100 targets each: coupler curves, normal points, noisy ellipses
+//! ```
+//!
+//! Every part asserts its answer before it prints a time. Times are medians of [`RUNS`] runs.
+
+#![expect(clippy::print_stdout, reason = "the tables are what this program is for")]
+
+#[path = "../tests/common/random.rs"]
+mod random;
+
+use linkwright::exact::{
+    Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
+    not_proved_distinct, resolve_from, solve,
+};
+use linkwright::linkage::{Complex, FourBar};
+use linkwright::solve::streams::{Stream, normal, stream, uniform};
+use random::{TYPES, linkage, one_of, trace};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+const RUNS: usize = 15;
+const CLASSES: usize = 1442;
+/// Noise of the ellipses' points, in half axes.
+const NOISE: f64 = 0.01;
+/// Nine frames: each point moves once.
+const FRAMES: usize = 9;
+/// A generating linkage is found when pivots and pins are met within this part of its size.
+const FOUND: f64 = 1e-5;
+
+/// Wampler, Morgan & Sommese 1992, problem 3.
+fn wms3() -> [Complex; 9] {
+    [
+        (0.25, 0.0),
+        (0.52, 0.1),
+        (0.8, 0.7),
+        (1.2, 1.0),
+        (1.4, 1.3),
+        (1.1, 1.48),
+        (0.7, 1.4),
+        (0.2, 1.0),
+        (0.02, 0.4),
+    ]
+    .map(|(x, y)| Complex::new(x, y))
+}
+
+fn solved(points: [Complex; 9]) -> Solved {
+    let target = Target::new(points).expect("nine different points");
+    solve(&target, &Options::default(), &|_, _| {}, &AtomicBool::new(false))
+}
+
+fn median(mut of: Vec<f64>) -> f64 {
+    of.sort_by(f64::total_cmp);
+    of[of.len() / 2]
+}
+
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads")
+}
+
+/// The certificates of all classes; every one is there and no two are of one class.
+fn proved(answer: &Solved) -> Vec<Certificate> {
+    let solutions: Vec<Solution> = answer.classes.iter().map(|class| class.solution).collect();
+    let proofs: Vec<Certificate> = certify_all(&answer.target, &solutions).into_iter().flatten().collect();
+    assert_eq!(proofs.len(), CLASSES);
+    assert!(not_proved_distinct(&proofs).is_empty());
+    proofs
+}
+
+fn full() {
+    let reference = solved(wms3());
+    assert_eq!(reference.completeness(), Completeness::Complete);
+    assert_eq!((reference.census.distinct, reference.census.real), (CLASSES, 64));
+    let certificates = proved(&reference);
+    for threads in [1, 2] {
+        let pool = pool(threads);
+        let times = (0..RUNS).map(|_| {
+            let clock = Instant::now();
+            let answer = pool.install(|| solved(wms3()));
+            let found = clock.elapsed().as_secs_f64();
+            let proofs = pool.install(|| proved(&answer));
+            let all = clock.elapsed().as_secs_f64();
+            assert_eq!((&answer, &proofs), (&reference, &certificates), "threads change no digit");
+            (found, all)
+        });
+        let (found, all): (Vec<f64>, Vec<f64>) = times.unzip();
+        println!(
+            "full solve, {threads} thread(s): {:.3} s; with all certificates {:.3} s",
+            median(found),
+            median(all)
+        );
+    }
+}
+
+fn moved() {
+    let mut points = wms3();
+    let size = 2.0;
+    let mut before = solved(points);
+    let (mut times, mut kept) = (Vec::new(), Vec::new());
+    for frame in 0..FRAMES {
+        points[frame] += Complex::from_polar(0.02 * size, frame as f64);
+        let target = Target::new(points).expect("nine different points");
+        let clock = Instant::now();
+        let moved =
+            pool(1).install(|| resolve_from(&before, &target, &Options::default(), &AtomicBool::new(false)));
+        times.push(clock.elapsed().as_secs_f64());
+        let whole = solved(points);
+        assert_eq!(moved.solved.census.real, whole.census.real, "frame {frame}");
+        assert_eq!(moved.solved.census.distinct, whole.census.distinct, "frame {frame}");
+        assert!(!moved.fell_back, "frame {frame}");
+        let real = |of: &Solved| of.classes[..of.census.real].to_vec();
+        for class in real(&whole) {
+            let same = |other: &Class| other.solution.is_in_class_of(&class.solution, 1e-7);
+            assert!(real(&moved.solved).iter().any(same), "frame {frame}");
+        }
+        kept.push(moved.kept);
+        before = moved.solved;
+    }
+    println!("one point moved, 1 thread: {:.3} s a frame; kept {kept:?}", median(times));
+}
+
+/// Whether a linkage, at its position for the first point, is among the real classes.
+fn holds(answer: &Solved, linkage: &FourBar, joints: [Complex; 2]) -> bool {
+    let target = &answer.target;
+    let [a, b] = [linkage.crank_pivot(), linkage.follower_pivot()];
+    let wanted = [a, joints[0], b, joints[1]];
+    let size = wanted.iter().map(|z| (z - target.points[0]).norm()).fold(0.0, f64::max);
+    answer.classes.iter().filter(|class| class.reality == Reality::Real).any(|class| {
+        class.solution.images(&target.displacements).iter().any(|image| {
+            let places = [image.grounds[0], image.pins[0], image.grounds[1], image.pins[1]];
+            places
+                .iter()
+                .zip(wanted)
+                .all(|(z, w)| (target.points[0] + z * target.scale - w).norm() < FOUND * size)
+        })
+    })
+}
+
+fn on_a_curve(numbers: &mut Stream) -> ([Complex; 9], FourBar, [Complex; 2]) {
+    loop {
+        let of = one_of(numbers, &TYPES);
+        let linkage = linkage(numbers, of);
+        let Some(traced) = trace(numbers, &linkage, 9, None) else { continue };
+        let (crank_angle, assembly) = traced.positions[0];
+        let Some(joints) = linkage.position_with(crank_angle, assembly).joints() else { continue };
+        if let Ok(points) = traced.points.try_into() {
+            return (points, linkage, [joints.crank_pin, joints.follower_pin]);
+        }
+    }
+}
+
+fn targets(count: u64) {
+    let (mut complete, mut found) = ([0; 3], 0);
+    let mut times = Vec::new();
+    for index in 0..count {
+        let mut numbers = stream(9, index);
+        let (curve, linkage, pins) = on_a_curve(&mut numbers);
+        let gaussian = std::array::from_fn(|_| {
+            Complex::new(normal(&mut numbers, 0.0, 1.0), normal(&mut numbers, 0.0, 1.0))
+        });
+        let minor = uniform(&mut numbers, 0.2, 1.0);
+        let ellipse = std::array::from_fn(|j| {
+            let angle = std::f64::consts::TAU * j as f64 / 9.0;
+            Complex::new(
+                normal(&mut numbers, angle.cos(), NOISE),
+                normal(&mut numbers, minor * angle.sin(), NOISE),
+            )
+        });
+        for (kind, points) in [curve, gaussian, ellipse].into_iter().enumerate() {
+            let clock = Instant::now();
+            let answer = solved(points);
+            times.push(clock.elapsed().as_secs_f64());
+            complete[kind] += u64::from(answer.census.distinct == CLASSES);
+            if answer.census.distinct != CLASSES {
+                println!("  {} {index}: {:?}", ["curve", "normal", "ellipse"][kind], answer.census);
+            }
+            if kind == 0 {
+                let there = holds(&answer, &linkage, pins);
+                found += u64::from(there);
+                if !there {
+                    println!("  curve {index}: its linkage was not found");
+                }
+            }
+        }
+    }
+    println!(
+        "all {CLASSES} classes: {} coupler curves, {} normal, {} ellipses of {count} each",
+        complete[0], complete[1], complete[2]
+    );
+    println!("the generating linkage: {found} of {count}; median {:.3} s", median(times));
+    assert_eq!(found, count);
+    assert!(
+        complete[0] * 100 >= 98 * count && complete[1] * 100 >= 99 * count && complete[2] * 100 >= 99 * count
+    );
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    let part = words.first().map_or("", String::as_str);
+    if part.is_empty() || part == "full" {
+        full();
+    }
+    if part.is_empty() || part == "move" {
+        moved();
+    }
+    if part.is_empty() || part == "targets" {
+        targets(words.get(1).map_or(100, |word| word.parse().expect("a number of targets")));
+    }
+}

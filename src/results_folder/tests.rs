@@ -1,0 +1,239 @@
+//! Every write fails in turn, and every instant is the last one.
+
+use super::disk::faults;
+use super::*;
+use std::collections::BTreeMap;
+
+type Files = Vec<(String, Vec<u8>)>;
+type Shown = BTreeMap<String, Vec<u8>>;
+
+/// A record that can be read, as small as one is.
+fn record(name: &str) -> Vec<u8> {
+    let text = include_str!("../../tests/corpora/record/accepted.json");
+    let mut record: Record = serde_json::from_str(text).expect("it is a record");
+    record.problem.name = name.into();
+    serde_json::to_vec_pretty(&record).expect("it is data")
+}
+
+fn file(name: &str, text: &str) -> (String, Vec<u8>) {
+    (name.into(), text.as_bytes().to_vec())
+}
+
+fn old() -> Files {
+    vec![
+        ("record.json".into(), record("old")),
+        file("timing.json", "old timing"),
+        file("candidates.csv", "old candidates"),
+        file("linkage-1.toml", "old linkage"),
+        file("linkage-2.toml", "old linkage 2"),
+        file("exact.svg", "old drawing"),
+    ]
+}
+
+fn new() -> Files {
+    vec![
+        file("timing.json", "new timing"),
+        ("record.json".into(), record("new")),
+        file("candidates.csv", "new candidates"),
+        file("linkage-1.toml", "new linkage"),
+        file("contact-sheet.svg", "new sheet"),
+    ]
+}
+
+fn as_shown(files: &Files) -> Shown {
+    files.iter().cloned().collect()
+}
+
+/// Every file of a folder whose name has no dot in front.
+fn shown(folder: &Path) -> Shown {
+    let names = replacement::names(folder).expect("it can be listed");
+    let visible = names.into_iter().filter(|name| !name.starts_with('.'));
+    visible.map(|name| (name.clone(), fs::read(folder.join(&name)).expect("it can be read"))).collect()
+}
+
+fn hidden(folder: &Path) -> Vec<String> {
+    let names = replacement::names(folder).expect("it can be listed");
+    names.into_iter().filter(|name| name.starts_with('.')).collect()
+}
+
+/// A folder with the old result, or none.
+fn place(holds_old: bool) -> tempfile::TempDir {
+    faults::fail(0..0);
+    let place = tempfile::tempdir().expect("a folder");
+    if holds_old {
+        let mut folder = ResultsFolder::take(&place.path().join("r")).expect("it is free");
+        folder.replace(&old()).expect("there is room");
+    }
+    place
+}
+
+/// Takes the folder and replaces its result by the new one.
+fn run(path: &Path) -> Result<(), FolderError> {
+    ResultsFolder::take(path)?.replace(&new())
+}
+
+/// How many steps a run has that nothing disturbs.
+fn steps(holds_old: bool) -> usize {
+    let place = place(holds_old);
+    faults::fail(0..0);
+    run(&place.path().join("r")).expect("nothing fails");
+    assert_eq!(shown(&place.path().join("r")), as_shown(&new()));
+    assert!(hidden(&place.path().join("r")).is_empty());
+    faults::steps()
+}
+
+#[test]
+fn a_write_that_fails_is_told_and_leaves_a_whole_result() {
+    for holds_old in [false, true] {
+        let count = steps(holds_old);
+        assert!(count > 2 * new().len(), "{count}");
+        let mut kept = 0;
+        for k in 0..count {
+            let place = place(holds_old);
+            let path = place.path().join("r");
+            faults::fail(k..k + 1);
+            let error = run(&path).expect_err("a step failed");
+            faults::fail(0..0);
+            let FolderError::Io { path: named, source } = &error else { panic!("{error}") };
+            assert!(Path::new(named).starts_with(&path), "{named}");
+            assert_eq!(source.kind(), io::ErrorKind::StorageFull);
+            // What was there before the first file was in its place, or a new result that the next run ends.
+            let before = if holds_old { as_shown(&old()) } else { Shown::new() };
+            let is_before = if path.exists() { shown(&path) == before } else { !holds_old };
+            kept += usize::from(is_before);
+            if !is_before {
+                assert_eq!(read_record(&path).expect("it is there").problem.name, "new", "step {k}");
+                drop(ResultsFolder::take(&path).expect("it can be taken"));
+                assert_eq!(shown(&path), as_shown(&new()), "step {k}");
+            }
+            run(&path).expect("there is room again");
+            assert_eq!(shown(&path), as_shown(&new()), "step {k}");
+            assert!(hidden(&path).is_empty());
+        }
+        assert!(
+            kept > 2 * new().len(),
+            "a full disk is found before anything is replaced: {kept} of {count}"
+        );
+    }
+}
+
+#[test]
+fn whatever_instant_is_the_last_the_folder_holds_one_result_as_a_whole() {
+    for holds_old in [false, true] {
+        let (mut olds, mut news) = (0, 0);
+        for k in 0..steps(holds_old) {
+            let place = place(holds_old);
+            let path = place.path().join("r");
+            // From here on nothing reaches the disk: no clearing up either.
+            faults::fail(k..usize::MAX);
+            run(&path).expect_err("the process is gone");
+            faults::fail(0..0);
+            if !path.exists() {
+                assert!(!holds_old);
+                continue;
+            }
+            let read = read_record(&path).ok().map(|record| record.problem.name);
+            drop(ResultsFolder::take(&path).unwrap_or_else(|e| panic!("step {k}: {e}")));
+            assert!(hidden(&path).is_empty(), "step {k}");
+            match read.as_deref() {
+                Some("new") => {
+                    news += 1;
+                    assert_eq!(shown(&path), as_shown(&new()), "step {k}");
+                }
+                Some(_) => {
+                    olds += 1;
+                    assert_eq!(shown(&path), as_shown(&old()), "step {k}");
+                }
+                None => assert!(!holds_old && shown(&path).is_empty(), "step {k}"),
+            }
+        }
+        assert!(news > 3 && (olds > 10 || !holds_old), "{olds} {news}");
+    }
+}
+
+#[test]
+fn breaking_off_again_and_again_comes_to_the_same_end() {
+    let count = steps(true);
+    for k in 0..count {
+        let place = place(true);
+        let path = place.path().join("r");
+        faults::fail(k..usize::MAX);
+        run(&path).expect_err("the process is gone");
+        faults::fail(0..0);
+        let read = read_record(&path).expect("one of the two").problem.name;
+        // Each of those who take it up comes one step further.
+        for further in 0.. {
+            faults::fail(further..usize::MAX);
+            let taken = ResultsFolder::take(&path);
+            faults::fail(0..0);
+            assert_eq!(read_record(&path).expect("it stays").problem.name, read);
+            if taken.is_ok() {
+                break;
+            }
+        }
+        let whole = if read == "new" { new() } else { old() };
+        assert_eq!(shown(&path), as_shown(&whole), "step {k}");
+    }
+}
+
+#[test]
+fn a_folder_that_vanished_is_made_anew() {
+    let place = place(true);
+    let path = place.path().join("r");
+    let mut folder = ResultsFolder::take(&path).expect("it is free");
+    fs::remove_dir_all(&path).expect("it is ours");
+    folder.replace(&new()).expect("there is room");
+    assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })), "it is ours still");
+    drop(folder);
+    assert_eq!(shown(&path), as_shown(&new()));
+    assert!(hidden(&path).is_empty());
+}
+
+#[test]
+fn a_file_is_written_as_a_whole_or_stays_what_it_was() {
+    let place = tempfile::tempdir().expect("a folder");
+    let path = place.path().join("table.csv");
+    for failing in [0..1, 0..usize::MAX] {
+        faults::fail(failing.clone());
+        write_file(&path, b"first").expect_err("a step failed");
+        assert!(!path.exists());
+        faults::fail(failing.clone());
+        create_file(&path, b"first").expect_err("a step failed");
+        faults::fail(0..0);
+        assert!(shown(place.path()).is_empty() && hidden(place.path()).is_empty());
+    }
+    create_file(&path, b"first").expect("there is room");
+    faults::fail(0..1);
+    write_file(&path, b"second").expect_err("a step failed");
+    faults::fail(0..0);
+    assert_eq!(fs::read(&path).expect("it is there"), b"first");
+    let FolderError::Io { source, .. } = create_file(&path, b"second").expect_err("it is there") else {
+        panic!("of the disk")
+    };
+    assert_eq!(source.kind(), io::ErrorKind::AlreadyExists);
+    write_file(&path, b"second").expect("there is room");
+    assert_eq!(fs::read(&path).expect("it is there"), b"second");
+    let rescued = rescue(&new()).expect("there is room");
+    assert_eq!(shown(&rescued), as_shown(&new()));
+    fs::remove_dir_all(rescued).expect("it is ours");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_followed_by_files_that_a_person_named_and_by_no_replacement() {
+    use std::os::unix::fs::symlink;
+    let place = place(true);
+    let (path, elsewhere) = (place.path().join("r"), place.path().join("elsewhere"));
+    fs::create_dir(&elsewhere).expect("a folder");
+    fs::write(elsewhere.join("record.json"), record("planted")).expect("there is room");
+    symlink(&elsewhere, path.join(".linkwright-whole")).expect("a link");
+    drop(ResultsFolder::take(&path).expect("it is free"));
+    assert_eq!(shown(&path), as_shown(&old()));
+    assert_eq!(shown(&elsewhere).len(), 1, "nothing was taken from there");
+    let link = place.path().join("link.csv");
+    fs::write(elsewhere.join("real.csv"), "before").expect("there is room");
+    symlink(elsewhere.join("real.csv"), &link).expect("a link");
+    write_file(&link, b"after").expect("there is room");
+    assert_eq!(fs::read(elsewhere.join("real.csv")).expect("it is there"), b"after");
+    assert!(fs::symlink_metadata(&link).expect("it is there").is_symlink());
+}

@@ -1,0 +1,158 @@
+//! A reference page of a file's keys, made from its schema: a section for each table, a row for each key.
+
+use super::{SchemaKind, schema};
+use serde_json::{Map, Value};
+use std::fmt::Write;
+
+/// The order of the tables at the top of a problem file; others follow by name.
+const ORDER: [&str; 5] = ["task", "design", "require", "solve", "expect"];
+
+/// The reference of a kind of file as a page of Markdown: every table with its keys, what each may be, its default and
+/// its meaning.
+///
+/// ```
+/// use linkwright::schema::{SchemaKind, reference};
+/// assert!(reference(SchemaKind::Problem).contains("| `transmission_deg_min` | number |"));
+/// ```
+pub fn reference(kind: SchemaKind) -> String {
+    let schema = schema(kind);
+    let mut page = Page { schema: &schema, text: String::new() };
+    let name = kind.name();
+    // A string takes whatever is written to it: the results of `write!` below cannot be errors.
+    let _ = write!(
+        page.text,
+        "# The {name} file\n\n\
+         This page is made from the program's own schema: `linkwright schema {name} --markdown` prints it. Unknown keys \
+         are refused. All numbers are finite and below 1e12 in magnitude; angles are in degrees, lengths in the file's \
+         unit.\n"
+    );
+    page.table("", &schema);
+    page.text
+}
+
+/// The page while it is written.
+struct Page<'a> {
+    schema: &'a Value,
+    text: String,
+}
+
+impl<'a> Page<'a> {
+    /// What a value's schema says, with references followed and the alternative `null` (key absent) left out.
+    fn resolved(&self, value: &'a Value) -> &'a Value {
+        if let Some(place) = value["$ref"].as_str() {
+            return self.schema.pointer(place.trim_start_matches('#')).unwrap_or(value);
+        }
+        match value["anyOf"].as_array().map(Vec::as_slice) {
+            Some([one, null]) if null["type"] == "null" => self.resolved(one),
+            _ => value,
+        }
+    }
+
+    /// A table's rows; then the tables in it, each under its name.
+    fn table(&mut self, name: &str, table: &'a Value) {
+        let Some(keys) = table["properties"].as_object() else { return };
+        let required: Vec<&str> =
+            table["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+        let (mut inner, rows): (Vec<_>, Vec<_>) =
+            keys.iter().partition(|(_, value)| self.inner(value).is_some());
+        inner.sort_by_key(|(key, _)| ORDER.iter().position(|first| first == key).unwrap_or(ORDER.len()));
+        if !rows.is_empty() {
+            self.text.push_str("\n| key | what | default | meaning |\n|---|---|---|---|\n");
+        }
+        let mut words = Vec::new();
+        for (key, value) in rows {
+            let default = match &value["default"] {
+                Value::Null if required.contains(&key.as_str()) => "required".to_owned(),
+                Value::Null => String::new(),
+                default => format!("`{default}`").replace('"', ""),
+            };
+            let (what, meaning) = (self.what(value), description(value));
+            let _ = writeln!(self.text, "| `{key}` | {what} | {default} | {meaning} |");
+            words.extend(self.words(value).map(|choices| (key, choices)));
+        }
+        for (key, choices) in words {
+            let _ = write!(self.text, "\n`{key}`:\n\n");
+            for choice in choices {
+                let word = choice["const"].as_str().unwrap_or_default();
+                let _ = writeln!(self.text, "- `{word}`: {}", description(choice));
+            }
+        }
+        for (key, value) in inner {
+            let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+            let Some((table, list)) = self.inner(value) else { continue };
+            let heading = if list { format!("[[{path}]]") } else { format!("[{path}]") };
+            let _ = write!(self.text, "\n## `{heading}`\n\n{}\n", description(value));
+            self.table(&path, table);
+        }
+    }
+
+    /// The table that a key holds, and whether it holds a list of them.
+    fn inner(&self, value: &'a Value) -> Option<(&'a Value, bool)> {
+        let value = self.resolved(value);
+        let (value, list) = match &value["items"] {
+            Value::Null => (value, false),
+            items => (self.resolved(items), true),
+        };
+        value["properties"].is_object().then_some((value, list))
+    }
+
+    /// The words that a key may be, where it is one of several words or a list of such.
+    fn words(&self, value: &'a Value) -> Option<&'a Vec<Value>> {
+        let value = self.resolved(value);
+        if let Some(alternatives) = value["anyOf"].as_array() {
+            return alternatives.iter().find_map(|one| self.words(one));
+        }
+        value["oneOf"].as_array().filter(|choices| choices.iter().all(|choice| choice["const"].is_string()))
+    }
+
+    /// What a key may be, in words.
+    fn what(&self, value: &'a Value) -> String {
+        let value = self.resolved(value);
+        if let Some(alternatives) = value["anyOf"].as_array() {
+            let several: Vec<String> = alternatives.iter().map(|one| self.what(one)).collect();
+            return several.join(" or ").replace("number or [number, number]", "number or [min, max]");
+        }
+        if let Some(choices) = self.words(value) {
+            return if choices.is_empty() { "text".into() } else { "a word".into() };
+        }
+        match kind(value).as_deref() {
+            Some("number") => "number".into(),
+            Some("integer") => "whole number".into(),
+            Some("boolean") => "true or false".into(),
+            Some("string") => "text".into(),
+            Some("array") => self.list(value.as_object()),
+            _ => "table".into(),
+        }
+    }
+
+    /// What a list holds, in words.
+    fn list(&self, value: Option<&'a Map<String, Value>>) -> String {
+        let Some(value) = value else { return "list".into() };
+        let item = value.get("items").map_or("anything".into(), |items| self.what(items));
+        match value.get("minItems").and_then(Value::as_u64) {
+            Some(n) if value.get("maxItems").and_then(Value::as_u64) == Some(n) => match (n, item.as_str()) {
+                (2, "number") => "[number, number]".into(),
+                _ => format!("list of {n}: {item} each"),
+            },
+            _ => format!("list: {item} each"),
+        }
+    }
+}
+
+/// The JSON type of a value that may be absent.
+fn kind(value: &Value) -> Option<String> {
+    match &value["type"] {
+        Value::String(one) => Some(one.clone()),
+        Value::Array(several) => {
+            several.iter().filter_map(Value::as_str).find(|t| *t != "null").map(str::to_owned)
+        }
+        _ => None,
+    }
+}
+
+/// The description in one line, fit for a cell of a table; names of Rust items lose their brackets.
+fn description(value: &Value) -> String {
+    let text = value["description"].as_str().unwrap_or_default();
+    let text = text.replace('\n', " ").replace("[`", "`").replace("`]", "`");
+    text.replace('|', "\\|")
+}

@@ -1,0 +1,180 @@
+//! Every reader of text that comes from outside, as the fuzzer and the test of its corpora call it: any bytes in, no
+//! panic. What could be read is used as the commands use it, and has to be what a reader promises.
+
+#![allow(dead_code, reason = "a fuzz target uses one of them")]
+
+use linkwright::analysis::chain::{ChainRequest, analyze_chain};
+use linkwright::analysis::{PositionMethod, Request, analyze, full_turn};
+use linkwright::diagnostic::Diagnostic;
+use linkwright::linkage::motion::CrankMotion;
+use linkwright::linkage_file::{self, AnyLinkageFile, Linkage};
+use linkwright::problem::Problem;
+use linkwright::problem::spec::ProblemSpec;
+use linkwright::problem_file::{self, ProblemFile};
+use linkwright::record::Record;
+use linkwright::report::compare::{Entry, SortKey, compare};
+use linkwright::report::plot::{Glyphs, terminal_plot};
+use linkwright::report::{Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text};
+use linkwright::report::{contact_sheet, csv, exact, exact_sheet, svg, table};
+use linkwright::svg_file::{self, SvgOptions};
+use linkwright::{points_file, results_folder, run, verify};
+
+/// A problem that `--set` changes.
+const SET_BASE: &str = "format = 1
+name = \"base\"
+[task.path]
+points = [[0, 0], [1, 2], [2, 2.5], [3, 2], [4, 0]]
+tolerance = 0.1
+[design]
+A = [[-5, 5], [-5, 5]]
+a = [0.1, 9]
+[require]
+type = [\"crank-rocker\"]
+[solve]
+seed = 3
+[solve.genetic]
+population = 50
+";
+/// The columns and rows of a plot.
+const PLOT: (usize, usize) = (60, 20);
+
+/// A text, without the bytes that no file reader lets through.
+fn text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+/// A refusal is text that a terminal can show.
+fn shown(refusal: &Diagnostic) {
+    let words = refusal.to_string();
+    assert!(words.chars().all(|c| c == '\n' || !c.is_control()), "{words:?}");
+    assert!(!refusal.message.is_empty());
+    if let Some(span) = &refusal.span {
+        assert!(span.start <= span.end && span.end <= refusal.text.len(), "{span:?}");
+    }
+}
+
+/// What a problem file gives can be run and is the same after a record has held it.
+fn usable(file: &ProblemFile) {
+    file.warnings.iter().for_each(shown);
+    Problem::new(file.spec.clone()).expect("what was read can be run");
+    run::digest(&file.spec).expect("it is data");
+    let kept = serde_json::to_vec(&file.spec).expect("it is data");
+    let back: ProblemSpec = serde_json::from_slice(&kept).expect("what was written can be read");
+    assert_eq!(back, file.spec);
+}
+
+/// Problem files.
+pub fn problem(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    match problem_file::parse("a problem.toml", text, None, &[]) {
+        Ok(file) => usable(&file),
+        Err(refusal) => shown(&refusal),
+    }
+}
+
+/// `--set KEY=VALUE`, one a line.
+pub fn setting(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    let pair = |line: &str| line.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let set: Vec<_> = text.lines().filter_map(pair).collect();
+    match problem_file::parse("base.toml", SET_BASE, None, &set) {
+        Ok(file) => usable(&file),
+        Err(refusal) => shown(&refusal),
+    }
+}
+
+/// Linkage files: four-bars, vector loops, chains.
+pub fn linkage(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    let AnyLinkageFile { name, unit, linkage } = match linkage_file::parse_any("a linkage.toml", text) {
+        Ok(file) => file,
+        Err(refusal) => return shown(&refusal),
+    };
+    let crank_deg = full_turn(5);
+    let input = CrankMotion { speed_rad_s: 2.0, acceleration_rad_s2: 1.0 };
+    match linkage {
+        Linkage::FourBar(linkage) => {
+            let again = linkage_file::parse("again.toml", &linkage_file::to_toml(&name, unit, &linkage));
+            assert_eq!(again.expect("what was written can be read").linkage, linkage);
+            let methods = ["algebraic", "complex", "fixed-point"];
+            let methods: Vec<PositionMethod> = methods.iter().filter_map(|name| name.parse().ok()).collect();
+            let request =
+                Request { name, unit, linkage, crank_deg, input, methods, all_configurations: true };
+            let analysis = analyze(&request);
+            analysis_csv::analysis_csv(&analysis);
+            analysis_sheets::analysis_svg(&analysis);
+            analysis_text::analysis_head(&analysis, Colour::Never);
+            analysis_text::analysis_table(&analysis, Colour::Never);
+            let cognates: Vec<_> = linkage.cognates().into_iter().flatten().map(|c| c.linkage).collect();
+            analysis_sheets::cognates_svg("name", unit, &linkage, &cognates);
+        }
+        Linkage::Chain(chain) => {
+            let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
+            let analysis = analyze_chain(&request);
+            chain_sheet::chain_svg(&analysis, &request.chain);
+            chain_text::chain_csv(&analysis);
+            chain_text::chain_head(&analysis, Colour::Never);
+            chain_text::chain_table(&analysis, Colour::Never);
+        }
+    }
+}
+
+/// Points CSV.
+pub fn points(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    match points_file::parse("points.csv", text) {
+        Ok(file) => {
+            file.warnings.iter().for_each(shown);
+            let n = file.points.len();
+            assert!(n > 0 && n <= points_file::MAX_POINTS && file.rows.len() == n);
+            for column in [&file.crank_deg, &file.weight, &file.tolerance].into_iter().flatten() {
+                assert!(column.len() == n && column.iter().all(|v| v.is_finite()));
+            }
+            assert!(file.points.iter().flatten().all(|v| v.abs() <= 1e12));
+            assert!(file.rows.iter().all(|row| file.text.get(row.clone()).is_some()));
+        }
+        Err(refusal) => shown(&refusal),
+    }
+}
+
+/// SVG drawings.
+pub fn drawing(bytes: &[u8]) {
+    let Some(text) = text(bytes) else { return };
+    match svg_file::parse("drawing.svg", text, &SvgOptions { samples: 12, ..SvgOptions::default() }) {
+        Ok(target) => {
+            target.warnings.iter().for_each(shown);
+            assert_eq!(target.points.len(), 12);
+            // A sample lies on the shape, which lies within 1e12, to rounding.
+            assert!(target.points.iter().flatten().all(|v| v.abs() <= 1.001e12));
+            assert!(target.length.is_finite() && target.length > 0.0);
+        }
+        Err(refusal) => shown(&refusal),
+    }
+}
+
+/// Records, as `verify`, `compare` and the reports read them.
+pub fn record(bytes: &[u8]) {
+    let Ok(record) = results_folder::parse_record("record.json", bytes) else { return };
+    if let Ok(mismatches) = verify::verify(&record) {
+        mismatches.iter().for_each(|mismatch| assert!(!mismatch.to_string().is_empty()));
+    }
+    reports(&record);
+}
+
+fn reports(record: &Record) {
+    table::candidates_table(record, Colour::Never);
+    exact::exact_text(record, true, Colour::Never);
+    exact_sheet::exact_svg(record);
+    csv::candidates_csv(record);
+    contact_sheet::contact_sheet_svg(record);
+    let mut entries = Vec::new();
+    for i in 0..record.candidates.len().min(3) {
+        csv::curve_csv(record, i);
+        svg::candidate_svg(record, i);
+        terminal_plot(record, i, PLOT.0, PLOT.1, Glyphs::Braille);
+        entries.extend(Entry::from_record("label", record, i));
+    }
+    let comparison = compare(&entries, SortKey::Rms);
+    comparison.table(Colour::Never);
+    comparison.csv();
+}

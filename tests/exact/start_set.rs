@@ -1,0 +1,54 @@
+//! The embedded start set: whole, complete, and what comes out when it is made anew.
+
+use linkwright::exact::monodromy::{Limits, orbit};
+use linkwright::exact::start::{CLASSES, EMBEDDED, StartSet, StartSetError, largest_residual};
+use linkwright::solve::streams::{stream, unit};
+use sha2::{Digest, Sha256};
+use std::sync::atomic::AtomicBool;
+
+/// Of `src/exact/start-set.bin`.
+const SHA_256: &str = "3c894278aaa3946d1f30a5e16b106328fbd7d7dcda3d21945b5ae473a0fca418";
+
+#[test]
+fn the_embedded_file_is_whole_and_small() {
+    let digest: String = Sha256::digest(EMBEDDED).iter().map(|byte| format!("{byte:02x}")).collect();
+    assert_eq!(digest, SHA_256);
+    assert!(EMBEDDED.len() <= 100_000);
+}
+
+#[test]
+fn the_embedded_set_has_1442_different_classes_that_solve_its_equations() {
+    let set = StartSet::parse(EMBEDDED).expect("it is whole");
+    assert_eq!(set.solutions.len(), CLASSES);
+    let nothing = StartSet { solutions: Vec::new(), ..set.clone() };
+    assert_eq!(set.distinct_from(&nothing), CLASSES);
+    assert_eq!(set.distinct_from(&set), 0);
+    for solution in &set.solutions {
+        assert!(largest_residual(solution, &set.displacements) < 1e-8);
+    }
+}
+
+#[test]
+fn broken_files_are_refused() {
+    assert_eq!(StartSet::parse(b"LWN"), Err(StartSetError::Header));
+    let mut other_version = EMBEDDED.to_vec();
+    other_version[4] = 9;
+    assert_eq!(StartSet::parse(&other_version), Err(StartSetError::Header));
+    assert!(matches!(StartSet::parse(&EMBEDDED[..EMBEDDED.len() - 1]), Err(StartSetError::Length { .. })));
+    let mut no_solution = EMBEDDED.to_vec();
+    no_solution[272..272 + 64].fill(0);
+    assert_eq!(StartSet::parse(&no_solution), Err(StartSetError::Entry(0)));
+}
+
+#[test]
+fn made_anew_from_nothing_it_is_the_same_set() {
+    // Until all are found; the generator's command goes on until loops find none.
+    let mut numbers = stream(1, 0);
+    let limits = Limits { enough: CLASSES, ..Limits::default() };
+    let found = orbit(&mut || unit(&mut numbers), &limits, &AtomicBool::new(false));
+    let anew = StartSet { displacements: found.displacements, solutions: found.solutions };
+    let embedded = StartSet::embedded();
+    assert_eq!(anew.displacements, embedded.displacements);
+    assert_eq!(anew.solutions.len(), CLASSES);
+    assert_eq!(anew.distinct_from(embedded), 0);
+}
