@@ -2,7 +2,7 @@
 //!
 //! # Existence and uniqueness
 //!
-//! Let f be the polynomials of [`super::polynomial`], m a point of C^16, s_i > 0 weights, D the polydisc |w_i - m_i| <=
+//! Let f be the polynomials of `exact::polynomial`, m a point of C^16, s_i > 0 weights, D the polydisc |w_i - m_i| <=
 //! rho s_i, and R, S the diagonal matrices of row scales and weights. For any matrix Y put, in the norm max_i |w_i| / s_i,
 //!
 //! ```text

@@ -64,7 +64,7 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
 const SAME_POINT: f64 = 1e-7;
 
 /// The first point at which two linkages with their crank angles (degrees) and assemblies do not have one coupler
-/// point, to [`SAME_POINT`] of the target's `size` or their longest link; `None` where they have everywhere.
+/// point, to `SAME_POINT` of the target's `size` or their longest link; `None` where they have everywhere.
 pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
     let span = one.0.longest_link().max(other.0.longest_link()).max(size);
     let point = |(linkage, crank_deg, t1_at): At<'_>, i: usize| {

@@ -5,7 +5,7 @@
 //! from the state ends in the same bytes as one that was never broken.
 //!
 //! A state says nothing of the budget it was reached under. A batch is cut by what is left of the budget only near
-//! its end, and the states after such a batch are not kept ([`spared`]): so a search may go on from a state with a
+//! its end, and the states after such a batch are not kept (`spared`): so a search may go on from a state with a
 //! larger budget, and ends as if it had been given that budget from the beginning.
 //!
 //! Each part of a search (least squares, then differential evolution ..) keeps the state of its own last boundary. A

@@ -245,7 +245,7 @@ fn local_search(
     local
 }
 
-/// Where [`rounds`] stand between two batches: all that the next ones depend on besides the problem and the budget.
+/// Where `rounds` stand between two batches: all that the next ones depend on besides the problem and the budget.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct RoundsState {
     found: Vec<Candidate>,
