@@ -24,12 +24,23 @@ pub struct Coarse {
     cyclic: bool,
 }
 
+/// The points of a target, a closing one not counted twice.
+fn points_of(problem: &Problem) -> usize {
+    let task = problem.task();
+    if task.repeats_first() { task.len() - 1 } else { task.len() }
+}
+
 impl Coarse {
+    /// Whether a target has so many points, at whatever crank angles, that it is explored in groups.
+    pub fn is_for(problem: &Problem) -> bool {
+        points_of(problem) > DENSE && matches!(problem.task().timing(), Timing::Free)
+    }
+
     /// The coarse image; `None` where the target has few points, is timed, or cannot be grouped.
     pub fn of(problem: &Problem) -> Option<Coarse> {
         let task = problem.task();
-        let n = if task.repeats_first() { task.len() - 1 } else { task.len() };
-        if n <= DENSE || !matches!(task.timing(), Timing::Free) {
+        let n = points_of(problem);
+        if !Coarse::is_for(problem) {
             return None;
         }
         let groups: Vec<Range<usize>> = (0..GROUPS).map(|k| k * n / GROUPS..(k + 1) * n / GROUPS).collect();

@@ -24,6 +24,7 @@ use super::multistart::{fit_with, judged, promise};
 use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
+use super::reassign::{Reassigned, reassigned};
 use super::starts::{Start, Starts};
 use super::{Budget, Observer, Progress};
 use crate::linkage::{Complex, LinkageType, dot};
@@ -78,12 +79,14 @@ const LEAST_BATCHES: u64 = 5;
 /// Batches at least for a dense target.
 const DENSE_BATCHES: u64 = 2;
 /// Batches at least for a dense target whose errors are not noise.
-const PATIENT_BATCHES: u64 = 24;
+const PATIENT_BATCHES: u64 = 60;
 /// Errors of neighbouring points that are more alike than this are not noise.
 const ALIKE: f64 = 0.3;
-/// From this batch on a dense target of at most so many points is also explored on all of them.
-const WHOLE_FROM: u64 = 1;
+/// Of so many batches on a dense target of at most so many points the second explores it on all of them.
+const WHOLE_EVERY: u64 = 8;
 const WHOLE_MOST: usize = 200;
+/// How often the points of an end are brought to their best places.
+const REASSIGNED: usize = 6;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
 /// Ends that are kept.
@@ -214,6 +217,26 @@ impl Spender<'_> {
         fit.end.map(|end| (fit.merit, end))
     }
 
+    /// An end with its points brought to their best places on its curve and fitted again, as long as that gains.
+    fn at_best_places(
+        &mut self,
+        problem: &Problem,
+        (mut merit, mut end): (f64, Start),
+        effort: Effort,
+    ) -> (f64, Start) {
+        for _ in 0..REASSIGNED {
+            let Reassigned { better, positions } = reassigned(problem, &end);
+            self.round.positions += positions;
+            self.round.evaluations += positions / problem.task().len() as u64;
+            let Some(start) = better else { break };
+            match self.fit_on_one_circuit(problem, start, effort) {
+                Some((again, start)) if again < merit => (merit, end) = (again, start),
+                _ => break,
+            }
+        }
+        (merit, end)
+    }
+
     /// As `fit`, and where the points have come to lie on two circuits of a Grashof linkage, as they can by way of
     /// its change points, once more as a linkage that has but one circuit.
     fn fit_on_one_circuit(
@@ -330,6 +353,7 @@ fn round(
         return spender.round;
     }
     let explored = setup.explored();
+    let dense = Coarse::is_for(setup.problem);
     let n = explored.task().len() as u64;
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
@@ -342,7 +366,7 @@ fn round(
         }
     };
     // Of three independent rounds two take matches, as long as there are any.
-    let turn = index as usize / 2;
+    let turn = of_search as usize / 2;
     let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, of_search);
     if !spender.round.independent {
@@ -399,7 +423,8 @@ fn round(
         }
         // Out of budget: as it stands.
         let kept = (merit, start.clone());
-        middle.push(spender.fit_on_one_circuit(explored, start, MIDDLE_FIT).unwrap_or(kept));
+        let end = spender.fit_on_one_circuit(explored, start, MIDDLE_FIT).unwrap_or(kept);
+        middle.push(if dense { spender.at_best_places(explored, end, MIDDLE_FIT) } else { end });
     }
     if middle.is_empty() {
         middle.extend(spare);
@@ -417,7 +442,7 @@ fn round(
             continue;
         }
         let same = |(explored, _): &&(f64, f64)| (explored - merit).abs() <= SAME_OPTIMUM * merit;
-        if let Some((_, whole)) = known.finished.iter().find(same).filter(|_| setup.coarse.is_some()) {
+        if let Some((_, whole)) = known.finished.iter().find(same).filter(|_| dense) {
             spender.round.met_again.push(*whole);
             continue;
         }
@@ -436,6 +461,11 @@ fn round(
                 Some(merit) => (merit, start),
                 None => continue,
             },
+        };
+        let (merit, start) = if dense {
+            spender.at_best_places(setup.problem, (merit, start), LAST_FIT)
+        } else {
+            (merit, start)
         };
         spender.round.finished.push((explored, merit));
         let mut end = End { start, merit, verdict: None };
@@ -517,12 +547,13 @@ pub(super) fn search(
         // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
         let left = limit.saturating_sub(local.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
-        // What grouping blurs is looked for on all points, in turn with the groups.
-        let dense = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
-        if stages.len() == 1 && count.batch == WHOLE_FROM && dense {
+        // What grouping blurs is looked for on all points, now and then.
+        let grouped_few = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
+        let on_all = grouped_few && count.batch % WHOLE_EVERY == 1;
+        if stages.len() == 1 && on_all {
             stages.push(stage(None, &whole));
         }
-        let turn = count.batch as usize % stages.len();
+        let turn = usize::from(on_all);
         let Stage { setup, bar, leading, finished, index } = &stages[turn];
         let near_ends = leading.iter().map(|(_, start)| start.clone()).collect::<Vec<_>>();
         let so_far = Known { bar: *bar, near_ends: &near_ends, finished };

@@ -22,6 +22,7 @@ pub mod plan;
 pub mod polish;
 pub mod population;
 pub mod rank;
+mod reassign;
 pub mod reduced;
 pub mod starts;
 pub mod timed;
