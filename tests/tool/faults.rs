@@ -147,7 +147,7 @@ fn a_search_that_is_killed_at_any_instant_leaves_a_whole_result_and_can_be_run_a
 fn long_job(folder: &Path, out: &str, threads: usize) -> Command {
     let mut command =
         linkwright(folder, &["synth", "small.toml", "--out", out, "--method", "genetic", "--quiet"]);
-    command.args(["--set", "solve.evaluations=40000", "--set", "solve.genetic.stall_generations=30"]);
+    command.args(["--set", "solve.evaluations=10000", "--set", "solve.genetic.stall_generations=30"]);
     command.args(["--checkpoint-every", "0", "--threads", &threads.to_string()]);
     command
 }
