@@ -215,7 +215,11 @@ impl Checkpoint {
     }
 }
 
-fn parse(path: &str, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
+/// The checkpoint of a text, of whatever problem; `path` is shown in errors.
+///
+/// # Errors
+/// [`CheckpointError`].
+pub fn parse(path: &str, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let path = || path.to_string();
     let none =
         |e: serde_json::Error| CheckpointError::NotACheckpoint { path: path(), message: e.to_string() };

@@ -1,17 +1,23 @@
 //! A result's folder: locked while it is written to, replaced as a whole, never mixed with foreign files.
 
 use crate::record::{BeyondLimits, Record};
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 mod disk;
+mod lock;
 mod output_file;
 mod replacement;
 #[cfg(test)]
 mod tests;
+mod together;
 
 pub use output_file::{create_file, write_file};
+pub use together::put_together;
+
+use lock::Lock;
+use replacement::Wait;
 
 const LOCK: &str = ".lock";
 const RECORD: &str = "record.json";
@@ -120,7 +126,7 @@ impl FolderError {
 #[derive(Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
-    lock: Option<File>,
+    lock: Lock,
     /// The folders that were made for it, the innermost first; taken away again when nothing is written.
     created: Vec<PathBuf>,
     /// Whether the checkpoint stays when the rest is replaced.
@@ -151,6 +157,22 @@ fn is_ours(name: &str) -> bool {
         || numbered("candidate-", ".svg")
 }
 
+/// What a folder with these names, sorted, holds that linkwright did not write.
+fn foreign(path: &Path, names: &[String]) -> Option<String> {
+    if let Some(foreign) = names.iter().find(|name| !is_ours(name)) {
+        return Some(foreign.clone());
+    }
+    let has_record = names.iter().any(|name| name == RECORD);
+    let half_done = begins_as_a_checkpoint(&path.join(CHECKPOINT));
+    let of_a_record =
+        |name: &&String| !name.starts_with('.') && *name != RECORD && !(half_done && *name == CHECKPOINT);
+    if let Some(orphan) = names.iter().find(of_a_record).filter(|_| !has_record) {
+        return Some(format!("{orphan} without a record.json"));
+    }
+    let unread = has_record && read_record(&path.join(RECORD)).is_err();
+    unread.then(|| format!("a {RECORD} that is not a linkwright record"))
+}
+
 impl ResultsFolder {
     /// Takes a folder for a run: creates it where it is missing, refuses foreign files and running neighbours.
     ///
@@ -175,27 +197,21 @@ impl ResultsFolder {
             names.push(entry.file_name().to_string_lossy().into_owned());
         }
         names.sort();
-        if let Some(foreign) = names.iter().find(|name| !is_ours(name)) {
-            return Err(FolderError::Foreign { path: shown(), foreign: foreign.clone() });
-        }
-        let has_record = names.iter().any(|name| name == RECORD);
-        let half_done = begins_as_a_checkpoint(&path.join(CHECKPOINT));
-        let of_a_record =
-            |name: &&String| !name.starts_with('.') && *name != RECORD && !(half_done && *name == CHECKPOINT);
-        if let Some(orphan) = names.iter().find(of_a_record).filter(|_| !has_record) {
-            return Err(FolderError::Foreign {
-                path: shown(),
-                foreign: format!("{orphan} without a record.json"),
+        if let Some(foreign) = foreign(path, &names) {
+            // Half of a neighbour's result, while it is moved to its place, looks foreign too.
+            let in_use = Lock::is_taken(path);
+            return Err(if in_use {
+                FolderError::Locked { path: shown() }
+            } else {
+                FolderError::Foreign { path: shown(), foreign }
             });
         }
-        if has_record && read_record(&path.join(RECORD)).is_err() {
-            let foreign = format!("a {RECORD} that is not a linkwright record");
-            return Err(FolderError::Foreign { path: shown(), foreign });
-        }
-        let lock = locked(path)?;
+        let lock = Lock::take(path)?;
         // A replacement that was broken off may be that of a search half done: its checkpoint is not thrown away here.
-        replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
-        Ok(ResultsFolder { path: path.to_path_buf(), lock: Some(lock), created, half_done: false })
+        if names.iter().any(|name| name.starts_with(TEMPORARY)) {
+            replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
+        }
+        Ok(ResultsFolder { path: path.to_path_buf(), lock, created, half_done: false })
     }
 
     /// The folder.
@@ -229,32 +245,45 @@ impl ResultsFolder {
     /// or the new one. A folder that was taken away under way is made anew.
     ///
     /// # Errors
-    /// [`FolderError::Io`] with the file that could not be written; the old result stays.
+    /// [`FolderError::Io`] with the file that could not be written; the old result stays. [`FolderError::Locked`] where
+    /// the folder was taken away under way and is another run's by now.
     pub fn replace(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
-        if !self.path.is_dir() {
+        self.write(files)?;
+        self.sync()?;
+        self.put(Wait::Now)
+    }
+
+    /// The first half of [`ResultsFolder::replace`]: the files are written beside the old result, which stays.
+    /// [`put_together`] does the rest.
+    ///
+    /// # Errors
+    /// As [`ResultsFolder::replace`].
+    pub fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
+        if !self.lock.stands() {
             disk::create_folders(&self.path).map_err(|e| FolderError::io(&self.path, e))?;
-            self.lock = Some(locked(&self.path)?);
+            self.lock = Lock::take(&self.path)?;
         }
-        let kept: &[&str] = if self.half_done { &[LOCK, CHECKPOINT] } else { &[LOCK] };
-        replacement::replace(&self.path, files, kept).map_err(|(path, e)| FolderError::io(&path, e))?;
+        replacement::write(&self.path, files, self.kept()).map_err(|(path, e)| FolderError::io(&path, e))
+    }
+
+    fn sync(&self) -> Result<(), FolderError> {
+        replacement::sync(&self.path).map_err(|(path, e)| FolderError::io(&path, e))
+    }
+
+    /// The names in it are on the disk when this returns.
+    fn sync_names(&self) -> Result<(), FolderError> {
+        disk::sync_folder(&self.path).map_err(|e| FolderError::io(&self.path, e))
+    }
+
+    fn put(&mut self, names: Wait) -> Result<(), FolderError> {
+        replacement::put(&self.path, self.kept(), names).map_err(|(path, e)| FolderError::io(&path, e))?;
         self.created.clear();
         Ok(())
     }
-}
 
-/// The lock of a folder, held until it is dropped.
-fn locked(folder: &Path) -> Result<File, FolderError> {
-    let path = folder.join(LOCK);
-    let lock = File::options()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(&path)
-        .map_err(|e| FolderError::io(&path, e))?;
-    match lock.try_lock() {
-        Ok(()) => Ok(lock),
-        Err(TryLockError::WouldBlock) => Err(FolderError::Locked { path: folder.display().to_string() }),
-        Err(TryLockError::Error(e)) => Err(FolderError::io(&path, e)),
+    /// What stays when the rest is replaced.
+    fn kept(&self) -> &'static [&'static str] {
+        if self.half_done { &[LOCK, CHECKPOINT] } else { &[LOCK] }
     }
 }
 
@@ -284,9 +313,7 @@ pub fn rescue(files: &[(String, Vec<u8>)]) -> Result<PathBuf, FolderError> {
 
 impl Drop for ResultsFolder {
     fn drop(&mut self) {
-        // The lock ends with the file; what cannot be removed here is harmless and is taken over by the next run.
-        let _ = fs::remove_file(self.path.join(LOCK));
-        drop(self.lock.take());
+        self.lock.release();
         for folder in &self.created {
             let _ = fs::remove_dir(folder);
         }

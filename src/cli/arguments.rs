@@ -5,6 +5,7 @@ use crate::report::compare::SortKey;
 use crate::schema::SchemaKind;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Finds the four-bar linkage whose coupler point draws the path you ask for.
 #[derive(Debug, Parser)]
@@ -85,6 +86,9 @@ pub struct Synth {
     /// Go on from the checkpoint that an interrupted run left, skip what is done
     #[arg(long)]
     pub resume: bool,
+    /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    pub checkpoint_every: Duration,
     /// Nine precision points: print every real linkage through them, not the best ones alone
     #[arg(long)]
     pub all: bool,
@@ -232,4 +236,15 @@ fn sort_key(text: &str) -> Result<SortKey, String> {
 
 fn schema_kind(text: &str) -> Result<SchemaKind, String> {
     text.parse().map_err(|e: crate::schema::UnknownKind| e.to_string())
+}
+
+/// A time of at most a day.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 =
+        text.parse().map_err(|_| "a number of seconds is wanted, such as 0.5 or 60".to_string())?;
+    if (0.0..=86400.0).contains(&seconds) {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("it is from 0 to 86400 seconds".into())
+    }
 }

@@ -7,6 +7,8 @@ use crate::input_text;
 use crate::problem_file::{self, ProblemFile};
 use crate::run::Job;
 use ariadne::ReportKind;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -42,6 +44,8 @@ pub fn load(options: &Synth) -> Vec<Input> {
     overrides.extend(options.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
     let several = files.len() > 1 || options.files.iter().any(|path| path.is_dir());
     let mut inputs: Vec<Input> = Vec::new();
+    // Which file writes to which folder.
+    let mut taken: BTreeMap<PathBuf, String> = BTreeMap::new();
     for file in files {
         let (path, why) = match file {
             Ok(path) => (path, None),
@@ -59,19 +63,20 @@ pub fn load(options: &Synth) -> Vec<Input> {
                     terminal::diagnose(ReportKind::Warning, warning);
                 }
                 let place = place(options, &problem, several);
-                let taken =
-                    inputs.iter().find(|input| input.job.as_ref().is_ok_and(|(_, other)| *other == place));
-                match taken {
-                    Some(other) => {
+                match taken.entry(place.clone()) {
+                    Entry::Occupied(other) => {
                         let why = format!(
                             "{} and {file} would both write to {}; give them different names (key `name`)",
-                            other.file,
+                            other.get(),
                             place.display()
                         );
                         terminal::complain(&why);
                         Err(why)
                     }
-                    None => Ok((job(problem), place)),
+                    Entry::Vacant(free) => {
+                        free.insert(file.clone());
+                        Ok((job(problem), place))
+                    }
                 }
             }
             Err(diagnostic) => {

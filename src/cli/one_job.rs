@@ -5,7 +5,9 @@ use super::progress::Shown;
 use super::{synth, terminal};
 use crate::checkpoint::{Checkpoint, Writer};
 use crate::record::{Reason, Record};
-use crate::results_folder::{CHECKPOINT, ResultsFolder, read_record, replace_file, rescue};
+use crate::results_folder::{
+    CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
+};
 use crate::run::{Context, Finished, Job, digest, run_kept};
 use crate::search::keeper::{Keeper, Pace, SearchState};
 use std::path::{Path, PathBuf};
@@ -22,7 +24,23 @@ pub struct Done {
     pub seconds: Option<(f64, f64)>,
 }
 
-/// Runs a job on the current thread pool and writes its result. The time that is written counts from `begun`.
+/// A job that has been run.
+pub enum Ran {
+    /// It was done before.
+    Before(Done),
+    /// Its files are written and not yet in their place.
+    Written(Written),
+}
+
+/// A result that is written, not yet in its place, and its folder.
+pub struct Written {
+    done: Done,
+    folder: ResultsFolder,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+/// Runs a job on the current thread pool and writes its result; [`put_in_place`] ends it. The time that is written
+/// counts from `begun`.
 ///
 /// # Errors
 /// What a person has to know; nothing is half written.
@@ -33,13 +51,13 @@ pub fn run(
     shown: &Shown,
     cancel: &AtomicBool,
     begun: Instant,
-) -> Result<Done, String> {
+) -> Result<Ran, String> {
     let mut folder = ResultsFolder::take(place).map_err(|e| e.to_string())?;
     let mut earlier = SearchState::default();
     if options.resume {
         if let Some(record) = done_before(job, place)? {
             folder.remove_checkpoint().map_err(|e| e.to_string())?;
-            return Ok(Done { record, folder: place.to_path_buf(), seconds: None });
+            return Ok(Ran::Before(Done { record, folder: place.to_path_buf(), seconds: None }));
         }
         let path = place.join(CHECKPOINT);
         if let Some(checkpoint) = Checkpoint::read(&path, job).map_err(|e| e.to_string())? {
@@ -64,7 +82,9 @@ pub fn run(
             terminal::tell(&format!("warning: no checkpoint could be written, the search goes on: {e}"));
         }
     };
-    let keeper = Keeper::new(earlier, Pace::Seldom, &sink);
+    let pause = options.checkpoint_every;
+    let pace = if pause.is_zero() { Pace::EveryBoundary } else { Pace::NotWithin(pause) };
+    let keeper = Keeper::new(earlier, pace, &sink);
     let observer = |progress: &_| shown.update(progress);
     let outcome = run_kept(job, &Context { cancel, observer: &observer }, Some(&keeper));
     shown.finish();
@@ -75,16 +95,30 @@ pub fn run(
     let total_s = begun.elapsed().as_secs_f64();
     let timing = synth::Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
     let files = synth::files(&record, &timing)?;
-    save(&mut folder, &files)?;
-    Ok(Done { record, folder: place.to_path_buf(), seconds: Some((search_s, beside_s)) })
+    folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
+    let done = Done { record, folder: place.to_path_buf(), seconds: Some((search_s, beside_s)) };
+    Ok(Ran::Written(Written { done, folder, files }))
 }
 
-/// Puts a result into its folder; one that the folder does not take is saved elsewhere, and that is told.
-fn save(folder: &mut ResultsFolder, files: &[(String, Vec<u8>)]) -> Result<(), String> {
-    folder.replace(files).map_err(|e| match rescue(files) {
+/// Puts results in their places, with one wait for the disk. One that its folder does not take is saved elsewhere.
+///
+/// # Errors
+/// For each what a person has to know.
+pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, String>> {
+    let mut folders: Vec<_> = written.iter_mut().map(|result| &mut result.folder).collect();
+    let put = put_together(&mut folders);
+    let ended = |(result, put): (Written, Result<(), FolderError>)| {
+        put.map_err(|e| saved_elsewhere(&e, &result.files)).map(|()| result.done)
+    };
+    written.into_iter().zip(put).map(ended).collect()
+}
+
+/// Saves a result that its folder does not take in another place, and says so.
+fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> String {
+    match rescue(files) {
         Ok(place) => format!("{e}; the result was saved in {}", place.display()),
         Err(also) => format!("{e}; nor can it be saved elsewhere: {also}"),
-    })
+    }
 }
 
 /// The record of a run of the same problem that has nothing left to do: of the same version, for as many candidates,

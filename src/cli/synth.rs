@@ -2,7 +2,7 @@
 
 use super::arguments::Synth;
 use super::inputs::{self, Input};
-use super::one_job::{self, Done};
+use super::one_job::{self, Done, Ran, Written};
 use super::progress::{BatchShown, Shown};
 use super::{Ended, interrupt, terminal};
 use crate::linkage_file;
@@ -16,11 +16,14 @@ use crate::results_folder::{BUILDABLE, replace_file};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{SendError, SyncSender, sync_channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// From this many jobs a thread on, jobs run side by side, each on one thread: then no thread waits for another.
 const JOBS_A_THREAD: usize = 4;
+/// The most results of a batch that wait for the disk; then the searches wait too.
+const MOST_WAITING: usize = 64;
 /// The summary of a batch.
 const SUMMARY: &str = "summary.csv";
 
@@ -59,7 +62,29 @@ pub fn run(options: &Synth) -> Ended {
     let next = AtomicUsize::new(0);
     let printed = Mutex::new(Printed::new(inputs.len()));
     let shown_batch = BatchShown::new(inputs.len(), options.quiet || !side_by_side);
-    let worker = |pool: &rayon::ThreadPool| {
+    let take = |i: usize, outcome: Outcome| {
+        if let Outcome::Refused(why) = &outcome
+            && inputs[i].job.is_ok()
+        {
+            terminal::complain(why);
+        }
+        shown_batch.one_more();
+        let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
+        printed.take(i, outcome, |outcome| {
+            if let Outcome::Done(done) = outcome
+                && !options.json
+            {
+                terminal::answer(&page(done, several || options.quiet, options.all));
+            }
+        });
+    };
+    let put = |group: Vec<(usize, Written)>| {
+        let (indices, written): (Vec<_>, Vec<_>) = group.into_iter().unzip();
+        for (i, put) in indices.into_iter().zip(one_job::put_in_place(written)) {
+            take(i, put.map_or_else(Outcome::Refused, |done| Outcome::Done(Box::new(done))));
+        }
+    };
+    let worker = |pool: &rayon::ThreadPool, to_put: &SyncSender<(usize, Written)>| {
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(input) = inputs.get(i) else { return };
@@ -71,36 +96,37 @@ pub fn run(options: &Synth) -> Ended {
                     let shown = Shown::new(&job.name, options.quiet || side_by_side);
                     let run = || one_job::run(job, place, options, &shown, cancel, begun);
                     match catch_unwind(AssertUnwindSafe(|| pool.install(run))) {
-                        Ok(Ok(done)) => Outcome::Done(Box::new(done)),
-                        Ok(Err(why)) => {
-                            terminal::complain(&why);
-                            Outcome::Refused(why)
+                        Ok(Ok(Ran::Written(written))) => {
+                            // While one thread waits for the disk the others search.
+                            if let Err(SendError(alone)) = to_put.send((i, written)) {
+                                put(vec![alone]);
+                            }
+                            continue;
                         }
+                        Ok(Ok(Ran::Before(done))) => Outcome::Done(Box::new(done)),
+                        Ok(Err(why)) => Outcome::Refused(why),
                         Err(panic) if !several => resume_unwind(panic),
                         Err(_) => Outcome::Bug,
                     }
                 }
             };
-            shown_batch.one_more();
-            let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
-            printed.take(i, outcome, |outcome| {
-                if let Outcome::Done(done) = outcome
-                    && !options.json
-                {
-                    terminal::answer(&page(done, several || options.quiet, options.all));
-                }
-            });
+            take(i, outcome);
         }
     };
-    if side_by_side {
-        std::thread::scope(|scope| {
-            for pool in &pools {
-                scope.spawn(|| worker(pool));
+    std::thread::scope(|scope| {
+        let (to_put, written) = sync_channel(MOST_WAITING);
+        let (put, worker) = (&put, &worker);
+        scope.spawn(move || {
+            while let Ok(first) = written.recv() {
+                put(std::iter::once(first).chain(written.try_iter()).collect());
             }
         });
-    } else {
-        worker(&pools[0]);
-    }
+        for pool in &pools[1..] {
+            let to_put = to_put.clone();
+            scope.spawn(move || worker(pool, &to_put));
+        }
+        worker(&pools[0], &to_put);
+    });
     shown_batch.finish();
     let outcomes = printed.into_inner().unwrap_or_else(PoisonError::into_inner).outcomes();
     let mut ended = outcomes.iter().map(ended_of).max_by_key(|ended| severity(*ended)).unwrap_or(Ended::Good);

@@ -87,10 +87,41 @@ impl View {
 
 /// A coordinate to a hundredth of a pixel, kept within what viewers can read.
 pub(super) fn px(value: f64) -> String {
+    let mut text = String::new();
+    push_px(&mut text, value);
+    text
+}
+
+/// Appends [`px`] of a number.
+fn push_px(text: &mut String, value: f64) {
     let value = if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 };
-    let text = format!("{value:.2}");
-    let short = text.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+    // The product is off by less than 2e-8: further than that from a half, whole hundredths are the right ones.
+    let hundredths = value.abs() * 100.0;
+    let whole = hundredths.round();
+    if ((hundredths - whole).abs() - 0.5).abs() < 1e-6 {
+        let exact = format!("{value:.2}");
+        let short = exact.trim_end_matches('0').trim_end_matches('.');
+        text.push_str(if short == "-0" { "0" } else { short });
+        return;
+    }
+    let whole = whole as u32;
+    if value < 0.0 && whole > 0 {
+        text.push('-');
+    }
+    // Writing to a String cannot fail.
+    let _ = match (whole / 100, whole % 100) {
+        (ones, 0) => write!(text, "{ones}"),
+        (ones, part) if part % 10 == 0 => write!(text, "{ones}.{}", part / 10),
+        (ones, part) => write!(text, "{ones}.{part:02}"),
+    };
+}
+
+/// Appends a command of a path with its spot.
+fn push_spot(data: &mut String, command: char, spot: Spot) {
+    data.push(command);
+    push_px(data, spot.x);
+    data.push(' ');
+    push_px(data, spot.y);
 }
 
 /// Where a text starts from.
@@ -150,11 +181,12 @@ impl Canvas {
     pub(super) fn path(&mut self, spots: &[Spot], closed: bool, attributes: &str) {
         const STEP: f64 = 0.33;
         let Some(&first) = spots.first() else { return };
-        let mut data = format!("M{} {}", px(first.x), px(first.y));
+        let mut data = String::new();
+        push_spot(&mut data, 'M', first);
         let mut last = first;
         for (i, &spot) in spots.iter().enumerate().skip(1) {
             if spot.distance(last) >= STEP || (i + 1 == spots.len() && !closed) {
-                let _ = write!(data, "L{} {}", px(spot.x), px(spot.y));
+                push_spot(&mut data, 'L', spot);
                 last = spot;
             }
         }
@@ -167,7 +199,11 @@ impl Canvas {
         if spots.is_empty() {
             return;
         }
-        let data: String = spots.iter().map(|s| format!("M{} {}h0", px(s.x), px(s.y))).collect();
+        let mut data = String::new();
+        for &spot in spots {
+            push_spot(&mut data, 'M', spot);
+            data.push_str("h0");
+        }
         let _ = writeln!(
             self.body,
             r#"<path d="{data}" fill="none" stroke="{colour}" stroke-width="{}" stroke-linecap="round"/>"#,
@@ -226,4 +262,23 @@ impl Canvas {
 /// About how wide a text is in the usual sans-serif faces.
 pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
     0.56 * font_size * super::text::columns_of(text) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::px;
+    use crate::solve::streams::{stream, unit};
+
+    #[test]
+    fn pixels_are_rounded_as_the_language_does() {
+        let mut random = stream(5, 0);
+        let halves = (-400..400).map(|i| f64::from(i) * 0.005);
+        let drawn = (0..100_000).map(|i| (unit(&mut random) - 0.5) * [10.0, 2000.0, 3e6][i % 3]);
+        for value in halves.chain(drawn.collect::<Vec<_>>()) {
+            let exact = format!("{:.2}", value.clamp(-1e6, 1e6));
+            let short = exact.trim_end_matches('0').trim_end_matches('.');
+            assert_eq!(px(value), if short == "-0" { "0" } else { short }, "{value}");
+        }
+        assert_eq!((px(f64::NAN), px(1e300)), ("0".into(), "1000000".into()));
+    }
 }

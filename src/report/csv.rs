@@ -2,7 +2,7 @@
 //! a cell is empty where there is no number.
 
 use super::scene::first_position;
-use super::text::{cell, exact};
+use super::text::{cell, exact, push_exact};
 use super::words;
 use crate::linkage::transmission::angle_opposite;
 use crate::linkage::{CouplerCurve, FourBar};
@@ -113,15 +113,26 @@ fn defect(defect: &Defect) -> String {
 /// degree of the crank from 0 to 359, where it rocks 720 rows there and back (evenly spaced in the circuit's
 /// parameter). Positions in which the loop is open are left out; the head alone without such a candidate.
 pub fn curve_csv(record: &Record, index: usize) -> String {
-    written(&CURVE_COLUMNS, record.candidates.get(index).map_or(Vec::new(), curve))
+    record.candidates.get(index).map_or_else(|| written(&CURVE_COLUMNS, []), candidate_curve_csv)
 }
 
 /// As [`curve_csv`], of a candidate that need not be among the record's.
 pub fn candidate_curve_csv(candidate: &Candidate) -> String {
-    written(&CURVE_COLUMNS, curve(candidate))
+    // Numbers alone: nothing needs quotes.
+    let mut text = CURVE_COLUMNS.join(",");
+    text.push('\n');
+    for row in curve(candidate) {
+        for number in row {
+            push_exact(&mut text, number);
+            text.push(',');
+        }
+        text.pop();
+        text.push('\n');
+    }
+    text
 }
 
-fn curve(candidate: &Candidate) -> Vec<Vec<String>> {
+fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
     let linkage = &candidate.linkage;
     let (angle, assembly) = first_position(candidate);
     let mobility = linkage.mobility();
@@ -146,7 +157,7 @@ fn curve(candidate: &Candidate) -> Vec<Vec<String>> {
             transmission.to_degrees(),
         ];
         if numbers.iter().all(|x| x.is_finite()) {
-            table.push(numbers.map(exact).to_vec());
+            table.push(numbers);
         }
     }
     table

@@ -25,33 +25,65 @@ fn about(path: &Path) -> impl FnOnce(io::Error) -> Failure + use<> {
     move |error| (path, error)
 }
 
-/// Replaces what the folder holds of ours, but for the names in `kept`, by `files`.
+/// Writes `files` beside what the folder holds, after what was broken off before has been ended. They need not be on
+/// the disk yet when this returns.
 ///
 /// # Errors
-/// The file that could not be written, and the old result stays as it was; or one that could not be moved once all
-/// were written, and the next to take the folder ends it.
-pub(super) fn replace(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -> Result<(), Failure> {
-    finish(folder, kept)?;
+/// The file that could not be written; the old result stays as it was.
+pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -> Result<(), Failure> {
+    if [NEW, WHOLE, MOVING].iter().any(|name| is_folder(&folder.join(name))) {
+        finish(folder, kept)?;
+    }
     let new = folder.join(NEW);
-    write_all(folder, &new, files).inspect_err(|_| {
-        // What cannot be taken away here is taken away by the next run.
-        let _ = disk::remove_folder(&new);
-    })?;
-    finish(folder, kept)
+    let written = || {
+        disk::create_folder(&new).map_err(about(&new))?;
+        for (name, bytes) in files {
+            // The error names the file as it was to be.
+            disk::write_new(&new.join(name), bytes).map_err(about(&folder.join(name)))?;
+        }
+        Ok(())
+    };
+    written().inspect_err(|_| forget(folder))
 }
 
-fn write_all(folder: &Path, new: &Path, files: &[(String, Vec<u8>)]) -> Result<(), Failure> {
-    disk::create_folder(new).map_err(about(new))?;
-    for (name, bytes) in files {
-        // The error names the file as it was to be.
-        disk::write_new(&new.join(name), bytes).map_err(about(&folder.join(name)))?;
-    }
-    for (name, _) in files {
-        disk::sync_file(&new.join(name)).map_err(about(&folder.join(name)))?;
-    }
-    disk::sync_folder(new).map_err(about(new))?;
+/// When the names in a folder are to be on the disk.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Wait {
+    /// Before what they replace is thrown away.
+    Now,
+    /// The caller waits for them.
+    Later,
+}
+
+/// What was written is on the disk when this returns.
+///
+/// # Errors
+/// The file for which that failed; the old result stays as it was.
+pub(super) fn sync(folder: &Path) -> Result<(), Failure> {
+    let new = folder.join(NEW);
+    let synced = || {
+        for name in names(&new)? {
+            disk::sync_file(&new.join(&name)).map_err(about(&folder.join(&name)))?;
+        }
+        disk::sync_folder(&new).map_err(about(&new))
+    };
+    synced().inspect_err(|_| forget(folder))
+}
+
+/// Puts what was written into the place of what the folder holds of ours, but for the names in `kept`.
+///
+/// # Errors
+/// The old result stays as it was; or a file could not be moved, and the next to take the folder ends it.
+pub(super) fn put(folder: &Path, kept: &[&str], names: Wait) -> Result<(), Failure> {
     let whole = folder.join(WHOLE);
-    disk::rename(new, &whole).map_err(about(&whole))
+    disk::rename(&folder.join(NEW), &whole).map_err(about(&whole)).inspect_err(|_| forget(folder))?;
+    move_in(folder, kept, names)
+}
+
+/// Throws away what was written and is not whole.
+fn forget(folder: &Path) {
+    // What cannot be taken away here is taken away by the next run.
+    let _ = disk::remove_folder(&folder.join(NEW));
 }
 
 /// Brings a replacement that was broken off to its end and throws temporary files away.
@@ -59,10 +91,17 @@ fn write_all(folder: &Path, new: &Path, files: &[(String, Vec<u8>)]) -> Result<(
 /// # Errors
 /// The path that could not be moved or taken away.
 pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
+    move_in(folder, kept, Wait::Now)?;
+    take_away(folder, |name| !name.starts_with(TEMPORARY))
+}
+
+/// Brings a replacement that is whole to its end.
+fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
     let (whole, moving) = (folder.join(WHOLE), folder.join(MOVING));
     if is_folder(&whole) {
         let new = names(&whole)?;
-        let stays = |name: &str| new.iter().any(|n| n == name) || kept.contains(&name) || name == WHOLE;
+        let stays =
+            |name: &str| name.starts_with(TEMPORARY) || kept.contains(&name) || new.iter().any(|n| n == name);
         take_away(folder, stays)?;
         disk::rename(&whole, &moving).map_err(about(&moving))?;
     }
@@ -74,10 +113,12 @@ pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
             let target = folder.join(&name);
             disk::rename(&moving.join(&name), &target).map_err(about(&target))?;
         }
-        disk::sync_folder(folder).map_err(about(folder))?;
+        if wait == Wait::Now {
+            disk::sync_folder(folder).map_err(about(folder))?;
+        }
         disk::remove_folder(&moving).map_err(about(&moving))?;
     }
-    take_away(folder, |name| !name.starts_with(TEMPORARY))
+    Ok(())
 }
 
 /// Where the record of a folder is: that of a new result which is whole but not yet in its place, or the visible one.

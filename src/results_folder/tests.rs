@@ -176,6 +176,124 @@ fn breaking_off_again_and_again_comes_to_the_same_end() {
     }
 }
 
+/// Takes two folders, writes a new result into each and puts both in their places together.
+fn run_together(paths: &[PathBuf; 2]) -> [Result<(), FolderError>; 2] {
+    let written = paths.each_ref().map(|path| {
+        let mut folder = ResultsFolder::take(path)?;
+        folder.write(&new())?;
+        Ok(folder)
+    });
+    let mut results = Vec::new();
+    let mut folders = Vec::new();
+    for folder in written {
+        match folder {
+            Ok(folder) => folders.push(folder),
+            Err(e) => results.push(Err(e)),
+        }
+    }
+    results.extend(put_together(&mut folders.iter_mut().collect::<Vec<_>>()));
+    results.try_into().expect("one each")
+}
+
+#[test]
+fn results_that_wait_for_the_disk_together_are_replaced_each_as_a_whole() {
+    let two = |place: &Path| {
+        let paths = ["r", "s"].map(|name| place.join(name));
+        for path in &paths {
+            let mut folder = ResultsFolder::take(path).expect("it is free");
+            folder.replace(&old()).expect("there is room");
+        }
+        paths
+    };
+    faults::fail(0..0);
+    let place = tempfile::tempdir().expect("a folder");
+    let paths = two(place.path());
+    faults::fail(0..0);
+    run_together(&paths).into_iter().for_each(|result| result.expect("nothing fails"));
+    let count = faults::steps();
+    let (mut both, mut one) = (0, 0);
+    for last in [false, true] {
+        for k in 0..count {
+            let place = tempfile::tempdir().expect("a folder");
+            let paths = two(place.path());
+            faults::fail(if last { k..usize::MAX } else { k..k + 1 });
+            let results = run_together(&paths);
+            faults::fail(0..0);
+            let mut replaced = 0;
+            for path in &paths {
+                let read = read_record(path).expect("one of the two").problem.name;
+                drop(ResultsFolder::take(path).expect("it can be taken"));
+                assert!(hidden(path).is_empty(), "step {k}");
+                let whole = if read == "new" { new() } else { old() };
+                assert_eq!(shown(path), as_shown(&whole), "step {k}");
+                replaced += usize::from(read == "new");
+            }
+            let good = results.iter().filter(|result| result.is_ok()).count();
+            assert!(good <= replaced, "step {k}: what is told to be there is there");
+            both += usize::from(good == 2);
+            one += usize::from(!last && good == 1);
+        }
+    }
+    // A wait for all that fails is a wait for each; other failures are those of one result.
+    assert!(both >= 2 && one > new().len(), "{both} {one} of {count}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_lock_that_nobody_finds_any_more_is_none() {
+    let place = place(false);
+    let path = place.path().join("r");
+    let first = ResultsFolder::take(&path).expect("it is free");
+    // Opened before the first takes it away: locked by nobody from then on, and no longer the folder's lock.
+    let late = File::options().write(true).open(path.join(LOCK)).expect("it is there");
+    drop(first);
+    fs::create_dir_all(&path).expect("a folder");
+    let mut second = ResultsFolder::take(&path).expect("it is free");
+    late.try_lock().expect("nobody has this one");
+    assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })));
+    // A folder that was taken away and is another's by now: its lock is left alone.
+    fs::remove_dir_all(&path).expect("it is ours");
+    let mut third = ResultsFolder::take(&path).expect("it is free");
+    third.replace(&new()).expect("there is room");
+    assert!(second.replace(&old()).is_err(), "there is no folder of its own any more");
+    drop(second);
+    assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })), "the third has it");
+    assert_eq!(shown(&path), as_shown(&new()));
+    // Half of the third's result, while it is moved to its place, is no foreign file.
+    fs::remove_file(path.join(RECORD)).expect("it is ours");
+    assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })));
+    drop(third);
+    assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Foreign { .. })));
+}
+
+#[test]
+fn many_take_a_folder_in_turn_and_never_two_at_once() {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+    let place = place(true);
+    let path = place.path().join("r");
+    let inside = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                let mut times = 0;
+                while times < 100 {
+                    match ResultsFolder::take(&path) {
+                        Ok(folder) => {
+                            assert_eq!(inside.fetch_add(1, Ordering::SeqCst), 0, "two have it");
+                            std::thread::yield_now();
+                            inside.fetch_sub(1, Ordering::SeqCst);
+                            drop(folder);
+                            times += 1;
+                        }
+                        Err(FolderError::Locked { .. }) => std::thread::yield_now(),
+                        Err(other) => panic!("{other}"),
+                    }
+                }
+            });
+        }
+    });
+}
+
 #[test]
 fn a_folder_that_vanished_is_made_anew() {
     let place = place(true);

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A state is kept at most this often.
-const LEAST_PAUSE: Duration = Duration::from_secs(1);
+/// A state is kept at most this often, unless something else is said.
+pub const LEAST_PAUSE: Duration = Duration::from_secs(1);
 /// .. and only after this many times as long as keeping the one before took: that is half a percent of the search.
 const PAUSE: u32 = 200;
 
@@ -47,9 +47,11 @@ pub struct SearchState {
 /// How often states are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// About once a second, and less often where it takes long: it costs a search less than one percent.
+    /// Not more often than [`LEAST_PAUSE`], and less often where it takes long: it costs a search less than one percent.
     Seldom,
-    /// At every boundary, for tests.
+    /// The same with another pause.
+    NotWithin(Duration),
+    /// At every boundary, whatever it costs.
     EveryBoundary,
 }
 
@@ -64,13 +66,19 @@ pub struct Keeper<'a> {
 struct Kept {
     state: SearchState,
     since: Instant,
+    least: Duration,
     pause: Duration,
 }
 
 impl<'a> Keeper<'a> {
     /// A keeper that gives every state to `sink`, of a search that begins where `earlier` stood.
     pub fn new(earlier: SearchState, pace: Pace, sink: &'a (dyn Fn(&SearchState) + Sync)) -> Self {
-        let kept = Kept { state: earlier.clone(), since: Instant::now(), pause: LEAST_PAUSE };
+        let least = match pace {
+            Pace::Seldom => LEAST_PAUSE,
+            Pace::NotWithin(pause) => pause,
+            Pace::EveryBoundary => Duration::ZERO,
+        };
+        let kept = Kept { state: earlier.clone(), since: Instant::now(), least, pause: least };
         Keeper { earlier, kept: Mutex::new(kept), pace, sink }
     }
 
@@ -90,7 +98,7 @@ impl<'a> Keeper<'a> {
         put(&mut kept.state);
         (self.sink)(&kept.state);
         kept.since = Instant::now();
-        kept.pause = LEAST_PAUSE.max(begun.elapsed() * PAUSE);
+        kept.pause = kept.least.max(begun.elapsed() * PAUSE);
     }
 }
 

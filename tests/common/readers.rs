@@ -5,6 +5,7 @@
 
 use linkwright::analysis::chain::{ChainRequest, analyze_chain};
 use linkwright::analysis::{PositionMethod, Request, analyze, full_turn};
+use linkwright::checkpoint::{self, Writer};
 use linkwright::diagnostic::Diagnostic;
 use linkwright::linkage::motion::CrankMotion;
 use linkwright::linkage_file::{self, AnyLinkageFile, Linkage};
@@ -16,8 +17,11 @@ use linkwright::report::compare::{Entry, SortKey, compare};
 use linkwright::report::plot::{Glyphs, terminal_plot};
 use linkwright::report::{Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text};
 use linkwright::report::{contact_sheet, csv, exact, exact_sheet, svg, table};
+use linkwright::run::{Context, Job};
+use linkwright::search::keeper::{Keeper, Pace, SearchState};
 use linkwright::svg_file::{self, SvgOptions};
 use linkwright::{points_file, results_folder, run, verify};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A problem that `--set` changes.
 const SET_BASE: &str = "format = 1
@@ -159,6 +163,63 @@ pub fn record(bytes: &[u8]) {
         mismatches.iter().for_each(|mismatch| assert!(!mismatch.to_string().is_empty()));
     }
     reports(&record);
+}
+
+/// Small searches of every kind: free timing, prescribed timing, in the physical parameters, populations.
+pub const SEARCHES: [&str; 4] = [
+    "format = 1\nname = \"free\"\n[task.path]\npoints = [[0, 0], [2, 1], [3, 3], [4, 1], [5, 0], [6, -2], [4, -3], [2, -1]]\n\
+     [solve]\ncandidates = 4\nevaluations = 20000\nmethod = \"least-squares\"\n",
+    "format = 1\nname = \"timed\"\n[task.path]\npoints = [[0, 0], [10, 0], [10, 10], [0, 10], [5, 5]]\n\
+     tolerance = 1e-6\n[task.path.timing]\ncrank_deg = [0, 60, 120, 180, 240]\n[require]\n\
+     type = [\"crank-rocker\"]\ntransmission_deg_min = 40\n\
+     [solve]\ncandidates = 2\nevaluations = 6000\nmethod = \"least-squares\"\n",
+    "format = 1\nname = \"genetic\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
+     [solve]\nevaluations = 2000\nmethod = \"genetic\"\n[solve.genetic]\npopulation = 8\nelites = 1\n\
+     stall_generations = 4\n",
+    "format = 1\nname = \"differential\"\n[task.path]\npoints = [[0, 0], [2, 1], [4, 1], [5, 0]]\n\
+     [solve]\nevaluations = 2000\nmethod = \"differential-evolution\"\n[solve.differential-evolution]\n\
+     population = 8\nstall_generations = 4\n",
+];
+
+/// The job of one of [`SEARCHES`].
+pub fn search_job(text: &str) -> Job {
+    let file = problem_file::parse("search.toml", text, None, &[]).expect("it is a problem");
+    Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec }
+}
+
+/// Checkpoints: as they are, and signed anew after whatever was done to the state, as somebody could who means harm.
+/// A search that goes on from there comes to an end.
+pub fn checkpoint(bytes: &[u8]) {
+    if let Err(refusal) = checkpoint::parse("checkpoint.json", bytes) {
+        assert!(!refusal.to_string().is_empty());
+    }
+    let Ok(mut document) = serde_json::from_slice::<serde_json::Value>(bytes) else { return };
+    let Some(state) = document.get_mut("state").map(serde_json::Value::take) else { return };
+    let Ok(state) = serde_json::from_value::<SearchState>(state) else { return };
+    for text in SEARCHES {
+        let job = search_job(text);
+        let writer = Writer::new(&job).expect("it has a digest");
+        let Some(signed) = writer.bytes(&state) else { return };
+        let read = checkpoint::parse("checkpoint.json", &signed).expect("what was written can be read");
+        assert_eq!(read.leads_to(&job), None);
+        go_on(&job, read.into_state(), &writer);
+    }
+}
+
+/// Goes on from a state to the second boundary.
+fn go_on(job: &Job, state: SearchState, writer: &Writer) {
+    let (cancel, seen) = (AtomicBool::new(false), AtomicBool::new(false));
+    let sink = |state: &SearchState| {
+        writer.bytes(state);
+        cancel.store(seen.swap(true, Ordering::Relaxed), Ordering::Relaxed);
+    };
+    let keeper = Keeper::new(state, Pace::EveryBoundary, &sink);
+    let context = Context { cancel: &cancel, observer: &|_| {} };
+    let finished = run::run_kept(job, &context, Some(&keeper)).expect("it is a search");
+    // What a search gives is judged by the referee, whatever it went on from.
+    for candidate in &finished.record.candidates {
+        assert!(candidate.error.sum_sq.is_finite() && candidate.crank_deg.iter().all(|x| x.is_finite()));
+    }
 }
 
 fn reports(record: &Record) {

@@ -59,6 +59,38 @@ fn records() {
 }
 
 #[test]
+fn checkpoints() {
+    read_all(&["tests/corpora/checkpoint"], readers::checkpoint);
+}
+
+/// Remakes the checkpoints that the fuzzer starts from: `cargo test --test tool remake -- --ignored`.
+#[test]
+#[ignore = "writes into the project"]
+fn remake_the_corpus_of_checkpoints() {
+    use linkwright::checkpoint::Writer;
+    use linkwright::run::{Context, run_kept};
+    use linkwright::search::keeper::{Keeper, Pace, SearchState};
+    use std::collections::BTreeSet;
+    use std::sync::Mutex;
+    let folder = root().join("tests/corpora/checkpoint");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for text in readers::SEARCHES {
+        let job = readers::search_job(text);
+        let writer = Writer::new(&job).expect("it has a digest");
+        let written = Mutex::new(Vec::new());
+        let sink = |state: &SearchState| written.lock().expect("no panic").push(writer.bytes(state));
+        let keeper = Keeper::new(SearchState::default(), Pace::EveryBoundary, &sink);
+        let context = Context { cancel: &false.into(), observer: &|_| {} };
+        run_kept(&job, &context, Some(&keeper)).expect("it runs");
+        let written: Vec<Vec<u8>> = written.into_inner().expect("no panic").into_iter().flatten().collect();
+        for at in BTreeSet::from([written.len() / 2, written.len() - 1]) {
+            let path = folder.join(format!("{}-{at}.json", job.name));
+            std::fs::write(path, &written[at]).expect("there is room");
+        }
+    }
+}
+
+#[test]
 fn the_command_refuses_them_or_takes_them_and_never_falls_over() {
     let folders = ["problem", "linkage", "points", "drawing"].map(|name| format!("tests/corpora/{name}"));
     let checked = files(&folders.each_ref().map(String::as_str));

@@ -1,6 +1,7 @@
 //! Machines are switched off and disks are full: no torn file, no lost result, and an error that says what to do.
 
 use crate::common::root;
+use linkwright::checkpoint;
 use linkwright::results_folder::{ResultsFolder, read_record};
 use linkwright::solve::streams::{Stream, below, stream, unit};
 use std::collections::BTreeMap;
@@ -139,6 +140,67 @@ fn a_search_that_is_killed_at_any_instant_leaves_a_whole_result_and_can_be_run_a
         fs::read_dir(&place).expect("it is there").count() == results[0].len() + 1,
         "nothing is left over"
     );
+}
+
+/// A search of some tenths of a second with many boundaries, each of which is kept.
+#[cfg(unix)]
+fn long_job(folder: &Path, out: &str, threads: usize) -> Command {
+    let mut command =
+        linkwright(folder, &["synth", "small.toml", "--out", out, "--method", "genetic", "--quiet"]);
+    command.args(["--set", "solve.evaluations=10000", "--set", "solve.genetic.stall_generations=30"]);
+    command.args(["--checkpoint-every", "0", "--threads", &threads.to_string()]);
+    command
+}
+
+#[cfg(unix)]
+#[test]
+fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("small.toml"), PROBLEM).expect("there is room");
+    let begun = Instant::now();
+    assert!(matches!(long_job(folder.path(), "whole", 2).status().expect("it runs").code(), Some(0 | 1)));
+    let time = begun.elapsed();
+    let whole = settled(visible(&folder.path().join("whole")));
+    let place = folder.path().join("r");
+    let mut random: Stream = stream(11, 1);
+    let (mut kills, mut with_checkpoint, mut ends, mut tries) = (0, 0, 0, 0);
+    while kills < KILLS || ends == 0 {
+        tries += 1;
+        assert!(tries < 5 * KILLS, "{kills} kills, {ends} ends");
+        // A run that is killed goes on, on one thread or two, until it comes to its end.
+        let mut command = long_job(folder.path(), "r", 1 + below(&mut random, 2));
+        command.arg("--resume");
+        // The last one is left alone.
+        let after =
+            if kills < KILLS { time.mul_f64(0.5 * unit(&mut random)) } else { Duration::from_secs(60) };
+        let is_killed = if kills < KILLS {
+            killed(command, after)
+        } else {
+            assert!(matches!(command.status().expect("it runs").code(), Some(0 | 1)));
+            false
+        };
+        if is_killed {
+            kills += 1;
+            let files = visible(&place);
+            let checkpoint = files.get("checkpoint.json");
+            with_checkpoint += usize::from(checkpoint.is_some());
+            if let Some(bytes) = checkpoint {
+                checkpoint::parse("checkpoint.json", bytes).expect("a checkpoint is whole");
+            }
+            let is_half_done = checkpoint.is_some();
+            if files.contains_key("record.json") {
+                let known = settled(files).iter().all(|(name, bytes)| whole.get(name) == Some(bytes));
+                assert!(known || is_half_done, "a result is not that of the unbroken run");
+            }
+            continue;
+        }
+        ends += 1;
+        assert!(!place.join("checkpoint.json").exists() && !place.join(".lock").exists());
+        assert_eq!(settled(visible(&place)), whole, "after {kills} kills");
+        fs::remove_dir_all(&place).expect("it is ours");
+    }
+    assert!(with_checkpoint > KILLS / 2, "{with_checkpoint} of {kills}");
+    assert!(ends >= 2, "{ends}");
 }
 
 /// Runs a command whose files cannot be larger than so many blocks of 512 bytes, as on a disk that is full.
