@@ -10,6 +10,7 @@ mod compare;
 mod inputs;
 mod interrupt;
 mod man;
+mod measured;
 mod new;
 mod one_job;
 mod progress;

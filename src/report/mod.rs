@@ -31,6 +31,7 @@ pub mod exact;
 pub mod exact_sheet;
 mod figure;
 mod grid;
+mod html;
 mod labels;
 mod parts;
 pub mod plot;

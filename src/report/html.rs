@@ -1,0 +1,3 @@
+//! Pages: what they have in common.
+
+pub(super) mod page;
