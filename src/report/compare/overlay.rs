@@ -8,8 +8,8 @@ use crate::report::text::{brief, clean, shortened, shortened_in_front, significa
 use crate::report::words::length_suffix;
 
 /// The width of the drawing.
-pub(super) const WIDTH: f64 = 900.0;
-const HEIGHTS: std::ops::RangeInclusive<f64> = 300.0..=620.0;
+pub(super) const WIDTH: f64 = 760.0;
+const HEIGHTS: std::ops::RangeInclusive<f64> = 260.0..=560.0;
 const PADDING: f64 = 26.0;
 const MARGIN: f64 = 30.0;
 /// More target points than this are plain dots.

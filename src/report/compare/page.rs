@@ -6,7 +6,7 @@ use super::trade_off::{self, trade_off};
 use super::{Comparison, Ranked, SortKey, data, strokes, tables};
 use crate::report::canvas::px;
 use crate::report::html::page::{Page, escaped};
-use crate::report::text::{NO_NUMBER, clean, exact, significant};
+use crate::report::text::{NO_NUMBER, brief, clean, exact, significant};
 use crate::report::words::{defect_names, length_suffix};
 use std::fmt::Write;
 
@@ -52,7 +52,7 @@ impl Comparison {
 
     fn curves(&self, body: &mut String) {
         let overlay = Overlay::new(self);
-        body.push_str("<section id=\"curves\">\n<h2>Curves</h2>\n<figure>\n");
+        body.push_str("<section id=\"curves\">\n<h2>Curves</h2>\n<div class=\"beside\">\n<figure>\n");
         drawing(
             body,
             overlay::WIDTH,
@@ -85,7 +85,7 @@ impl Comparison {
         }
         body.push_str(
             "<p class=\"buttons\"><button type=\"button\" id=\"all\">Show all</button> \
-             <button type=\"button\" id=\"none\">Hide all</button></p>\n</fieldset>\n</section>\n",
+             <button type=\"button\" id=\"none\">Hide all</button></p>\n</fieldset>\n</div>\n</section>\n",
         );
     }
 
@@ -96,8 +96,8 @@ impl Comparison {
                            size of the mark); the same figures are in the table below.";
         drawing(body, trade_off::WIDTH, trade_off::HEIGHT, description, &canvas.body);
         body.push_str(
-            "<figcaption>Numbers are ranks, larger marks larger linkages. Filled and bold: the Pareto front. Best is the \
-             upper left corner.</figcaption>\n</figure>\n</section>\n",
+            "<figcaption>Across the rms error, up the worst transmission angle: best is the upper left corner. Numbers are \
+             ranks, larger marks larger linkages; filled and bold: the Pareto front.</figcaption>\n</figure>\n</section>\n",
         );
     }
 
@@ -116,7 +116,8 @@ impl Comparison {
                 "<section id=\"differences\">\n<h2>Above {}, per cent of it</h2>",
                 text(reference)
             );
-            let heads = plain_heads(&SortKey::ALL.map(SortKey::words));
+            let heads =
+                plain_heads(&["sum of squares", "rms", "max", "to curve", "transm.", "link ratio", "size"]);
             let rows = self.rows.iter().enumerate().map(|(i, row)| {
                 let cells = row.difference_percent.iter().map(|percent| Cell {
                     shown: match self.reference == Some(i) {
@@ -138,7 +139,7 @@ impl Comparison {
         let rows = self.rows.iter().enumerate().map(|(i, row)| {
             let linkage = &row.entry.candidate.linkage;
             let mut cells = vec![Cell::word(row.entry.candidate.linkage_type.name())];
-            cells.extend(data::lengths(linkage).map(|x| Cell::number(Some(x), 6)));
+            cells.extend(data::lengths(linkage).map(|x| Cell { shown: brief(x, 6), value: Some(x), word: false }));
             cells.extend([linkage.assembly().sign(), linkage.side().sign()].map(|sign| Cell {
                 shown: format!("{sign:+}"),
                 value: Some(sign),
@@ -245,7 +246,7 @@ fn text(text: &str) -> String {
 }
 
 fn star(row: &Ranked) -> &'static str {
-    if row.on_front { "<span title=\"on the Pareto front\">★</span>" } else { "" }
+    if row.on_front { " <span role=\"img\" aria-label=\"on the Pareto front\" title=\"on the Pareto front\">★</span>" } else { "" }
 }
 
 fn drawing(body: &mut String, width: f64, height: f64, description: &str, markup: &str) {

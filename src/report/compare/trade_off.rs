@@ -4,11 +4,10 @@ use super::{Comparison, Ranked, SortKey, strokes};
 use crate::report::canvas::{Anchor, Canvas, Spot, palette, px};
 use crate::report::scene::round_length;
 use crate::report::text::brief;
-use crate::report::words::length_suffix;
 
-pub(super) const WIDTH: f64 = 900.0;
-pub(super) const HEIGHT: f64 = 340.0;
-const LEFT: f64 = 62.0;
+pub(super) const WIDTH: f64 = 640.0;
+pub(super) const HEIGHT: f64 = 330.0;
+const LEFT: f64 = 66.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 22.0;
 const BOTTOM: f64 = 52.0;
@@ -116,7 +115,8 @@ fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Axis, up: &Axis) 
     }
     let unit = comparison.rows.first().and_then(|row| row.entry.unit);
     let scale = if across.logarithmic { ", logarithmic" } else { "" };
-    let label = format!("rms error{}{scale}", length_suffix(unit));
+    let unit = unit.map_or(String::new(), |unit| format!(", {}", unit.label()));
+    let label = format!("rms error{unit}{scale}");
     canvas.text(Spot::new(right, HEIGHT - 10.0), Anchor::End, &muted, &label);
     canvas.raw(&format!(
         r#"<text transform="translate(14 {}) rotate(-90)" text-anchor="middle" {muted}>worst transmission angle</text>"#,
