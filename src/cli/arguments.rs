@@ -34,6 +34,8 @@ pub enum Command {
     Compare(Compare),
     /// Recompute every figure and verdict of a result
     Verify(Verify),
+    /// Write a result as a page to look at, print and mail: one HTML file
+    Report(Report),
     /// Positions, velocities, accelerations and mobility of a linkage file
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
@@ -149,6 +151,17 @@ pub struct Verify {
     /// A result's folder or record.json
     #[arg(required = true, value_name = "RESULT")]
     pub results: Vec<PathBuf>,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// A result's folder or record.json; `:2` shows its second candidate first
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// Where the page goes [default: report.html in the folder, or beside a record under another name]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// Options of `analyze`.

@@ -14,6 +14,7 @@ mod measured;
 mod new;
 mod one_job;
 mod progress;
+mod report;
 mod result;
 mod suite;
 mod synth;
@@ -77,6 +78,7 @@ fn dispatch(command: Command) -> Ended {
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
+        Command::Report(options) => report::run(&options),
         Command::Suite(options) => suite::run(&options),
         Command::Schema { kind, markdown } => {
             terminal::answer(&match markdown {

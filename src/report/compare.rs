@@ -23,7 +23,7 @@ mod trade_off;
 mod unit;
 
 pub use data::{COLUMN_NAMES, JSON_FORMAT};
-pub use front::front;
+pub use front::{Point, front};
 pub use key::{SortKey, UnknownKey};
 pub use unit::{in_one_unit, scaled, times, unit_remarks};
 

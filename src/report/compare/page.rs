@@ -139,7 +139,11 @@ impl Comparison {
         let rows = self.rows.iter().enumerate().map(|(i, row)| {
             let linkage = &row.entry.candidate.linkage;
             let mut cells = vec![Cell::word(row.entry.candidate.linkage_type.name())];
-            cells.extend(data::lengths(linkage).map(|x| Cell { shown: brief(x, 6), value: Some(x), word: false }));
+            cells.extend(data::lengths(linkage).map(|x| Cell {
+                shown: brief(x, 6),
+                value: Some(x),
+                word: false,
+            }));
             cells.extend([linkage.assembly().sign(), linkage.side().sign()].map(|sign| Cell {
                 shown: format!("{sign:+}"),
                 value: Some(sign),
@@ -246,7 +250,11 @@ fn text(text: &str) -> String {
 }
 
 fn star(row: &Ranked) -> &'static str {
-    if row.on_front { " <span role=\"img\" aria-label=\"on the Pareto front\" title=\"on the Pareto front\">★</span>" } else { "" }
+    if row.on_front {
+        " <span role=\"img\" aria-label=\"on the Pareto front\" title=\"on the Pareto front\">★</span>"
+    } else {
+        ""
+    }
 }
 
 fn drawing(body: &mut String, width: f64, height: f64, description: &str, markup: &str) {

@@ -1,6 +1,6 @@
 //! What a person sees of a record: figures that agree with it, nothing raw from its names, no panic.
 
-mod records;
+pub mod records;
 
 use linkwright::linkage::AssemblyMode;
 use linkwright::record::{

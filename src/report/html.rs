@@ -1,3 +1,0 @@
-//! Pages: what they have in common.
-
-pub(super) mod page;
