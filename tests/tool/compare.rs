@@ -158,7 +158,7 @@ fn many_rows_and_one_row_make_every_form() {
         assert_eq!(svg.contains("are drawn."), n > 24);
         let html = comparison.html();
         assert_eq!(html.matches("<tr data-row").count(), 3 * n);
-        assert!(html.len() < 500_000, "{}", html.len());
+        assert!(html.len() < if n > 25 { 800_000 } else { 400_000 }, "{n}: {}", html.len());
         assert_eq!(comparison.csv().lines().count(), n + 1);
         assert!(comparison.table(Colour::Never).lines().all(|line| line.chars().count() <= 100));
     }
@@ -271,7 +271,7 @@ fn a_record_that_was_changed_is_not_believed() {
     fs::write(&path, serde_json::to_string(&record).expect("JSON")).expect("there is room");
     let (code, text, _) = linkwright(folder.path(), &["compare", "r:1"]);
     assert_eq!(code, 1);
-    assert!(text.contains("problem.digest") && text.contains("and 1 more"), "{text}");
+    assert!(text.contains("problem.digest") && text.contains("1*!"), "{text}");
 }
 
 #[test]

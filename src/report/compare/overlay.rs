@@ -3,7 +3,7 @@
 use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::linkage::{Complex, point};
 use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
-use crate::report::scene::{Bounds, SAMPLES, circuits, round_length};
+use crate::report::scene::{Bounds, circuits, round_length};
 use crate::report::text::{brief, clean, shortened, shortened_in_front, significant};
 use crate::report::words::length_suffix;
 
@@ -26,9 +26,12 @@ pub(super) struct Overlay {
     pub(super) drawn: usize,
 }
 
+/// Samples of a curve: a degree of the crank, below a tenth of a pixel of the arc.
+const OF_A_CURVE: usize = 360;
+
 /// Each row's coupler curves, one for each circuit used.
 fn curves(row: &Ranked) -> Vec<Vec<Complex>> {
-    let circuits = circuits(&row.entry.candidate, SAMPLES);
+    let circuits = circuits(&row.entry.candidate, OF_A_CURVE);
     circuits.iter().map(|joints| joints.iter().map(|j| j.coupler_point).collect()).collect()
 }
 
