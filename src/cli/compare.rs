@@ -5,6 +5,7 @@ use super::measured::{Measured, Target};
 use super::result::{self, Given, Which};
 use super::{Ended, terminal};
 use crate::diagnostic::escaped;
+use crate::record::Unit;
 use crate::report::compare::{Comparison, compare, in_one_unit, unit_remarks};
 use crate::results_folder::write_file;
 use std::path::Path;
@@ -21,7 +22,10 @@ fn inner(options: &Compare) -> Result<Ended, Ended> {
         given.push((argument.as_path(), result::read(argument)?));
     }
     let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
-    let measured = Measured::of(&given, target.as_ref())?;
+    let named = target.as_ref().map(|target| (target.name.clone(), target.unit));
+    let unit = named.as_ref().and_then(|(_, unit)| *unit);
+    let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
+    let measured = Measured::of(&given, target.as_ref(), unit)?;
     if measured.entries.is_empty() {
         for out in &measured.left_out {
             terminal::complain(&format!("{}: {}", out.label, out.why));
@@ -36,17 +40,23 @@ fn inner(options: &Compare) -> Result<Ended, Ended> {
         })?),
         None => None,
     };
-    let unit = target.as_ref().and_then(|target| target.unit);
-    let unit = unit.or_else(|| measured.entries.iter().find_map(|entry| entry.unit));
     let entries = in_one_unit(&measured.entries, unit).map_err(|e| {
         terminal::complain(&format!("a linkage cannot be converted to another unit: {e}"));
         Ended::Refused
     })?;
     let mut comparison = compare(&entries, &options.sort, reference);
     comparison.remarks.extend(measured.remarks);
-    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&measured.units, *unit)));
+    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
+    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
     comparison.left_out = measured.left_out;
     deliver(options, &comparison)
+}
+
+fn unit_of(given: &Given) -> Option<Unit> {
+    match given {
+        Given::Run(run) => run.record.problem.unit,
+        Given::Linkage(file) => file.unit,
+    }
 }
 
 /// The label of what differences are from; read and put to the others where it is none of them.

@@ -17,8 +17,10 @@ use ariadne::ReportKind;
 use std::path::Path;
 
 /// What errors are measured on.
+#[derive(Clone)]
 pub struct Target {
-    name: String,
+    /// The name of its problem.
+    pub name: String,
     problem: Problem,
     /// The unit of its lengths.
     pub unit: Option<Unit>,
@@ -36,11 +38,11 @@ impl Target {
     }
 
     /// The target of a run.
-    fn of_run(run: &Run) -> Result<Self, Ended> {
+    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, Ended> {
         let asked = &run.record.problem;
         let problem = Problem::new(asked.resolved.clone())
             .map_err(|e| refuse(&format!("{}: the recorded problem is none: {e}", run.named)))?;
-        Ok(Target { name: asked.name.clone(), problem, unit: asked.unit })
+        Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
     }
 
     /// Whether points, timing and unit are the same: positions on one are positions on the other.
@@ -87,7 +89,7 @@ pub struct Measured {
     pub entries: Vec<Entry>,
     /// What has none.
     pub left_out: Vec<LeftOut>,
-    /// The label of each entry with the unit of its file.
+    /// The label of all that was given with the unit of its file.
     pub units: Vec<(String, Option<Unit>)>,
     /// What a reader has to know of the measuring, in sentences.
     pub remarks: Vec<String>,
@@ -108,16 +110,19 @@ pub fn label_of_file(given: &[(&Path, Given)], index: usize) -> String {
 
 impl Measured {
     /// Measures what was given: candidates of runs on their own problems, or everything on `target`. Linkage files
-    /// without a target are measured on the problem of the runs beside them, where these have one.
+    /// without a target are measured on the problem of the runs beside them, where these have one. Lengths without a
+    /// unit, also of a target, are taken to be in `unit`.
     ///
     /// # Errors
     /// [`Ended::Refused`], told.
-    pub fn of(given: &[(&Path, Given)], target: Option<&Target>) -> Result<Self, Ended> {
+    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, Ended> {
         let mut measured = Measured::default();
+        let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
+        let target = target.as_ref();
         let mut of_runs: Vec<Option<Target>> = Vec::new();
         for (_, one) in given {
             of_runs.push(match one {
-                Given::Run(run) => Some(Target::of_run(run)?),
+                Given::Run(run) => Some(Target::of_run(run, unit)?),
                 Given::Linkage(_) => None,
             });
         }
@@ -129,6 +134,7 @@ impl Measured {
                 (Given::Run(run), Some(own)) => {
                     let untrue = digest_of(run);
                     for chosen in run.chosen() {
+                        measured.units.push((chosen.label.clone(), run.record.problem.unit));
                         measured.candidate(&chosen, own, target, &untrue);
                     }
                 }
@@ -139,7 +145,9 @@ impl Measured {
                             "{shown} is a linkage without a target: say which with --target PROBLEM.toml"
                         ))
                     })?;
-                    measured.file(label_of_file(given, i), file, on);
+                    let label = label_of_file(given, i);
+                    measured.units.push((label.clone(), file.unit));
+                    measured.file(label, file, on);
                 }
                 (Given::Run(_), None) => {}
             }
@@ -155,12 +163,9 @@ impl Measured {
         Ok(measured)
     }
 
-    fn put(&mut self, label: String, unit: Option<Unit>, entry: Result<Entry, String>) {
+    fn put(&mut self, label: String, entry: Result<Entry, String>) {
         match entry {
-            Ok(entry) => {
-                self.units.push((label, unit));
-                self.entries.push(entry);
-            }
+            Ok(entry) => self.entries.push(entry),
             Err(why) => self.left_out.push(LeftOut { label, why }),
         }
     }
@@ -170,7 +175,7 @@ impl Measured {
         let entry = on
             .nearest(&file.linkage, file.unit)
             .map(|candidate| on.entry(label.clone(), candidate, file.unit, false));
-        self.put(label, file.unit, entry);
+        self.put(label, entry);
     }
 
     /// A candidate of a run: at its own positions where the target is its own, else as a linkage without a run.
@@ -193,7 +198,7 @@ impl Measured {
         };
         let entry = measured
             .map(|candidate| Entry { untrue: found, ..on.entry(label.clone(), candidate, own.unit, true) });
-        self.put(label, own.unit, entry);
+        self.put(label, entry);
     }
 }
 

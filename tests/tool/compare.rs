@@ -300,6 +300,33 @@ fn files_in_other_units_stand_beside_a_run_as_what_they_are() {
 }
 
 #[test]
+fn a_target_without_a_unit_is_taken_to_be_in_that_of_the_first_linkage() {
+    let folder = TempDir::new().expect("a folder");
+    let target = root().join("problems/literature/k18.toml").display().to_string();
+    let hoeken = root().join("problems/linkages/hoeken.toml");
+    let file = linkage_file::load(&hoeken).expect("a linkage");
+    let centimetres = scaled(&file.linkage, 0.1).expect("in range");
+    for (name, unit, linkage) in [("mm", Unit::Mm, &file.linkage), ("cm", Unit::Cm, &centimetres)] {
+        let path = folder.path().join(format!("{name}.toml"));
+        fs::write(path, linkage_file::to_toml(name, Some(unit), linkage)).expect("room");
+    }
+    for (order, unit, size) in [(["mm.toml", "cm.toml"], "mm", 7.965), (["cm.toml", "mm.toml"], "cm", 0.7965)]
+    {
+        let arguments = [&["compare", "--target", &target, "--json"][..], &order].concat();
+        let (code, text, stderr) = linkwright(folder.path(), &arguments);
+        assert_eq!(code, 0, "{stderr}");
+        assert!(stderr.contains(&format!("Without a unit, taken to be in {unit}: k18.")), "{stderr}");
+        let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        assert_eq!(json["unit"], unit);
+        for key in ["rms", "size", "max"] {
+            let [x, y] = [0, 1].map(|i| json["rows"][i]["figures"][key].as_f64().expect("a number"));
+            assert!((x - y).abs() <= 1e-9 * x.abs(), "{key}: {x} {y}");
+        }
+        assert!((json["rows"][0]["figures"]["size"].as_f64().expect("a number") - size).abs() < 1e-3);
+    }
+}
+
+#[test]
 fn runs_of_different_targets_are_measured_on_one_that_is_named() {
     let folder = TempDir::new().expect("a folder");
     run(folder.path(), "r", &[]);

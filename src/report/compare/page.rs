@@ -184,11 +184,22 @@ impl Comparison {
             (true, true) => "yes".to_owned(),
             (true, false) => format!("yes ({})", defect_names(candidate)),
             (false, _) => {
+                const NAMED: usize = 3;
                 let mut unmet: Vec<&str> =
                     candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.as_str()).collect();
-                unmet.extend(candidate.defects.iter().map(|d| d.name()));
-                unmet.dedup();
-                if unmet.is_empty() { "no".to_owned() } else { format!("no: {}", unmet.join(", ")) }
+                unmet.extend(
+                    candidate
+                        .defects
+                        .iter()
+                        .map(|d| d.name())
+                        .filter(|name| !unmet.contains(name))
+                        .collect::<Vec<_>>(),
+                );
+                match unmet.len() {
+                    0 => "no".to_owned(),
+                    n if n > NAMED => format!("no: {} and {} more", unmet[..NAMED].join(", "), n - NAMED),
+                    _ => format!("no: {}", unmet.join(", ")),
+                }
             }
         };
         let mut cells = vec![
