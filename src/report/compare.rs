@@ -103,7 +103,7 @@ impl Entry {
 /// A ranked entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
-    /// 1 is the best; equal figures share a rank. Of several keys a later one decides between equals.
+    /// 1 is the best; figures that are equal to twelve digits share a rank. Of several keys a later one decides between equals.
     pub rank: usize,
     /// The rank by each key alone, in the order of the keys.
     pub ranks: Vec<usize>,
@@ -154,9 +154,15 @@ pub struct Comparison {
     pub remarks: Vec<String>,
 }
 
-/// 100 (value - reference)/|reference|; 0 where both are equal, also both 0; `None` where only the reference is 0.
+/// To twelve significant digits: what differs beyond them differs by rounding, and is equal here.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// 100 (value - reference)/|reference|; 0 where both are equal to twelve digits, also both 0; `None` where only the
+/// reference is 0.
 pub fn percent_above(value: f64, reference: f64) -> Option<f64> {
-    if value == reference {
+    if value == reference || rounded(value) == rounded(reference) {
         return Some(0.0);
     }
     Some(100.0 * (value - reference) / reference.abs()).filter(|p| p.is_finite())
@@ -172,9 +178,11 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
 /// Better first; what is missing last.
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     match (x, y) {
-        (Some(x), Some(y)) if x == y => Ordering::Equal,
-        (Some(x), Some(y)) if key.greatest_first() => y.total_cmp(&x),
-        (Some(x), Some(y)) => x.total_cmp(&y),
+        (Some(x), Some(y)) => {
+            // Adding 0 makes one zero of the two.
+            let (x, y) = (rounded(x) + 0.0, rounded(y) + 0.0);
+            if key.greatest_first() { y.total_cmp(&x) } else { x.total_cmp(&y) }
+        }
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
         (None, None) => Ordering::Equal,
@@ -242,9 +250,9 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
     if comparison.same_target() && comparison.same_unit() {
         let points = comparison.rows.iter().map(|row| front::Point {
             accepted: row.entry.candidate.accepted,
-            error: row.figure_of(SortKey::Rms),
-            angle: row.figure_of(SortKey::Transmission),
-            size: row.figure_of(SortKey::Size),
+            error: row.figure_of(SortKey::Rms).map(rounded),
+            angle: row.figure_of(SortKey::Transmission).map(rounded),
+            size: row.figure_of(SortKey::Size).map(rounded),
         });
         let marks = front(&points.collect::<Vec<_>>());
         comparison.rows.iter_mut().zip(marks).for_each(|(row, on_front)| row.on_front = on_front);

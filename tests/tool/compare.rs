@@ -102,6 +102,20 @@ fn a_later_key_decides_between_equals_and_every_key_has_ranks_of_its_own() {
 }
 
 #[test]
+fn what_differs_by_rounding_is_equal() {
+    let mut two = entries(&k18());
+    two.truncate(1);
+    two.push(two[0].clone());
+    two[1].candidate.error.rms *= 1.0 - f64::EPSILON;
+    assert_ne!(two[0].candidate.error.rms, two[1].candidate.error.rms);
+    let rows = compare(&two, &[SortKey::Rms], Some(0)).rows;
+    assert!(rows.iter().all(|row| row.rank == 1 && row.on_front && row.behind_percent == Some(0.0)));
+    two[1].candidate.error.rms *= 1.0 - 1e-9;
+    let rows = compare(&two, &[SortKey::Rms], None).rows;
+    assert_eq!(rows.iter().map(|row| (row.rank, row.on_front)).collect::<Vec<_>>(), [(1, true), (2, false)]);
+}
+
+#[test]
 fn per_cent_of_nothing_is_no_number() {
     assert_eq!(percent_above(3.0, 2.0), Some(50.0));
     assert_eq!(percent_above(1.0, 2.0), Some(-50.0));
