@@ -94,6 +94,13 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     Ok(mismatches)
 }
 
+/// Recomputes the figures and verdicts of one candidate of a problem; an empty list: they are true.
+pub fn verify_candidate(problem: &Problem, candidate: &Candidate) -> Vec<Mismatch> {
+    let mut mismatches = Vec::new();
+    Against { rank: candidate.rank, mismatches: &mut mismatches }.candidate(problem, candidate);
+    mismatches
+}
+
 /// The target's points are what smoothing and resampling make of the raw ones.
 fn digitised(problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
     let path = &problem.spec().task.path;

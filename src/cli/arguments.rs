@@ -35,6 +35,8 @@ pub enum Command {
     Compare(Compare),
     /// Recompute every figure and verdict of a result
     Verify(Verify),
+    /// Write a result as a page to look at, print and mail: one HTML file
+    Report(Report),
     /// Positions, velocities, accelerations and mobility of a linkage file
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
@@ -123,16 +125,28 @@ pub struct New {
 pub struct Compare {
     /// Results: a folder, a record.json, either with `:2` for its second candidate, or a linkage file
     #[arg(required = true, value_name = "RESULT")]
-    pub results: Vec<String>,
-    /// The problem whose target bare linkages are measured on
+    pub results: Vec<PathBuf>,
+    /// Measure everything on the target of this problem [default: runs on their own]
     #[arg(long, value_name = "PROBLEM")]
     pub target: Option<PathBuf>,
-    /// Which figure ranks
-    #[arg(long, value_name = "KEY", default_value = "sum_sq", value_parser = sort_key)]
-    pub sort: SortKey,
-    /// Write the table as CSV too
+    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size
+    #[arg(long, value_name = "KEY,..", default_value = "sum_sq", value_delimiter = ',', value_parser = sort_key)]
+    pub sort: Vec<SortKey>,
+    /// Print by how many per cent each figure is above that of this RESULT
+    #[arg(long, value_name = "RESULT")]
+    pub reference: Option<PathBuf>,
+    /// Write the tables as CSV too
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
+    /// Write the curves over the target as a drawing too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write a page with curves and tables too: one file, needs no network
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `verify`.
@@ -141,6 +155,17 @@ pub struct Verify {
     /// A result's folder or record.json
     #[arg(required = true, value_name = "RESULT")]
     pub results: Vec<PathBuf>,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// A result's folder or record.json; `:2` shows its second candidate first
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// Where the page goes [default: report.html in the folder, or beside a record under another name]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// Options of `analyze`.

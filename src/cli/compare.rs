@@ -1,107 +1,136 @@
 //! `compare`: results and linkages side by side.
 
 use super::arguments::Compare;
+use super::measured::{Measured, Target};
+use super::result::{self, Given, Which};
 use super::{Ended, terminal};
-use crate::assess::assess;
 use crate::diagnostic::escaped;
-use crate::problem::Problem;
-use crate::problem_file::ProblemFile;
-use crate::report::compare::{Entry, compare};
-use crate::results_folder::{read_record, write_file};
-use crate::search::nearest::nearest_positions;
-use crate::{linkage_file, problem_file};
-use ariadne::ReportKind;
+use crate::record::Unit;
+use crate::report::compare::{Comparison, compare, in_one_unit, unit_remarks};
+use crate::results_folder::write_file;
 use std::path::Path;
 
 /// Runs the command.
 pub fn run(options: &Compare) -> Ended {
-    let target = match options.target.as_deref().map(load_target).transpose() {
-        Ok(target) => target,
-        Err(ended) => return ended,
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner(options: &Compare) -> Result<Ended, Ended> {
+    let target = options.target.as_deref().map(Target::load).transpose()?;
+    let mut given = Vec::new();
+    for argument in &options.results {
+        given.push((argument.as_path(), result::read(argument)?));
+    }
+    let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
+    let named = target.as_ref().map(|target| (target.name.clone(), target.unit));
+    let unit = named.as_ref().and_then(|(_, unit)| *unit);
+    let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
+    let measured = Measured::of(&given, target.as_ref(), unit)?;
+    if measured.entries.is_empty() {
+        for out in &measured.left_out {
+            terminal::complain(&format!("{}: {}", out.label, out.why));
+        }
+        terminal::complain("none of these results has a candidate to compare");
+        return Ok(Ended::Bad);
+    }
+    let reference = match reference {
+        Some(label) => Some(measured.entries.iter().position(|e| e.label == label).ok_or_else(|| {
+            terminal::complain(&format!("{label} has no figures that others could be compared with"));
+            Ended::Refused
+        })?),
+        None => None,
     };
-    let mut entries = Vec::new();
-    for result in &options.results {
-        match load(result, target.as_ref()) {
-            Ok(loaded) => entries.extend(loaded),
-            Err(ended) => return ended,
+    let entries = in_one_unit(&measured.entries, unit).map_err(|e| {
+        terminal::complain(&format!("a linkage cannot be converted to another unit: {e}"));
+        Ended::Refused
+    })?;
+    let mut comparison = compare(&entries, &options.sort, reference);
+    comparison.remarks.extend(measured.remarks);
+    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
+    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
+    comparison.left_out = measured.left_out;
+    deliver(options, &comparison)
+}
+
+fn unit_of(given: &Given) -> Option<Unit> {
+    match given {
+        Given::Run(run) => run.record.problem.unit,
+        Given::Linkage(file) => file.unit,
+    }
+}
+
+/// The label of what differences are from; read and put to the others where it is none of them.
+fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<String, Ended> {
+    let typed = name.display().to_string();
+    let labels = |given: &Given, path: &Path| match given {
+        Given::Run(run) => run.chosen().into_iter().map(|chosen| chosen.label).collect(),
+        Given::Linkage(file) => vec![path.display().to_string(), file.name.clone()],
+    };
+    for (path, one) in given.iter() {
+        let labels = labels(one, path);
+        if *path == name || labels.contains(&typed) {
+            let label = labels.iter().find(|label| **label == typed && matches!(one, Given::Run(_)));
+            let first = || match one {
+                Given::Run(run) => run.one().map(|chosen| chosen.label),
+                Given::Linkage(_) => Ok(path.display().to_string()),
+            };
+            let label = label.map_or_else(first, |label| Ok(label.clone()))?;
+            return Ok(shown_as(&label, given));
         }
     }
-    if entries.is_empty() {
-        terminal::complain("none of these results has a candidate to compare");
-        return Ended::Bad;
-    }
-    let comparison = compare(&entries, options.sort);
-    if let Some(path) = &options.csv
-        && let Err(e) = write_file(path, comparison.csv().as_bytes())
-    {
-        terminal::complain(&e.to_string());
-        return Ended::Refused;
-    }
-    terminal::answer(&comparison.table(terminal::colour()));
-    Ended::Good
-}
-
-fn load_target(path: &Path) -> Result<(ProblemFile, Problem), Ended> {
-    let file = problem_file::load(path, &[]).map_err(|diagnostic| {
-        terminal::diagnose(ReportKind::Error, &diagnostic);
-        Ended::Refused
-    })?;
-    let problem = Problem::new(file.spec.clone()).map_err(|e| refuse(&e.to_string()))?;
-    Ok((file, problem))
-}
-
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
-}
-
-/// The entries of one argument: a linkage file, or the candidates of a result (one with `:2`).
-fn load(argument: &str, target: Option<&(ProblemFile, Problem)>) -> Result<Vec<Entry>, Ended> {
-    let path = Path::new(argument);
-    if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return Ok(vec![bare(path, target)?]);
-    }
-    let (folder, which) = match argument.rsplit_once(':') {
-        Some((folder, rank)) if !path.exists() => match rank.parse::<usize>() {
-            Ok(rank) if rank >= 1 => (folder, Some(rank)),
-            _ => {
-                return Err(refuse(&format!(
-                    "{argument}: after the colon stands a candidate's rank, from 1"
-                )));
+    let read = result::read(name)?;
+    let label = match read {
+        Given::Run(mut run) => {
+            let label = run.one()?.label;
+            if run.which == Which::All {
+                run.which = Which::Rank(1);
             }
-        },
-        _ => (argument, None),
+            if !given.iter().any(|(path, one)| labels(one, path).contains(&label)) {
+                given.push((name, Given::Run(run)));
+            }
+            label
+        }
+        linkage => {
+            given.push((name, linkage));
+            typed
+        }
     };
-    let record = read_record(Path::new(folder)).map_err(|e| refuse(&e.to_string()))?;
-    let n = record.candidates.len();
-    if let Some(rank) = which.filter(|rank| *rank > n) {
-        return Err(refuse(&format!("{argument}: there is no candidate {rank}, the result has {n}")));
-    }
-    let ranks = which.map_or(1..=n, |rank| rank..=rank);
-    let label =
-        |rank: usize| format!("{}:{rank}", folder.trim_end_matches("/record.json").trim_end_matches('/'));
-    Ok(ranks.filter_map(|rank| Entry::from_record(&label(rank), &record, rank - 1)).collect())
+    Ok(shown_as(&label, given))
 }
 
-/// A linkage without a run: measured at the positions nearest to the target's points, or at its angles.
-fn bare(path: &Path, target: Option<&(ProblemFile, Problem)>) -> Result<Entry, Ended> {
-    let file = linkage_file::load(path).map_err(|diagnostic| {
-        terminal::diagnose(ReportKind::Error, &diagnostic);
-        Ended::Refused
-    })?;
-    let shown = escaped(&path.display().to_string());
-    let Some((target_file, problem)) = target else {
-        return Err(refuse(&format!(
-            "{shown} is a linkage without a target: say which with --target PROBLEM.toml"
-        )));
-    };
-    let candidate = nearest_positions(problem, &file.linkage)
-        .and_then(|(crank_deg, assemblies)| assess(problem, &file.linkage, &crank_deg, &assemblies))
-        .ok_or_else(|| refuse(&format!("{shown} cannot be assembled at every point of the target")))?;
-    Ok(Entry {
-        label: file.name,
-        candidate,
-        target: target_file.spec.task.path.points.clone(),
-        unit: target_file.unit.or(file.unit),
-    })
+/// What a linkage file or a candidate is called in the tables.
+fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
+    let file = given
+        .iter()
+        .position(|(path, one)| matches!(one, Given::Linkage(_)) && path.display().to_string() == label);
+    file.map_or_else(|| label.to_owned(), |i| super::measured::label_of_file(given, i))
+}
+
+/// Writes the files that were asked for and prints the tables or JSON.
+fn deliver(options: &Compare, comparison: &Comparison) -> Result<Ended, Ended> {
+    let forms: [(&Option<_>, &dyn Fn() -> String); 3] = [
+        (&options.csv, &|| comparison.csv()),
+        (&options.svg, &|| comparison.svg()),
+        (&options.html, &|| comparison.html()),
+    ];
+    let mut written = Vec::new();
+    for (path, text) in forms {
+        let Some(path) = path else { continue };
+        write_file(path, text().as_bytes()).map_err(|e| {
+            terminal::complain(&e.to_string());
+            Ended::Refused
+        })?;
+        written.push(escaped(&path.display().to_string()));
+    }
+    if options.json {
+        comparison.notes().iter().for_each(|note| terminal::tell(&format!("note: {}", escaped(note))));
+        terminal::answer(&comparison.json());
+    } else {
+        terminal::answer(&comparison.table(terminal::colour()));
+        if !written.is_empty() {
+            terminal::answer(&format!("\n  Written to {}\n", written.join(" and ")));
+        }
+    }
+    let whole = comparison.is_true() && comparison.left_out.is_empty();
+    Ok(if whole { Ended::Good } else { Ended::Bad })
 }

@@ -10,9 +10,12 @@ mod compare;
 mod inputs;
 mod interrupt;
 mod man;
+mod measured;
 mod new;
 mod one_job;
 mod progress;
+mod report;
+mod result;
 mod suite;
 mod synth;
 mod terminal;
@@ -75,6 +78,7 @@ fn dispatch(command: Command) -> Ended {
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
+        Command::Report(options) => report::run(&options),
         Command::Suite(options) => suite::run(&options),
         Command::Schema { kind, markdown } => {
             terminal::answer(&match markdown {

@@ -11,7 +11,7 @@ use crate::report::batch_csv::batch_csv;
 use crate::report::exact::exact_text;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
-use crate::report::{contact_sheet, csv, exact_sheet, svg};
+use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
 use crate::results_folder::{BUILDABLE, replace_file};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
@@ -263,6 +263,7 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
     if record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()) {
         files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
     }
+    files.push(("report.html".into(), html::report_html(record, 0).into_bytes()));
     Ok(files)
 }
 

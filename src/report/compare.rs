@@ -1,75 +1,31 @@
-//! Linkages of several results side by side, ranked by one figure.
+//! Linkages of several results side by side: ranked by chosen figures, the Pareto front of error, worst
+//! transmission angle and size marked, differences from a chosen one in per cent.
+//!
+//! | for | call |
+//! |---|---|
+//! | a terminal | [`Comparison::table`] |
+//! | a spreadsheet, a script | [`Comparison::csv`], [`Comparison::json`] |
+//! | a page | [`Comparison::svg`], [`Comparison::html`] |
 
-use super::csv::{parameters, written};
-use super::grid::{Align, Colour, Grid, Ink};
 use super::scene::{Bounds, SAMPLES, circuits};
-use super::table::COLUMNS;
-use super::text::{cell, clean, exact, shortened_in_front, significant, wrapped};
+use super::text::clean;
 use crate::record::{Candidate, Record, Unit};
 use std::cmp::Ordering;
-use std::str::FromStr;
 
-/// What a comparison ranks by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SortKey {
-    /// The sum of squared errors, least first.
-    #[default]
-    SumSq,
-    /// The root of the mean square, least first.
-    Rms,
-    /// The largest error, least first.
-    Max,
-    /// The rms distance to the whole coupler curve, least first.
-    ToCurve,
-    /// The worst transmission angle, greatest first.
-    Transmission,
-    /// Longest over shortest link, least first.
-    LinkRatio,
-    /// The diagonal of the box that the joints sweep over the circuit, least first.
-    Size,
-}
+mod data;
+mod front;
+mod key;
+mod overlay;
+mod page;
+mod strokes;
+mod tables;
+mod trade_off;
+mod unit;
 
-impl SortKey {
-    /// Every key.
-    pub const ALL: [SortKey; 7] = [
-        SortKey::SumSq,
-        SortKey::Rms,
-        SortKey::Max,
-        SortKey::ToCurve,
-        SortKey::Transmission,
-        SortKey::LinkRatio,
-        SortKey::Size,
-    ];
-
-    /// Its name on the command line: `to_curve`.
-    pub fn name(self) -> &'static str {
-        match self {
-            SortKey::SumSq => "sum_sq",
-            SortKey::Rms => "rms",
-            SortKey::Max => "max",
-            SortKey::ToCurve => "to_curve",
-            SortKey::Transmission => "transmission",
-            SortKey::LinkRatio => "link_ratio",
-            SortKey::Size => "size",
-        }
-    }
-
-    fn greatest_first(self) -> bool {
-        self == SortKey::Transmission
-    }
-}
-
-/// A key that doesn't exist.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no figure is called \"{}\": sort by {}", .0, SortKey::ALL.map(SortKey::name).join(", "))]
-pub struct UnknownKey(pub String);
-
-impl FromStr for SortKey {
-    type Err = UnknownKey;
-    fn from_str(name: &str) -> Result<Self, UnknownKey> {
-        SortKey::ALL.into_iter().find(|key| key.name() == name).ok_or_else(|| UnknownKey(clean(name)))
-    }
-}
+pub use data::{COLUMN_NAMES, JSON_FORMAT};
+pub use front::{Point, front};
+pub use key::{SortKey, UnknownKey};
+pub use unit::{in_one_unit, scaled, times, unit_remarks};
 
 /// A linkage with its figures on a target, from a record or evaluated on one.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,18 +34,39 @@ pub struct Entry {
     pub label: String,
     /// The linkage, its figures and verdicts.
     pub candidate: Candidate,
+    /// The name of the problem whose target the errors are to.
+    pub target_name: String,
     /// The target that the errors are to.
     pub target: Vec<[f64; 2]>,
+    /// Whether it is a closed curve.
+    pub closed: bool,
     /// The unit of its lengths.
     pub unit: Option<Unit>,
+    /// Whether it is the answer of a run; else it is a linkage file.
+    pub of_run: bool,
+    /// What its record said and what is not so: the figures here are those found.
+    pub untrue: Vec<String>,
 }
 
 impl Entry {
-    /// `record.candidates[index]`, where there is one.
+    /// `record.candidates[index]`, where there is one, with the figures that the record has.
     pub fn from_record(label: &str, record: &Record, index: usize) -> Option<Entry> {
-        let target = record.problem.resolved.task.path.points.clone();
-        let candidate = record.candidates.get(index)?.clone();
-        Some(Entry { label: label.to_owned(), candidate, target, unit: record.problem.unit })
+        record.candidates.get(index).map(|candidate| Entry::of(label, record, candidate.clone()))
+    }
+
+    /// A candidate measured on the problem of a record.
+    pub fn of(label: &str, record: &Record, candidate: Candidate) -> Entry {
+        let path = &record.problem.resolved.task.path;
+        Entry {
+            label: label.to_owned(),
+            candidate,
+            target_name: record.problem.name.clone(),
+            target: path.points.clone(),
+            closed: path.closed,
+            unit: record.problem.unit,
+            of_run: true,
+            untrue: Vec::new(),
+        }
     }
 
     /// The diagonal of the box that A, B and the moving joints sweep over the circuits used (half a degree
@@ -126,99 +103,167 @@ impl Entry {
 /// A ranked entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
-    /// 1 is the best; equal figures share a rank.
+    /// 1 is the best; figures that are equal to twelve digits share a rank. Of several keys a later one decides between equals.
     pub rank: usize,
+    /// The rank by each key alone, in the order of the keys.
+    pub ranks: Vec<usize>,
     /// The entry.
     pub entry: Entry,
-    /// The figure that it is ranked by; `None` where it isn't finite.
+    /// The figure of the first key; `None` where it isn't finite.
     pub figure: Option<f64>,
-    /// How far the figure is from the best, per cent of the best; `None` where the best is 0 and this isn't.
+    /// How far that is from the best, per cent of the best; `None` where the best is 0 and this isn't.
     pub behind_percent: Option<f64>,
+    /// By how much each figure is above the reference's, per cent of the reference's, in the order of
+    /// [`SortKey::ALL`]: see [`percent_above`]. Empty without a reference.
+    pub difference_percent: Vec<Option<f64>>,
+    /// Whether it is on the front: see [`front()`].
+    pub on_front: bool,
     /// [`Entry::size`].
     pub size: f64,
+    figures: [Option<f64>; SortKey::ALL.len()],
 }
 
-/// Entries in the order of one figure.
+impl Ranked {
+    /// A figure; `None` where it isn't finite.
+    pub fn figure_of(&self, key: SortKey) -> Option<f64> {
+        self.figures[key as usize]
+    }
+}
+
+/// Something that was given and has no figures.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LeftOut {
+    /// What it is called.
+    pub label: String,
+    /// Why it has none.
+    pub why: String,
+}
+
+/// Entries in the order of the chosen figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What they are ranked by.
-    pub key: SortKey,
+    /// What they are ranked by; never empty.
+    pub keys: Vec<SortKey>,
     /// Best first; those without the figure last, equals in the order given.
     pub rows: Vec<Ranked>,
+    /// Which row the differences are from.
+    pub reference: Option<usize>,
+    /// What else was given.
+    pub left_out: Vec<LeftOut>,
+    /// What was done to make them comparable, in sentences.
+    pub remarks: Vec<String>,
 }
 
-/// Ranks the entries.
-pub fn compare(entries: &[Entry], key: SortKey) -> Comparison {
-    let mut rows: Vec<Ranked> = entries
-        .iter()
-        .map(|entry| {
-            let size = entry.size();
-            let figure = Some(if key == SortKey::Size { size } else { entry.figure(key) });
-            let figure = figure.filter(|f| f.is_finite());
-            Ranked { rank: 0, entry: entry.clone(), figure, behind_percent: None, size }
-        })
-        .collect();
-    rows.sort_by(|x, y| match (x.figure, y.figure) {
-        (Some(x), Some(y)) if key.greatest_first() => y.total_cmp(&x),
-        (Some(x), Some(y)) => x.total_cmp(&y),
+/// To twelve significant digits: what differs beyond them differs by rounding, and is equal here.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.11e}").parse().unwrap_or(value)
+}
+
+/// 100 (value - reference)/|reference|; 0 where both are equal to twelve digits, also both 0; `None` where only the
+/// reference is 0.
+pub fn percent_above(value: f64, reference: f64) -> Option<f64> {
+    if value == reference || rounded(value) == rounded(reference) {
+        return Some(0.0);
+    }
+    Some(100.0 * (value - reference) / reference.abs()).filter(|p| p.is_finite())
+}
+
+/// Whether two targets are one, up to the rounding of a change of units.
+pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
+    const ROUNDING: f64 = 8.0 * f64::EPSILON;
+    let near = |x: f64, y: f64| x == y || (x - y).abs() <= ROUNDING * x.abs().max(y.abs());
+    one.len() == other.len() && one.iter().flatten().zip(other.iter().flatten()).all(|(x, y)| near(*x, *y))
+}
+
+/// Better first; what is missing last.
+fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
+    match (x, y) {
+        (Some(x), Some(y)) => {
+            // Adding 0 makes one zero of the two.
+            let (x, y) = (rounded(x) + 0.0, rounded(y) + 0.0);
+            if key.greatest_first() { y.total_cmp(&x) } else { x.total_cmp(&y) }
+        }
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
         (None, None) => Ordering::Equal,
-    });
-    let best = rows.first().and_then(|row| row.figure);
-    let mut rank = 0;
-    let mut previous = None;
-    for (i, row) in rows.iter_mut().enumerate() {
-        if i == 0 || row.figure != previous {
-            rank = i + 1;
-        }
-        row.rank = rank;
-        previous = row.figure;
-        row.behind_percent = match (row.figure, best) {
-            (Some(figure), Some(best)) if figure == best => Some(0.0),
-            (Some(figure), Some(best)) if best != 0.0 => {
-                Some(100.0 * (figure - best).abs() / best.abs()).filter(|p| p.is_finite())
-            }
-            _ => None,
-        };
     }
-    Comparison { key, rows }
 }
 
-/// The head of [`Comparison::csv`].
-pub const COLUMN_NAMES: [&str; 26] = [
-    "rank",
-    "label",
-    "accepted",
-    "behind_percent",
-    "sum_sq",
-    "rms",
-    "max",
-    "max_at",
-    "to_curve_rms",
-    "type",
-    "transmission_worst_deg",
-    "transmission_over",
-    "link_ratio",
-    "size",
-    "Ax",
-    "Ay",
-    "Bx",
-    "By",
-    "a",
-    "b",
-    "c",
-    "d",
-    "e",
-    "t1",
-    "t2",
-    "unit",
-];
+/// One more than how many are better, for each.
+fn ranked<T>(sorted: &[T], equal: impl Fn(&T, &T) -> bool) -> Vec<usize> {
+    let mut ranks = Vec::with_capacity(sorted.len());
+    for i in 0..sorted.len() {
+        let shared = i > 0 && equal(&sorted[i - 1], &sorted[i]);
+        ranks.push(if shared { ranks[i - 1] } else { i + 1 });
+    }
+    ranks
+}
+
+/// Ranks the entries by the first key, equals by the next ones (`sum_sq` where there is none); `reference` is the
+/// index of the entry that differences are from.
+pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) -> Comparison {
+    let keys = if keys.is_empty() { vec![SortKey::default()] } else { keys.to_vec() };
+    let mut rows: Vec<(usize, Ranked)> = entries
+        .iter()
+        .map(|entry| {
+            let figures = SortKey::ALL.map(|key| Some(entry.figure(key)).filter(|f| f.is_finite()));
+            Ranked {
+                rank: 0,
+                ranks: vec![0; keys.len()],
+                entry: entry.clone(),
+                figure: figures[keys[0] as usize],
+                behind_percent: None,
+                difference_percent: Vec::new(),
+                on_front: false,
+                size: figures[SortKey::Size as usize].unwrap_or(f64::NAN),
+                figures,
+            }
+        })
+        .enumerate()
+        .collect();
+    for (k, key) in keys.iter().enumerate() {
+        let by = |x: &Ranked, y: &Ranked| order(x.figure_of(*key), y.figure_of(*key), *key);
+        rows.sort_by(|x, y| by(&x.1, &y.1));
+        let ranks = ranked(&rows, |x, y| by(&x.1, &y.1).is_eq());
+        rows.iter_mut().zip(ranks).for_each(|(row, rank)| row.1.ranks[k] = rank);
+    }
+    let by_all = |x: &Ranked, y: &Ranked| {
+        let by = |key: &SortKey| order(x.figure_of(*key), y.figure_of(*key), *key);
+        keys.iter().map(by).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    rows.sort_by(|x, y| by_all(&x.1, &y.1).then(x.0.cmp(&y.0)));
+    let ranks = ranked(&rows, |x, y| by_all(&x.1, &y.1).is_eq());
+    let reference = reference.and_then(|index| rows.iter().position(|row| row.0 == index));
+    let mut rows: Vec<Ranked> = rows.into_iter().map(|row| row.1).collect();
+    let best = rows.first().and_then(|row| row.figure);
+    let from = reference.map(|row| rows[row].figures);
+    for (row, rank) in rows.iter_mut().zip(ranks) {
+        row.rank = rank;
+        row.behind_percent =
+            row.figure.zip(best).and_then(|(figure, best)| percent_above(figure, best)).map(f64::abs);
+        if let Some(from) = from {
+            let above = |(x, from): (&Option<f64>, &Option<f64>)| percent_above((*x)?, (*from)?);
+            row.difference_percent = row.figures.iter().zip(&from).map(above).collect();
+        }
+    }
+    let mut comparison = Comparison { keys, rows, reference, left_out: Vec::new(), remarks: Vec::new() };
+    if comparison.same_target() && comparison.same_unit() {
+        let points = comparison.rows.iter().map(|row| front::Point {
+            accepted: row.entry.candidate.accepted,
+            error: row.figure_of(SortKey::Rms).map(rounded),
+            angle: row.figure_of(SortKey::Transmission).map(rounded),
+            size: row.figure_of(SortKey::Size).map(rounded),
+        });
+        let marks = front(&points.collect::<Vec<_>>());
+        comparison.rows.iter_mut().zip(marks).for_each(|(row, on_front)| row.on_front = on_front);
+    }
+    comparison
+}
 
 impl Comparison {
     /// Whether all errors are to the same target.
     pub fn same_target(&self) -> bool {
-        self.rows.windows(2).all(|w| w[0].entry.target == w[1].entry.target)
+        self.rows.windows(2).all(|w| same_points(&w[0].entry.target, &w[1].entry.target))
     }
 
     /// Whether all lengths have the same unit.
@@ -226,135 +271,53 @@ impl Comparison {
         self.rows.windows(2).all(|w| w[0].entry.unit == w[1].entry.unit)
     }
 
-    /// Figures and parameters as two tables of text.
-    pub fn table(&self, colour: Colour) -> String {
-        if self.rows.is_empty() {
-            return "  Nothing to compare.\n".to_owned();
-        }
-        let mut out = colour.paint(Ink::Strong, &format!("Ranked by {}", self.key.name()));
-        out.push_str("\n\n");
-        out.push_str(&self.figures(colour));
-        out.push('\n');
-        out.push_str(&self.parameters(colour));
+    /// Whether every record said what is so.
+    pub fn is_true(&self) -> bool {
+        self.rows.iter().all(|row| row.entry.untrue.is_empty())
+    }
+
+    /// What a reader has to know beside the figures, in sentences.
+    pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
+        for row in self.rows.iter().filter(|row| !row.entry.untrue.is_empty()) {
+            let (label, n) = (clean(&row.entry.label), row.entry.untrue.len());
+            let more = if n > 1 { format!(" (and {} more)", n - 1) } else { String::new() };
+            notes.push(format!(
+                "The record of {label} is not true: {}{more}. The figures here are those found.",
+                clean(&row.entry.untrue[0])
+            ));
+        }
         if !self.same_target() {
-            notes.push("The targets differ: errors to different targets say little beside each other.");
+            notes.push(
+                "The targets differ: errors to different targets say little beside each other, and no front is marked."
+                    .to_owned(),
+            );
         }
         if !self.same_unit() {
-            notes.push("The units differ: lengths are as they stand in each result.");
+            notes.push(
+                "The units differ: lengths are as they stand in each result, and no front is marked."
+                    .to_owned(),
+            );
         }
-        for note in notes {
-            out.push('\n');
-            out.push_str(&wrapped("  ", "  ", note, COLUMNS));
-        }
-        out
+        notes.extend(self.remarks.iter().cloned());
+        notes.extend(
+            self.left_out.iter().map(|out| format!("Left out: {}: {}.", clean(&out.label), clean(&out.why))),
+        );
+        notes
     }
 
-    fn figures(&self, colour: Colour) -> String {
-        use Align::{Left, Right};
-        let mut grid = Grid::new(&[
-            ("#", Right),
-            ("linkage", Left),
-            ("behind", Right),
-            ("sum of sq", Right),
-            ("rms", Right),
-            ("max", Right),
-            ("to curve", Right),
-            ("transm.", Right),
-            ("ratio", Right),
-            ("size", Right),
-            ("accepted", Left),
-        ]);
-        for row in &self.rows {
-            let (candidate, plain) = (&row.entry.candidate, |text: String| (text, Ink::Plain));
-            let behind = match row.behind_percent {
-                Some(0.0) => "best".to_owned(),
-                Some(percent) => format!("{} %", significant(percent, 3)),
-                None => super::text::NO_NUMBER.to_owned(),
-            };
-            grid.row(vec![
-                (row.rank.to_string(), Ink::Strong),
-                plain(shortened_in_front(&clean(&row.entry.label), 14)),
-                plain(behind),
-                plain(significant(candidate.error.sum_sq, 4)),
-                plain(significant(candidate.error.rms, 3)),
-                plain(significant(candidate.error.max, 3)),
-                plain(significant(candidate.error.to_curve.rms, 3)),
-                plain(format!("{}°", significant(candidate.transmission_deg.worst, 3))),
-                plain(significant(candidate.link_ratio, 3)),
-                plain(significant(row.size, 3)),
-                if candidate.accepted { ("yes".into(), Ink::Good) } else { ("no".into(), Ink::Bad) },
-            ]);
-        }
-        grid.render(colour)
+    /// What the marks of the front mean; `None` where nothing is marked.
+    pub fn front_words(&self) -> Option<String> {
+        let n = self.rows.iter().filter(|row| row.on_front).count();
+        (n > 0).then(|| {
+            "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
+             better in one (what is not accepted never beats what is)"
+                .to_owned()
+        })
     }
 
-    fn parameters(&self, colour: Colour) -> String {
-        use Align::{Left, Right};
-        let mut grid = Grid::new(&[
-            ("#", Right),
-            ("type", Left),
-            ("Ax", Right),
-            ("Ay", Right),
-            ("Bx", Right),
-            ("By", Right),
-            ("a", Right),
-            ("b", Right),
-            ("c", Right),
-            ("d", Right),
-            ("e", Right),
-            ("t1", Right),
-            ("t2", Right),
-        ]);
-        for row in &self.rows {
-            let linkage = &row.entry.candidate.linkage;
-            let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-            let lengths = [
-                linkage.crank(),
-                linkage.coupler(),
-                linkage.follower(),
-                linkage.crank_side(),
-                linkage.follower_side(),
-            ];
-            let mut cells = vec![
-                (row.rank.to_string(), Ink::Strong),
-                (row.entry.candidate.linkage_type.name().to_owned(), Ink::Plain),
-            ];
-            let numbers = [a.re, a.im, b.re, b.im].into_iter().chain(lengths);
-            cells.extend(numbers.map(|x| (significant(x, 4), Ink::Plain)));
-            let signs = [linkage.assembly().sign(), linkage.side().sign()];
-            cells.extend(signs.map(|sign| (format!("{sign:+}"), Ink::Plain)));
-            grid.row(cells);
-        }
-        grid.render(colour)
-    }
-
-    /// One row an entry, every number to the last digit.
-    pub fn csv(&self) -> String {
-        written(
-            &COLUMN_NAMES,
-            self.rows.iter().map(|row| {
-                let (entry, candidate) = (&row.entry, &row.entry.candidate);
-                let mut cells = vec![
-                    row.rank.to_string(),
-                    cell(&entry.label),
-                    candidate.accepted.to_string(),
-                    row.behind_percent.map_or(String::new(), exact),
-                    exact(candidate.error.sum_sq),
-                    exact(candidate.error.rms),
-                    exact(candidate.error.max),
-                    candidate.error.max_at.to_string(),
-                    exact(candidate.error.to_curve.rms),
-                    candidate.linkage_type.name().to_owned(),
-                    exact(candidate.transmission_deg.worst),
-                    super::words::over(candidate.transmission_deg.over).to_owned(),
-                    exact(candidate.link_ratio),
-                    exact(row.size),
-                ];
-                cells.extend(parameters(&entry.candidate.linkage));
-                cells.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
-                cells
-            }),
-        )
+    /// The label of the row that differences are from.
+    pub fn reference_label(&self) -> Option<&str> {
+        Some(&self.rows.get(self.reference?)?.entry.label)
     }
 }

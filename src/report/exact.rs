@@ -14,7 +14,7 @@ const FEW: usize = 8;
 pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let Some(exact) = &record.exact else { return String::new() };
     let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
-    for sentence in [found(exact), real(&exact.census), paths(&exact.census), proof(exact)] {
+    for sentence in sentences(exact) {
         if !sentence.is_empty() {
             out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
         }
@@ -39,6 +39,11 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     out.push('\n');
     out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
     out
+}
+
+/// How many solutions there are, of what kind, how they were found, and what is proved.
+pub(super) fn sentences(exact: &ExactRecord) -> [String; 4] {
+    [found(exact), real(&exact.census), paths(&exact.census), proof(exact)]
 }
 
 fn count(n: usize) -> String {

@@ -10,6 +10,7 @@
 //! |---|---|
 //! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`plot::terminal_plot`] |
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
+//! | a browser | [`html::report_html`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
 //! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`analysis_sheets::cognates_svg`] |
 //! | several results | [`compare::compare`] |
@@ -31,6 +32,7 @@ pub mod exact;
 pub mod exact_sheet;
 mod figure;
 mod grid;
+pub mod html;
 mod labels;
 mod parts;
 pub mod plot;

@@ -34,6 +34,14 @@ fn rms(record: &Record, candidate: &Candidate) -> f64 {
     weights.map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
 }
 
+/// What a limit costs that a candidate stands on: `costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
+pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Option<String> {
+    let own: Vec<&Cost> = candidate.costs.iter().filter(|cost| cost.name == name).collect();
+    let name = clean(name);
+    let text = (!own.is_empty()).then(|| sentence(record, candidate, &own))?;
+    Some(text.strip_prefix(&name).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
+}
+
 /// `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
 fn sentence(record: &Record, candidate: &Candidate, own: &[&Cost]) -> String {
     let unit = words::unit_suffix(record);
@@ -80,6 +88,30 @@ fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
 
 /// Which requirements conflict and what would help; empty where something is acceptable or nothing was found.
 pub fn relaxations(record: &Record, columns: usize) -> String {
+    let mut out = String::new();
+    if let Some(text) = conflict(record) {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", &text, columns));
+    }
+    for (options, rms) in changes(record) {
+        // Not broken into lines: it is there to be copied.
+        out.push_str(&format!("    {options}   ({rms})\n"));
+    }
+    out
+}
+
+/// The changes that help, as they are typed, each with the error then.
+pub(super) fn changes(record: &Record) -> Vec<(String, String)> {
+    let unit = words::unit_suffix(record);
+    let of = |relaxation: &Relaxation| {
+        let options: Vec<String> = relaxation.set.iter().map(option).collect();
+        (options.join(" "), format!("rms {}{unit}", significant(relaxation.rms, 3)))
+    };
+    record.relaxations.iter().map(of).collect()
+}
+
+/// Which requirements conflict, and how the list of what helps begins.
+pub(super) fn conflict(record: &Record) -> Option<String> {
     let mut parts = Vec::new();
     if let Some(conflict) = &record.conflict {
         let named: Vec<String> = conflict.among.iter().map(|key| demand(record, key)).collect();
@@ -92,8 +124,6 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
     if record.conflict.is_none() && !record.relaxations.is_empty() {
         parts.push("Nothing acceptable.".into());
     }
-    let unit = words::unit_suffix(record);
-    let mut out = String::new();
     if record.relaxations.is_empty() {
         if !parts.is_empty() {
             parts.push("No single change that helps was found.".into());
@@ -102,20 +132,7 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
         let single = record.relaxations.iter().any(|relaxation| changed(relaxation) == 1);
         parts.push(if single { "It works with" } else { "No single change helps; it works with" }.into());
     }
-    if !parts.is_empty() {
-        out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &parts.join(" "), columns));
-    }
-    for relaxation in &record.relaxations {
-        let options: Vec<String> = relaxation.set.iter().map(option).collect();
-        // Not broken into lines: it is there to be copied.
-        out.push_str(&format!(
-            "    {}   (rms {}{unit})\n",
-            options.join(" "),
-            significant(relaxation.rms, 3)
-        ));
-    }
-    out
+    (!parts.is_empty()).then(|| parts.join(" "))
 }
 
 /// How many keys change; those that are only written out are none.

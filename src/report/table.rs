@@ -36,9 +36,18 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
 
 /// Name, source, points, size, timing.
 fn heading(record: &Record, colour: Colour) -> String {
-    let path = &record.problem.resolved.task.path;
     let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
     out.push('\n');
+    out.push_str(&wrapped("  ", "  ", &facts(record), COLUMNS));
+    if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
+        out.push_str(&wrapped("  ", "  ", &source, COLUMNS));
+    }
+    out
+}
+
+/// `18 points, size 1.082 m, prescribed timing, offset free, closed`.
+pub(super) fn facts(record: &Record) -> String {
+    let path = &record.problem.resolved.task.path;
     let mut facts = vec![count(path.points.len(), "point")];
     if let Ok(task) = path.to_task() {
         facts.push(format!("size {}{}", brief(task.size(), 4), words::unit_suffix(record)));
@@ -54,14 +63,10 @@ fn heading(record: &Record, colour: Colour) -> String {
         );
         facts.extend(raw.smooth.map(|deviation| format!("smoothed over {}{unit}", brief(deviation, 4))));
     }
-    out.push_str(&wrapped("  ", "  ", &facts.join(", "), COLUMNS));
-    if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
-        out.push_str(&wrapped("  ", "  ", &source, COLUMNS));
-    }
-    out
+    facts.join(", ")
 }
 
-fn count(n: usize, noun: &str) -> String {
+pub(super) fn count(n: usize, noun: &str) -> String {
     format!("{} {noun}{}", grouped(n as u64), if n == 1 { "" } else { "s" })
 }
 
@@ -150,7 +155,7 @@ fn notes(record: &Record) -> String {
 }
 
 /// How near the curves come to the points as they were given, before smoothing and resampling.
-fn against_raw(record: &Record) -> Option<String> {
+pub(super) fn against_raw(record: &Record) -> Option<String> {
     let raw = record.problem.resolved.task.path.raw.as_ref()?;
     let unit = words::unit_suffix(record);
     let of = |c: &Candidate| {
@@ -181,7 +186,7 @@ fn best(record: &Record) -> String {
 }
 
 /// `crank from 31.102° to 371.1°, counter-clockwise`, or `crank between 11.459° and 51.566°, to and fro`.
-fn motion(candidate: &Candidate) -> Option<String> {
+pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     let angles = &candidate.crank_deg;
     let (first, last) = (*angles.first()?, *angles.last()?);
     if !angles.iter().all(|angle| angle.is_finite()) {
@@ -226,6 +231,11 @@ fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
 
 /// Method, seed, cost, why it ended.
 fn ending(record: &Record) -> String {
+    wrapped("  ", "  ", &ending_sentences(record), COLUMNS)
+}
+
+/// Method, seed, cost, why it ended, on one line.
+pub(super) fn ending_sentences(record: &Record) -> String {
     let reason = if record.method.used == ["continuation"] && record.termination.reproducible {
         "every solution path was followed to its end"
     } else {
@@ -244,7 +254,7 @@ fn ending(record: &Record) -> String {
     if !record.termination.reproducible {
         text.push_str(" A run that is cut short by the clock or by hand cannot be repeated to the digit.");
     }
-    wrapped("  ", "  ", &text, COLUMNS)
+    text
 }
 
 /// One file of a batch.

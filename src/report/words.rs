@@ -100,11 +100,11 @@ fn of_requirement(requirement: &Requirement) -> Objection {
     Objection { key: key.to_owned(), sentence }
 }
 
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     brief(value, 5)
 }
 
-fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
+pub(super) fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
     match figure {
         Figure::Number(value) => number(*value),
         Figure::Numbers(values) => values.iter().take(8).map(|v| number(*v)).collect::<Vec<_>>().join(", "),

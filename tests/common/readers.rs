@@ -235,7 +235,10 @@ fn reports(record: &Record) {
         terminal_plot(record, i, PLOT.0, PLOT.1, Glyphs::Braille);
         entries.extend(Entry::from_record("label", record, i));
     }
-    let comparison = compare(&entries, SortKey::Rms);
+    let comparison = compare(&entries, &[SortKey::Rms], None);
     comparison.table(Colour::Never);
     comparison.csv();
+    comparison.svg();
+    comparison.json();
+    comparison.html();
 }

@@ -258,10 +258,12 @@ fn no_command_leaves_half_a_file_on_a_full_disk() {
     let chain = root().join("problems/linkages/jansen-leg.toml").display().to_string();
     fs::write(folder.path().join("kept.csv"), "what was there").expect("there is room");
     let before = visible(folder.path());
-    let commands: [&[&str]; 9] = [
+    let commands: [&[&str]; 11] = [
         &["new", "fresh"],
         &["compare", "r", "--csv", "kept.csv"],
         &["compare", "r", "--csv", "fresh.csv"],
+        &["compare", "r", "--svg", "fresh.svg"],
+        &["compare", "r", "--html", "kept.csv"],
         &["analyze", &linkage, "--csv", "kept.csv"],
         &["analyze", &linkage, "--svg", "fresh.svg"],
         &["analyze", &chain, "--csv", "fresh.csv"],

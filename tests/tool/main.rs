@@ -7,6 +7,7 @@ mod batches;
 mod command_line;
 #[path = "../common/mod.rs"]
 mod common;
+mod compare;
 mod continuation;
 mod corpora;
 mod documents;

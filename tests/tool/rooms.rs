@@ -50,7 +50,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("svg_file.rs", &["diagnostic", "input_text", "linkage", "record"]),
         ("svg_file", &["diagnostic", "task", "toml_text"]),
         ("search", &["search", "problem", "task", "linkage", "solve", "exact", "assess", "record"]),
-        ("report", &["report", "linkage", "task", "problem", "record", "analysis", "suite"]),
+        ("report", &["report", "linkage", "linkage_file", "task", "problem", "record", "analysis", "suite"]),
         ("published.rs", &["assess", "linkage", "problem", "problem_file", "record", "search"]),
         ("suite.rs", &["problem", "problem_file", "published", "record", "run", "search"]),
         ("suite", &["record"]),

@@ -1,6 +1,6 @@
 //! What a person sees of a record: figures that agree with it, nothing raw from its names, no panic.
 
-mod records;
+pub mod records;
 
 use linkwright::linkage::AssemblyMode;
 use linkwright::record::{
@@ -22,7 +22,7 @@ fn all_records() -> Vec<Record> {
 fn everything(record: &Record) -> Vec<(&'static str, String)> {
     let entries: Vec<Entry> =
         (0..3).filter_map(|i| Entry::from_record(&record.problem.name, record, i)).collect();
-    let comparison = compare(&entries, SortKey::Max);
+    let comparison = compare(&entries, &[SortKey::Max], None);
     let name = record.problem.name.as_str();
     let files = [
         BatchRow { name, outcome: BatchOutcome::Ran(record) },
@@ -36,6 +36,7 @@ fn everything(record: &Record) -> Vec<(&'static str, String)> {
         ("csv", candidates_csv(record)),
         ("table", comparison.table(Colour::Never)),
         ("csv", comparison.csv()),
+        ("svg", comparison.svg()),
         ("svg", contact_sheet_svg(record)),
     ];
     for i in 0..=record.candidates.len() {
@@ -345,7 +346,7 @@ fn a_record_without_candidates_or_points_is_shown_as_such() {
     everything(&record);
     record.problem.resolved.task.path.points.clear();
     everything(&record);
-    assert_eq!(compare(&[], SortKey::Rms).table(Colour::Never), "  Nothing to compare.\n");
+    assert_eq!(compare(&[], &[SortKey::Rms], None).table(Colour::Never), "  Nothing to compare.\n");
     assert!(batch_summary(&[], Colour::Never).contains("0 files"));
 }
 
@@ -472,11 +473,16 @@ fn a_comparison_ranks_by_its_key() {
     let entries: Vec<Entry> =
         (0..4).filter_map(|i| Entry::from_record(&format!("k18:{}", i + 1), &record, i)).collect();
     let labels = |key| {
-        compare(&entries, key).rows.iter().map(|row| row.entry.label.clone()).collect::<Vec<_>>().join(" ")
+        compare(&entries, &[key], None)
+            .rows
+            .iter()
+            .map(|row| row.entry.label.clone())
+            .collect::<Vec<_>>()
+            .join(" ")
     };
     assert_eq!(labels(SortKey::SumSq), "k18:1 k18:2 k18:3 k18:4");
     assert_eq!(labels(SortKey::Transmission), "k18:4 k18:3 k18:2 k18:1");
-    let by_sum = compare(&entries, SortKey::SumSq);
+    let by_sum = compare(&entries, &[SortKey::SumSq], None);
     let (best, second) = (entries[0].candidate.error.sum_sq, entries[1].candidate.error.sum_sq);
     assert_eq!(by_sum.rows[0].behind_percent, Some(0.0));
     assert_eq!(by_sum.rows[1].behind_percent, Some(100.0 * (second - best) / best));
@@ -492,7 +498,7 @@ fn equal_figures_share_a_rank_and_missing_ones_come_last() {
         [0, 0, 1].iter().filter_map(|i| Entry::from_record("x", &record, *i)).collect();
     entries[0].candidate.error.rms = f64::NAN;
     entries.push(entries[1].clone());
-    let rows = compare(&entries, SortKey::Rms).rows;
+    let rows = compare(&entries, &[SortKey::Rms], None).rows;
     assert_eq!(rows.iter().map(|row| row.rank).collect::<Vec<_>>(), [1, 1, 3, 4]);
     assert_eq!((rows[3].figure, rows[3].behind_percent), (None, None));
 }
@@ -503,7 +509,7 @@ fn different_targets_and_units_are_said_to_differ() {
     other.problem.unit = Some(Unit::In);
     let entries: Vec<Entry> =
         [k18(), other].iter().filter_map(|record| Entry::from_record("x", record, 0)).collect();
-    let text = compare(&entries, SortKey::default()).table(Colour::Never);
+    let text = compare(&entries, &[SortKey::default()], None).table(Colour::Never);
     assert!(text.contains("The targets differ") && text.contains("The units differ"), "{text}");
 }
 

@@ -1,0 +1,212 @@
+//! What was given to `compare`, measured by the referee: no figure is taken from a record on trust.
+
+use super::result::{Chosen, Given, Run};
+use super::{Ended, terminal};
+use crate::assess::assess;
+use crate::diagnostic::escaped;
+use crate::linkage::{AssemblyMode, FourBar};
+use crate::linkage_file::LinkageFile;
+use crate::problem::Problem;
+use crate::problem_file;
+use crate::record::{Candidate, Unit};
+use crate::report::compare::{Entry, LeftOut, same_points, scaled, times};
+use crate::run::digest;
+use crate::search::nearest::nearest_positions;
+use crate::verify::verify_candidate;
+use ariadne::ReportKind;
+use std::path::Path;
+
+/// What errors are measured on.
+#[derive(Clone)]
+pub struct Target {
+    /// The name of its problem.
+    pub name: String,
+    problem: Problem,
+    /// The unit of its lengths.
+    pub unit: Option<Unit>,
+}
+
+impl Target {
+    /// The target of a problem file.
+    pub fn load(path: &Path) -> Result<Self, Ended> {
+        let file = problem_file::load(path, &[]).map_err(|diagnostic| {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            Ended::Refused
+        })?;
+        let problem = Problem::new(file.spec.clone()).map_err(|e| refuse(&e.to_string()))?;
+        Ok(Target { name: file.name, problem, unit: file.unit })
+    }
+
+    /// The target of a run.
+    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, Ended> {
+        let asked = &run.record.problem;
+        let problem = Problem::new(asked.resolved.clone())
+            .map_err(|e| refuse(&format!("{}: the recorded problem is none: {e}", run.named)))?;
+        Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
+    }
+
+    /// Whether points, timing and unit are the same: positions on one are positions on the other.
+    fn is(&self, other: &Target) -> bool {
+        let (one, other_path) = (&self.problem.spec().task.path, &other.problem.spec().task.path);
+        let one_unit = self.unit.zip(other.unit).is_none_or(|(one, other)| one == other);
+        one_unit && same_points(&one.points, &other_path.points) && one.timing == other_path.timing
+    }
+
+    fn entry(&self, label: String, candidate: Candidate, unit: Option<Unit>, of_run: bool) -> Entry {
+        let path = &self.problem.spec().task.path;
+        Entry {
+            label,
+            candidate,
+            target_name: self.name.clone(),
+            target: path.points.clone(),
+            closed: path.closed,
+            unit: self.unit.or(unit),
+            of_run,
+            untrue: Vec::new(),
+        }
+    }
+
+    /// The linkage in this target's unit, measured at the positions nearest to its points or at its angles.
+    fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, String> {
+        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
+        let linkage = scaled(linkage, factor).map_err(|e| e.to_string())?;
+        nearest_positions(&self.problem, &linkage)
+            .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
+            .ok_or_else(|| format!("it cannot be assembled at every point of {}", self.name))
+    }
+
+    fn at(&self, linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Option<Candidate> {
+        let n = self.problem.task().len();
+        let positions = crank_deg.len() == n && t1_at.len() == n;
+        if positions { assess(&self.problem, linkage, crank_deg, t1_at) } else { None }
+    }
+}
+
+/// Everything that was given, measured.
+#[derive(Default)]
+pub struct Measured {
+    /// What has figures.
+    pub entries: Vec<Entry>,
+    /// What has none.
+    pub left_out: Vec<LeftOut>,
+    /// The label of all that was given with the unit of its file.
+    pub units: Vec<(String, Option<Unit>)>,
+    /// What a reader has to know of the measuring, in sentences.
+    pub remarks: Vec<String>,
+}
+
+fn refuse(text: &str) -> Ended {
+    terminal::complain(text);
+    Ended::Refused
+}
+
+/// What a linkage file is called: its name, or its path where something else has that name.
+pub fn label_of_file(given: &[(&Path, Given)], index: usize) -> String {
+    let (path, Given::Linkage(file)) = &given[index] else { return String::new() };
+    let same = |other: &Given| matches!(other, Given::Linkage(other) if other.name == file.name);
+    let alone = given.iter().enumerate().all(|(i, (_, other))| i == index || !same(other));
+    if alone { file.name.clone() } else { escaped(&path.display().to_string()) }
+}
+
+impl Measured {
+    /// Measures what was given: candidates of runs on their own problems, or everything on `target`. Linkage files
+    /// without a target are measured on the problem of the runs beside them, where these have one. Lengths without a
+    /// unit, also of a target, are taken to be in `unit`.
+    ///
+    /// # Errors
+    /// [`Ended::Refused`], told.
+    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, Ended> {
+        let mut measured = Measured::default();
+        let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
+        let target = target.as_ref();
+        let mut of_runs: Vec<Option<Target>> = Vec::new();
+        for (_, one) in given {
+            of_runs.push(match one {
+                Given::Run(run) => Some(Target::of_run(run, unit)?),
+                Given::Linkage(_) => None,
+            });
+        }
+        let mut runs = of_runs.iter().flatten();
+        let first = runs.next();
+        let common = target.or(first.filter(|first| runs.all(|other| first.is(other))));
+        for (i, ((path, one), own)) in given.iter().zip(&of_runs).enumerate() {
+            match (one, own) {
+                (Given::Run(run), Some(own)) => {
+                    let untrue = digest_of(run);
+                    for chosen in run.chosen() {
+                        measured.units.push((chosen.label.clone(), run.record.problem.unit));
+                        measured.candidate(&chosen, own, target, &untrue);
+                    }
+                }
+                (Given::Linkage(file), _) => {
+                    let on = common.ok_or_else(|| {
+                        let shown = escaped(&path.display().to_string());
+                        refuse(&format!(
+                            "{shown} is a linkage without a target: say which with --target PROBLEM.toml"
+                        ))
+                    })?;
+                    let label = label_of_file(given, i);
+                    measured.units.push((label.clone(), file.unit));
+                    measured.file(label, file, on);
+                }
+                (Given::Run(_), None) => {}
+            }
+        }
+        if target.is_none()
+            && let Some(common) = common
+            && measured.entries.iter().any(|entry| !entry.of_run)
+        {
+            measured
+                .remarks
+                .push(format!("Linkage files are measured on {}, the problem of the runs.", common.name));
+        }
+        Ok(measured)
+    }
+
+    fn put(&mut self, label: String, entry: Result<Entry, String>) {
+        match entry {
+            Ok(entry) => self.entries.push(entry),
+            Err(why) => self.left_out.push(LeftOut { label, why }),
+        }
+    }
+
+    /// A linkage without a run.
+    fn file(&mut self, label: String, file: &LinkageFile, on: &Target) {
+        let entry = on
+            .nearest(&file.linkage, file.unit)
+            .map(|candidate| on.entry(label.clone(), candidate, file.unit, false));
+        self.put(label, entry);
+    }
+
+    /// A candidate of a run: at its own positions where the target is its own, else as a linkage without a run.
+    fn candidate(&mut self, chosen: &Chosen<'_>, own: &Target, target: Option<&Target>, untrue: &[String]) {
+        let (label, recorded) = (chosen.label.clone(), chosen.candidate);
+        let on = target.unwrap_or(own);
+        let mut found: Vec<String> = untrue.to_vec();
+        found.extend(verify_candidate(&own.problem, recorded).into_iter().map(|mismatch| {
+            let as_recorded = format!("{} is recorded as {}", mismatch.what, mismatch.recorded);
+            format!("{as_recorded}, but it is {}", mismatch.found)
+        }));
+        let same = on.is(own);
+        let measured = if same && found.is_empty() && target.is_none() {
+            // Checked a moment ago. Where a verdict is rounding's, the recorded one stands.
+            Ok(recorded.clone())
+        } else {
+            let there =
+                same.then(|| on.at(&recorded.linkage, &recorded.crank_deg, &recorded.t1_at)).flatten();
+            there.map_or_else(|| on.nearest(&recorded.linkage, own.unit), Ok)
+        };
+        let entry = measured
+            .map(|candidate| Entry { untrue: found, ..on.entry(label.clone(), candidate, own.unit, true) });
+        self.put(label, entry);
+    }
+}
+
+/// A problem that was changed after the run, in words.
+fn digest_of(run: &Run) -> Vec<String> {
+    let asked = &run.record.problem;
+    match digest(&asked.resolved) {
+        Ok(found) if found == asked.digest => Vec::new(),
+        _ => vec!["the problem is not the one that was run (problem.digest)".to_owned()],
+    }
+}

@@ -1,0 +1,215 @@
+//! A comparison for spreadsheets and scripts: every number to the last digit.
+
+use super::{Comparison, Ranked, SortKey};
+use crate::linkage::FourBar;
+use crate::report::csv::{parameters, written};
+use crate::report::text::{cell, exact};
+use crate::report::words;
+use crate::task::Defect;
+use serde::Serialize;
+
+/// The format of [`Comparison::json`].
+pub const JSON_FORMAT: u32 = 1;
+
+/// The first columns of [`Comparison::csv`]. With several keys a column `rank_KEY` for each follows, with a
+/// reference a column `KEY_percent_above` for each figure.
+pub const COLUMN_NAMES: [&str; 28] = [
+    "rank",
+    "label",
+    "accepted",
+    "on_front",
+    "behind_percent",
+    "sum_sq",
+    "rms",
+    "max",
+    "max_at",
+    "to_curve_rms",
+    "type",
+    "transmission_worst_deg",
+    "transmission_over",
+    "link_ratio",
+    "size",
+    "Ax",
+    "Ay",
+    "Bx",
+    "By",
+    "a",
+    "b",
+    "c",
+    "d",
+    "e",
+    "t1",
+    "t2",
+    "unit",
+    "recorded_differently",
+];
+
+/// Ax Ay Bx By a b c d e.
+pub(super) fn lengths(linkage: &FourBar) -> [f64; 9] {
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    [
+        a.re,
+        a.im,
+        b.re,
+        b.im,
+        linkage.crank(),
+        linkage.coupler(),
+        linkage.follower(),
+        linkage.crank_side(),
+        linkage.follower_side(),
+    ]
+}
+
+#[derive(Serialize)]
+struct Json<'a> {
+    format: u32,
+    tool: Tool,
+    sort: Vec<&'static str>,
+    unit: Option<&'static str>,
+    same_target: bool,
+    same_unit: bool,
+    front_of: [&'static str; 3],
+    reference: Option<&'a str>,
+    rows: Vec<Row<'a>>,
+    left_out: Vec<LeftOut<'a>>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Tool {
+    name: &'static str,
+    version: &'static str,
+}
+
+#[derive(Serialize)]
+struct Row<'a> {
+    rank: usize,
+    label: &'a str,
+    of_run: bool,
+    target: &'a str,
+    accepted: bool,
+    on_front: bool,
+    ranks: Figures<usize>,
+    behind_percent: Option<f64>,
+    figures: Figures<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    percent_above_reference: Option<Figures<f64>>,
+    max_at: usize,
+    #[serde(rename = "type")]
+    linkage_type: &'static str,
+    transmission_over: &'static str,
+    unit: Option<&'static str>,
+    linkage: &'a FourBar,
+    crank_deg: &'a [f64],
+    defects: &'a [Defect],
+    unmet: Vec<&'a str>,
+    recorded_differently: &'a [String],
+}
+
+#[derive(Serialize)]
+struct LeftOut<'a> {
+    label: &'a str,
+    why: &'a str,
+}
+
+/// A value for each of some keys, as an object in their order; what is missing is null.
+struct Figures<T>(Vec<(SortKey, Option<T>)>);
+
+impl<T: Serialize> Serialize for Figures<T> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key.name(), value)))
+    }
+}
+
+impl<'a> Row<'a> {
+    fn new(row: &'a Ranked, keys: &[SortKey]) -> Self {
+        let (entry, candidate) = (&row.entry, &row.entry.candidate);
+        let differences = SortKey::ALL.into_iter().zip(row.difference_percent.iter().copied());
+        Row {
+            rank: row.rank,
+            label: &entry.label,
+            of_run: entry.of_run,
+            target: &entry.target_name,
+            accepted: candidate.accepted,
+            on_front: row.on_front,
+            ranks: Figures(keys.iter().copied().zip(row.ranks.iter().map(|rank| Some(*rank))).collect()),
+            behind_percent: row.behind_percent,
+            figures: Figures(SortKey::ALL.map(|key| (key, row.figure_of(key))).to_vec()),
+            percent_above_reference: (!row.difference_percent.is_empty())
+                .then(|| Figures(differences.collect())),
+            max_at: candidate.error.max_at,
+            linkage_type: candidate.linkage_type.name(),
+            transmission_over: words::over(candidate.transmission_deg.over),
+            unit: entry.unit.map(|unit| unit.label()),
+            linkage: &candidate.linkage,
+            crank_deg: &candidate.crank_deg,
+            defects: &candidate.defects,
+            unmet: candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.as_str()).collect(),
+            recorded_differently: &entry.untrue,
+        }
+    }
+}
+
+impl Comparison {
+    /// One row an entry, every number to the last digit: [`COLUMN_NAMES`], then ranks and differences.
+    pub fn csv(&self) -> String {
+        let mut head: Vec<String> = COLUMN_NAMES.map(str::to_owned).to_vec();
+        let several = self.keys.len() > 1;
+        if several {
+            head.extend(self.keys.iter().map(|key| format!("rank_{}", key.name())));
+        }
+        if self.reference.is_some() {
+            head.extend(SortKey::ALL.map(|key| format!("{}_percent_above", key.name())));
+        }
+        let number = |value: Option<f64>| value.map_or(String::new(), exact);
+        let rows = self.rows.iter().map(|row| {
+            let (entry, candidate) = (&row.entry, &row.entry.candidate);
+            let mut cells = vec![
+                row.rank.to_string(),
+                cell(&entry.label),
+                candidate.accepted.to_string(),
+                row.on_front.to_string(),
+                number(row.behind_percent),
+                exact(candidate.error.sum_sq),
+                exact(candidate.error.rms),
+                exact(candidate.error.max),
+                candidate.error.max_at.to_string(),
+                exact(candidate.error.to_curve.rms),
+                candidate.linkage_type.name().to_owned(),
+                exact(candidate.transmission_deg.worst),
+                words::over(candidate.transmission_deg.over).to_owned(),
+                exact(candidate.link_ratio),
+                exact(row.size),
+            ];
+            cells.extend(parameters(&entry.candidate.linkage));
+            cells.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
+            cells.push(cell(&entry.untrue.join("; ")));
+            if several {
+                cells.extend(row.ranks.iter().map(usize::to_string));
+            }
+            cells.extend(row.difference_percent.iter().map(|percent| number(*percent)));
+            cells
+        });
+        written(&head.iter().map(String::as_str).collect::<Vec<_>>(), rows)
+    }
+
+    /// All of it as JSON. Keys are added in later versions; none is renamed.
+    pub fn json(&self) -> String {
+        let unit = self.rows.first().and_then(|row| row.entry.unit).filter(|_| self.same_unit());
+        let json = Json {
+            format: JSON_FORMAT,
+            tool: Tool { name: "linkwright", version: env!("CARGO_PKG_VERSION") },
+            sort: self.keys.iter().map(|key| key.name()).collect(),
+            unit: unit.map(|unit| unit.label()),
+            same_target: self.same_target(),
+            same_unit: self.same_unit(),
+            front_of: [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(SortKey::name),
+            reference: self.reference_label(),
+            rows: self.rows.iter().map(|row| Row::new(row, &self.keys)).collect(),
+            left_out: self.left_out.iter().map(|out| LeftOut { label: &out.label, why: &out.why }).collect(),
+            notes: self.notes(),
+        };
+        // Strings for keys and nothing that fails: it can always be written.
+        serde_json::to_string_pretty(&json).map(|text| text + "\n").unwrap_or_default()
+    }
+}

@@ -1,0 +1,203 @@
+//! The coupler curves of a comparison over the target.
+
+use super::{Comparison, Ranked, SortKey, strokes, tables};
+use crate::linkage::{Complex, point};
+use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
+use crate::report::scene::{Bounds, circuits, round_length};
+use crate::report::text::{brief, clean, shortened, shortened_in_front, significant};
+use crate::report::words::length_suffix;
+
+/// The width of the drawing.
+pub(super) const WIDTH: f64 = 760.0;
+const HEIGHTS: std::ops::RangeInclusive<f64> = 260.0..=560.0;
+const PADDING: f64 = 26.0;
+const MARGIN: f64 = 30.0;
+/// More target points than this are plain dots.
+const MARKED: usize = 150;
+const LINE: f64 = 20.0;
+
+/// The drawing without heading and legend.
+pub(super) struct Overlay {
+    pub(super) canvas: Canvas,
+    pub(super) height: f64,
+    /// Whether curves leave the frame.
+    pub(super) cut: bool,
+    /// How many of the rows are drawn, the best first.
+    pub(super) drawn: usize,
+}
+
+/// Samples of a curve: a degree of the crank, below a tenth of a pixel of the arc.
+const OF_A_CURVE: usize = 360;
+
+/// Each row's coupler curves, one for each circuit used.
+fn curves(row: &Ranked) -> Vec<Vec<Complex>> {
+    let circuits = circuits(&row.entry.candidate, OF_A_CURVE);
+    circuits.iter().map(|joints| joints.iter().map(|j| j.coupler_point).collect()).collect()
+}
+
+impl Overlay {
+    /// The rows over their target, at the top of a canvas. Each row is a group `curve` with its number as `data-row`,
+    /// from 0.
+    pub(super) fn new(comparison: &Comparison) -> Self {
+        let drawn = comparison.rows.len().min(strokes::MOST);
+        let all: Vec<Vec<Vec<Complex>>> = comparison.rows[..drawn].iter().map(curves).collect();
+        let target = comparison.bounds();
+        // A curve far larger than the target would leave nothing to see of it.
+        let limit = (target.extent() > 0.0).then(|| target.padded(1.0));
+        let (mut frame, mut cut) = (target, false);
+        for p in all.iter().flatten().flatten() {
+            match limit.is_none_or(|limit| limit.holds(*p)) {
+                true => frame.hold(*p),
+                false => cut = true,
+            }
+        }
+        let frame = frame.padded(0.0);
+        let wanted = (WIDTH - 2.0 * PADDING) * frame.height() / frame.width().max(f64::MIN_POSITIVE);
+        let height = (wanted + 2.0 * PADDING).clamp(*HEIGHTS.start(), *HEIGHTS.end());
+        let area = Area { x: 0.0, y: 0.0, width: WIDTH, height };
+        let view = View::fit(&frame, area.shrunk(PADDING));
+        let mut canvas = Canvas::default();
+        canvas.raw(&format!(
+            r#"<svg x="0" y="0" width="{}" height="{}" overflow="hidden">"#,
+            px(WIDTH),
+            px(height)
+        ));
+        let one_target = comparison.same_target();
+        // The best is drawn last, above the others.
+        for (i, curves) in all.iter().enumerate().rev() {
+            canvas.raw(&format!(r#"<g class="curve" data-row="{i}">"#));
+            for curve in curves {
+                let spots: Vec<Spot> = curve.iter().map(|p| view.spot(*p)).collect();
+                canvas.path(&spots, true, &strokes::stroke(i));
+            }
+            if !one_target {
+                targets(&mut canvas, &view, &comparison.rows[i].entry.target, strokes::colour(i));
+            }
+            canvas.raw("</g>");
+        }
+        if let Some(first) = comparison.rows.first().filter(|_| one_target) {
+            targets(&mut canvas, &view, &first.entry.target, palette::TARGET);
+        }
+        canvas.raw("</svg>");
+        let unit = comparison.rows.first().and_then(|row| row.entry.unit);
+        let length = round_length(0.2 * WIDTH / view.scale);
+        let label = format!("{}{}", brief(length, 3), length_suffix(unit));
+        canvas.scale_bar(Spot::new(14.0, height + 22.0), length * view.scale, &label);
+        Overlay { canvas, height: height + 34.0, cut, drawn }
+    }
+
+    /// What the drawing does not show, in sentences.
+    pub(super) fn remarks(&self, comparison: &Comparison) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.cut {
+            remarks.push("Curves that reach far beyond the target are cut at the frame.".to_owned());
+        }
+        if self.drawn < comparison.rows.len() {
+            remarks.push(format!("The best {} of {} are drawn.", self.drawn, comparison.rows.len()));
+        }
+        remarks
+    }
+}
+
+/// The target's points, the first filled; dots where they are many.
+fn targets(canvas: &mut Canvas, view: &View, points: &[[f64; 2]], colour: &str) {
+    let spots: Vec<Spot> =
+        points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| view.spot(point(*p))).collect();
+    if spots.len() > MARKED {
+        return canvas.dots(&spots, 3.4, colour);
+    }
+    for (i, spot) in spots.iter().enumerate() {
+        let fill = if i == 0 { colour } else { "none" };
+        canvas.circle(*spot, 4.2, &format!(r#"fill="{fill}" stroke="{colour}" stroke-width="1.6""#));
+    }
+}
+
+impl Comparison {
+    /// The coupler curves over the target as a self-contained SVG, with a legend.
+    pub fn svg(&self) -> String {
+        let overlay = Overlay::new(self);
+        let mut canvas = Canvas::default();
+        let title = self.title();
+        let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+        canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &shortened(&title, 60));
+        let muted = format!(r#"font-size="13" fill="{}""#, palette::MUTED);
+        let ranked = format!("ranked by {}", tables::keys_in_words(self));
+        canvas.text(Spot::new(MARGIN, 63.0), Anchor::Start, &muted, &ranked);
+        let top = 78.0;
+        canvas.raw(&format!(r#"<g transform="translate({} {})">"#, px(MARGIN), px(top)));
+        canvas.body.push_str(&overlay.canvas.body);
+        canvas.raw("</g>");
+        let width = WIDTH + 2.0 * MARGIN;
+        let ink = format!(r#"font-size="13" fill="{}""#, palette::INK);
+        let (mut y, column) = (top + overlay.height + 24.0, WIDTH / 2.0);
+        let half = overlay.drawn.div_ceil(2);
+        for (i, row) in self.rows[..overlay.drawn].iter().enumerate() {
+            let x = MARGIN + column * (i / half) as f64;
+            let y = y + LINE * (i % half) as f64;
+            canvas.line(Spot::new(x, y - 4.0), Spot::new(x + 34.0, y - 4.0), &strokes::stroke(i));
+            let figures = self.legend_figures(row);
+            let room = column - 60.0 - text_width(&figures, 13.0);
+            let name = shortened_in_front(&clean(&row.entry.label), (room / text_width("x", 13.0)) as usize);
+            let text = format!("{}{}  {name}  {figures}", row.rank, if row.on_front { "*" } else { "" });
+            canvas.text(Spot::new(x + 42.0, y), Anchor::Start, &ink, &text);
+        }
+        y += LINE * half as f64;
+        let mut notes = overlay.remarks(self);
+        if self.same_target() && !self.rows.is_empty() {
+            let name = clean(&self.rows[0].entry.target_name);
+            notes.insert(0, format!("Circles: the target {name}, its point 0 filled."));
+        }
+        notes.extend(self.notes());
+        if self.rows.iter().any(|row| row.on_front) {
+            notes.push("* on the Pareto front of rms error, worst transmission angle and size".to_owned());
+        }
+        for note in &notes {
+            let lines =
+                crate::report::text::wrapped("", "", note, (1.06 * WIDTH / text_width("x", 13.0)) as usize);
+            for line in lines.lines() {
+                canvas.text(Spot::new(MARGIN, y + 6.0), Anchor::Start, &muted, line);
+                y += LINE - 2.0;
+            }
+        }
+        canvas.document(width, y + 14.0, &title, &self.description())
+    }
+
+    /// `4 linkages on k18`.
+    pub(super) fn title(&self) -> String {
+        let n = self.rows.len();
+        let counted = if n == 1 { "1 linkage".to_owned() } else { format!("{n} linkages") };
+        match self.rows.first().filter(|_| self.same_target()) {
+            Some(row) => format!("{counted} on {}", clean(&row.entry.target_name)),
+            None if n == 0 => "nothing to compare".to_owned(),
+            None => format!("{counted} on different targets"),
+        }
+    }
+
+    /// `rms 0.0224 mm`.
+    pub(super) fn legend_figures(&self, row: &Ranked) -> String {
+        let rms = significant(row.figure_of(SortKey::Rms).unwrap_or(f64::NAN), 3);
+        let accepted = if row.entry.candidate.accepted { "" } else { ", not accepted" };
+        format!("rms {rms}{}{accepted}", length_suffix(row.entry.unit))
+    }
+
+    /// The drawing in words, for those who do not see it.
+    pub(super) fn description(&self) -> String {
+        const NAMED: usize = 6;
+        let one =
+            |row: &Ranked| format!("{}. {}: {}", row.rank, clean(&row.entry.label), self.legend_figures(row));
+        let mut text = self.rows.iter().take(NAMED).map(one).collect::<Vec<_>>().join("; ");
+        if self.rows.len() > NAMED {
+            text.push_str(&format!("; and {} more", self.rows.len() - NAMED));
+        }
+        text
+    }
+
+    /// The box of all targets.
+    fn bounds(&self) -> Bounds {
+        let mut target = Bounds::default();
+        for p in self.rows.iter().flat_map(|row| &row.entry.target) {
+            target.hold(point(*p));
+        }
+        target
+    }
+}

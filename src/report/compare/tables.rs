@@ -1,0 +1,188 @@
+//! A comparison for a terminal.
+
+use super::{Comparison, Ranked, SortKey};
+use crate::report::grid::{Align, Colour, Grid, Ink};
+use crate::report::table::COLUMNS;
+use crate::report::text::{NO_NUMBER, clean, columns_of, shortened_in_front, significant, wrapped};
+
+/// The most columns of a label.
+const LABEL: usize = 28;
+/// The fewest.
+const LEAST_LABEL: usize = 8;
+
+/// `+12.3 %`, `0 %`; what has no number is `-`.
+pub(super) fn signed_percent(percent: Option<f64>) -> String {
+    match percent {
+        Some(percent) if percent > 0.0 => format!("+{} %", significant(percent, 3)),
+        Some(percent) => format!("{} %", significant(percent, 3)),
+        None => NO_NUMBER.to_owned(),
+    }
+}
+
+/// `sum_sq, then transmission`.
+pub(super) fn keys_in_words(comparison: &Comparison) -> String {
+    comparison.keys.iter().map(|key| key.name()).collect::<Vec<_>>().join(", then ")
+}
+
+fn plain(text: String) -> (String, Ink) {
+    (text, Ink::Plain)
+}
+
+impl Comparison {
+    /// Figures, parameters and, with a reference, the differences from it, as tables of text; notes below.
+    pub fn table(&self, colour: Colour) -> String {
+        if self.rows.is_empty() {
+            return "  Nothing to compare.\n".to_owned();
+        }
+        let mut out = colour.paint(Ink::Strong, &format!("Ranked by {}", keys_in_words(self)));
+        out.push_str("\n\n");
+        out.push_str(&within(COLUMNS, |label| self.figures(colour, label)));
+        out.push('\n');
+        if self.keys.len() > 1 {
+            out.push_str(&self.ranks(colour));
+            out.push('\n');
+        }
+        out.push_str(&self.parameters(colour));
+        if let Some(reference) = self.reference_label() {
+            let head =
+                format!("\n  Above {}, per cent of it\n", shortened_in_front(&clean(reference), LABEL));
+            out.push_str(&head);
+            out.push_str(&within(COLUMNS, |label| self.differences(colour, label)));
+        }
+        let front = self.front_words().map(|words| format!("* {words}"));
+        for note in front.into_iter().chain(self.notes()) {
+            out.push('\n');
+            out.push_str(&wrapped("  ", "  ", &note, COLUMNS));
+        }
+        out
+    }
+
+    fn figures(&self, colour: Colour, label: usize) -> String {
+        use Align::{Left, Right};
+        let mut grid = Grid::new(&[
+            ("#", Left),
+            ("linkage", Left),
+            ("behind", Right),
+            ("sum of sq", Right),
+            ("rms", Right),
+            ("max", Right),
+            ("to curve", Right),
+            ("transm.", Right),
+            ("ratio", Right),
+            ("size", Right),
+            ("accepted", Left),
+        ]);
+        for row in &self.rows {
+            let figure = |key, digits| significant(row.figure_of(key).unwrap_or(f64::NAN), digits);
+            let behind = match row.behind_percent {
+                Some(0.0) => "best".to_owned(),
+                Some(percent) => format!("{} %", significant(percent, 3)),
+                None => NO_NUMBER.to_owned(),
+            };
+            let untrue = if row.entry.untrue.is_empty() { "" } else { "!" };
+            grid.row(vec![
+                (format!("{}{}{untrue}", row.rank, if row.on_front { "*" } else { "" }), Ink::Strong),
+                plain(named(row, label)),
+                plain(behind),
+                plain(figure(SortKey::SumSq, 4)),
+                plain(figure(SortKey::Rms, 3)),
+                plain(figure(SortKey::Max, 3)),
+                plain(figure(SortKey::ToCurve, 3)),
+                plain(format!("{}°", figure(SortKey::Transmission, 3))),
+                plain(figure(SortKey::LinkRatio, 3)),
+                plain(figure(SortKey::Size, 3)),
+                if row.entry.candidate.accepted {
+                    ("yes".into(), Ink::Good)
+                } else {
+                    ("no".into(), Ink::Bad)
+                },
+            ]);
+        }
+        grid.render(colour)
+    }
+
+    /// The rank by each key.
+    fn ranks(&self, colour: Colour) -> String {
+        let mut heads = vec![("#", Align::Left), ("linkage", Align::Left)];
+        heads.extend(self.keys.iter().map(|key| (key.name(), Align::Right)));
+        let mut grid = Grid::new(&heads);
+        for row in &self.rows {
+            let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, LABEL))];
+            cells.extend(row.ranks.iter().map(|rank| plain(rank.to_string())));
+            grid.row(cells);
+        }
+        grid.render(colour)
+    }
+
+    fn differences(&self, colour: Colour, label: usize) -> String {
+        use Align::{Left, Right};
+        let mut grid = Grid::new(&[
+            ("#", Left),
+            ("linkage", Left),
+            ("sum of sq", Right),
+            ("rms", Right),
+            ("max", Right),
+            ("to curve", Right),
+            ("transm.", Right),
+            ("ratio", Right),
+            ("size", Right),
+        ]);
+        for (i, row) in self.rows.iter().enumerate() {
+            let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, label))];
+            cells.extend(row.difference_percent.iter().map(|percent| {
+                plain(if self.reference == Some(i) { "ref".to_owned() } else { signed_percent(*percent) })
+            }));
+            grid.row(cells);
+        }
+        grid.render(colour)
+    }
+
+    fn parameters(&self, colour: Colour) -> String {
+        use Align::{Left, Right};
+        let mut grid = Grid::new(&[
+            ("#", Left),
+            ("type", Left),
+            ("Ax", Right),
+            ("Ay", Right),
+            ("Bx", Right),
+            ("By", Right),
+            ("a", Right),
+            ("b", Right),
+            ("c", Right),
+            ("d", Right),
+            ("e", Right),
+            ("t1", Right),
+            ("t2", Right),
+        ]);
+        for row in &self.rows {
+            let linkage = &row.entry.candidate.linkage;
+            let mut cells = vec![
+                (row.rank.to_string(), Ink::Strong),
+                plain(row.entry.candidate.linkage_type.name().to_owned()),
+            ];
+            cells.extend(super::data::lengths(linkage).map(|x| plain(significant(x, 4))));
+            let signs = [linkage.assembly().sign(), linkage.side().sign()];
+            cells.extend(signs.map(|sign| plain(format!("{sign:+}"))));
+            grid.row(cells);
+        }
+        grid.render(colour)
+    }
+}
+
+fn named(row: &Ranked, label: usize) -> String {
+    shortened_in_front(&clean(&row.entry.label), label)
+}
+
+/// The table with labels as long as fit.
+fn within(columns: usize, table: impl Fn(usize) -> String) -> String {
+    let wide = |text: &str| text.lines().map(columns_of).max().unwrap_or(0);
+    // Colours take no columns, but they count as some: they cost a label at most a few letters.
+    let mut label = LABEL;
+    loop {
+        let text = table(label);
+        if label <= LEAST_LABEL || wide(&text) <= columns {
+            return text;
+        }
+        label -= 1;
+    }
+}

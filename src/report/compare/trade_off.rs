@@ -1,0 +1,125 @@
+//! What is bought with what: error across, worst transmission angle up, size as the size of the mark.
+
+use super::{Comparison, Ranked, SortKey, strokes};
+use crate::report::canvas::{Anchor, Canvas, Spot, palette, px};
+use crate::report::scene::round_length;
+use crate::report::text::brief;
+
+pub(super) const WIDTH: f64 = 640.0;
+pub(super) const HEIGHT: f64 = 330.0;
+const LEFT: f64 = 66.0;
+const RIGHT: f64 = 30.0;
+const TOP: f64 = 22.0;
+const BOTTOM: f64 = 52.0;
+/// Errors whose greatest is more than this times the least stand on a logarithmic scale.
+const LOGARITHMIC: f64 = 12.0;
+const RADII: [f64; 2] = [7.0, 17.0];
+
+/// One axis: values to the range from 0 to 1.
+struct Axis {
+    low: f64,
+    high: f64,
+    logarithmic: bool,
+}
+
+impl Axis {
+    /// An axis that holds the values, with some room.
+    fn new(values: &[f64], may_be_logarithmic: bool) -> Axis {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if may_be_logarithmic && low > 0.0 && high > LOGARITHMIC * low {
+            return Axis { low: low.ln() - 0.12, high: high.ln() + 0.12, logarithmic: true };
+        }
+        let room = if high > low { 0.08 * (high - low) } else { 0.1 * high.abs().max(f64::MIN_POSITIVE) };
+        Axis { low: (low - room).max(0.0), high: high + room, logarithmic: false }
+    }
+
+    fn part(&self, value: f64) -> f64 {
+        let value = if self.logarithmic { value.ln() } else { value };
+        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
+    }
+
+    /// Round values on the axis.
+    fn ticks(&self) -> Vec<f64> {
+        if self.logarithmic {
+            let (low, high) = (self.low.exp(), self.high.exp());
+            let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
+            let few = decades.clone().count() > 5;
+            let steps: &[u8] = if few { &[1] } else { &[1, 2, 5] };
+            let number = |(e, m): (i32, u8)| format!("{m}e{e}").parse::<f64>().unwrap_or(1.0);
+            let all = decades.flat_map(|e| steps.iter().map(move |m| (e, *m))).map(number);
+            return all.filter(|x| (low..=high).contains(x)).collect();
+        }
+        let step = round_length((self.high - self.low) / 4.0);
+        let first = (self.low / step).ceil();
+        (0..12).map(|i| (first + f64::from(i)) * step).take_while(|x| *x <= self.high).collect()
+    }
+}
+
+/// The marks of all rows that have the three figures; `None` where fewer than two have.
+pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
+    let of = |row: &Ranked| {
+        let [x, y, size] = [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(|key| row.figure_of(key));
+        Some((x?, y?, size?))
+    };
+    let rows: Vec<(usize, &Ranked, (f64, f64, f64))> =
+        comparison.rows.iter().enumerate().filter_map(|(i, row)| Some((i, row, of(row)?))).collect();
+    if rows.len() < 2 || !comparison.same_target() || !comparison.same_unit() {
+        return None;
+    }
+    let values = |pick: fn(&(f64, f64, f64)) -> f64| rows.iter().map(|row| pick(&row.2)).collect::<Vec<_>>();
+    let (across, up) = (Axis::new(&values(|v| v.0), true), Axis::new(&values(|v| v.1), false));
+    let largest = values(|v| v.2).into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    let spot = |x: f64, y: f64| {
+        Spot::new(
+            LEFT + (WIDTH - LEFT - RIGHT) * across.part(x),
+            HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * up.part(y),
+        )
+    };
+    let mut canvas = Canvas::default();
+    axes(&mut canvas, comparison, &across, &up);
+    // Small marks above large ones.
+    let mut order = rows;
+    order.sort_by(|x, y| y.2.2.total_cmp(&x.2.2).then(y.0.cmp(&x.0)));
+    for (i, row, (x, y, size)) in order {
+        let at = spot(x, y);
+        let radius = (RADII[1] * (size / largest).sqrt()).max(RADII[0]);
+        let colour = if i < strokes::MOST { strokes::colour(i) } else { palette::MUTED };
+        let (opacity, width) = if row.on_front { (0.34, 2.6) } else { (0.06, 1.2) };
+        canvas.raw(&format!(r#"<g class="curve" data-row="{i}">"#));
+        canvas.circle(
+            at,
+            radius,
+            &format!(r#"fill="{colour}" fill-opacity="{opacity}" stroke="{colour}" stroke-width="{width}""#),
+        );
+        let text = format!(r#"font-size="12" font-weight="600" fill="{}""#, palette::INK);
+        canvas.text(Spot::new(at.x, at.y + 4.2), Anchor::Middle, &text, &row.rank.to_string());
+        canvas.raw("</g>");
+    }
+    Some(canvas)
+}
+
+fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Axis, up: &Axis) {
+    let faint = format!(r#"stroke="{}" stroke-width="1""#, palette::FAINT);
+    let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+    let (left, right, top, bottom) = (LEFT, WIDTH - RIGHT, TOP, HEIGHT - BOTTOM);
+    for tick in across.ticks() {
+        let x = left + (right - left) * across.part(tick);
+        canvas.line(Spot::new(x, top), Spot::new(x, bottom), &faint);
+        canvas.text(Spot::new(x, bottom + 18.0), Anchor::Middle, &muted, &brief(tick, 4));
+    }
+    for tick in up.ticks() {
+        let y = bottom - (bottom - top) * up.part(tick);
+        canvas.line(Spot::new(left, y), Spot::new(right, y), &faint);
+        canvas.text(Spot::new(left - 8.0, y + 4.0), Anchor::End, &muted, &format!("{}°", brief(tick, 4)));
+    }
+    let unit = comparison.rows.first().and_then(|row| row.entry.unit);
+    let scale = if across.logarithmic { ", logarithmic" } else { "" };
+    let unit = unit.map_or(String::new(), |unit| format!(", {}", unit.label()));
+    let label = format!("rms error{unit}{scale}");
+    canvas.text(Spot::new(right, HEIGHT - 10.0), Anchor::End, &muted, &label);
+    canvas.raw(&format!(
+        r#"<text transform="translate(14 {}) rotate(-90)" text-anchor="middle" {muted}>worst transmission angle</text>"#,
+        px(0.5 * (top + bottom))
+    ));
+}

@@ -1,0 +1,101 @@
+//! Lengths of several results in one unit.
+
+use super::Entry;
+use crate::linkage::{FourBar, LinkageError};
+use crate::record::Unit;
+use crate::report::text::clean;
+
+fn millimetres(unit: Unit) -> f64 {
+    match unit {
+        Unit::Mm => 1.0,
+        Unit::Cm => 10.0,
+        Unit::M => 1000.0,
+        Unit::In => 25.4,
+    }
+}
+
+/// What a length in `from` is to be multiplied by to be in `to`: exactly 1 where they are the same.
+pub fn times(from: Unit, to: Unit) -> f64 {
+    millimetres(from) / millimetres(to)
+}
+
+/// The linkage with every length and coordinate times a factor.
+///
+/// # Errors
+/// As [`FourBar::new`], where a length leaves the allowed range.
+pub fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, LinkageError> {
+    let mut parameters = linkage.natural_coordinates();
+    for pivot in [&mut parameters.crank_pivot, &mut parameters.follower_pivot] {
+        *pivot = pivot.map(|x| x * factor);
+    }
+    for length in [
+        &mut parameters.crank,
+        &mut parameters.coupler,
+        &mut parameters.follower,
+        &mut parameters.crank_side,
+        &mut parameters.follower_side,
+    ] {
+        *length *= factor;
+    }
+    FourBar::new(parameters)
+}
+
+impl Entry {
+    /// Its lengths and errors in another unit; as it is where it has no unit.
+    fn converted(&self, to: Unit) -> Result<Entry, LinkageError> {
+        let mut entry = self.clone();
+        let Some(from) = self.unit.filter(|from| *from != to) else { return Ok(entry) };
+        let factor = times(from, to);
+        entry.unit = Some(to);
+        entry.target.iter_mut().flatten().for_each(|x| *x *= factor);
+        let candidate = &mut entry.candidate;
+        candidate.linkage = scaled(&candidate.linkage, factor)?;
+        candidate.grashof_margin *= factor;
+        let error = &mut candidate.error;
+        error.sum_sq *= factor * factor;
+        for length in [&mut error.rms, &mut error.max] {
+            *length *= factor;
+        }
+        for curve in std::iter::once(&mut error.to_curve).chain(&mut error.to_raw) {
+            curve.sum_sq *= factor * factor;
+            curve.rms *= factor;
+            curve.max *= factor;
+        }
+        Ok(entry)
+    }
+}
+
+/// The entries with all lengths in one unit: those without one are taken to be in it; as they are without a unit.
+///
+/// The objective, the requirements and the costs of a candidate stay as its own problem has them.
+///
+/// # Errors
+/// As [`FourBar::new`], where a length leaves the allowed range.
+pub fn in_one_unit(entries: &[Entry], unit: Option<Unit>) -> Result<Vec<Entry>, LinkageError> {
+    let Some(unit) = unit else { return Ok(entries.to_vec()) };
+    entries.iter().map(|entry| Ok(Entry { unit: Some(unit), ..entry.converted(unit)? })).collect()
+}
+
+/// A sentence on each unit from which lengths were converted, and on those that had none: labels and their units.
+pub fn unit_remarks(units: &[(String, Option<Unit>)], to: Unit) -> Vec<String> {
+    let labels = |has: Option<Unit>| {
+        const NAMED: usize = 3;
+        let labels: Vec<String> =
+            units.iter().filter(|(_, unit)| *unit == has).map(|(label, _)| clean(label)).collect();
+        match labels.len() {
+            0 => None,
+            n if n > NAMED => Some(format!("{} and {} more", labels[..NAMED].join(", "), n - NAMED)),
+            _ => Some(labels.join(", ")),
+        }
+    };
+    let mut remarks = Vec::new();
+    for from in [Unit::Mm, Unit::Cm, Unit::M, Unit::In].into_iter().filter(|from| *from != to) {
+        if let Some(labels) = labels(Some(from)) {
+            remarks.push(format!("Lengths converted from {} to {}: {labels}.", from.label(), to.label()));
+        }
+    }
+    if let Some(labels) = labels(None) {
+        remarks.push(format!("Without a unit, taken to be in {}: {labels}.", to.label()));
+    }
+    remarks
+}

@@ -1,0 +1,171 @@
+//! What the player is given: the target and the mechanisms, each with its motion, as JSON.
+
+use super::motion::Drive;
+use crate::linkage::{AssemblyMode, FourBar, MAX_MAGNITUDE};
+use crate::record::{Candidate, Record};
+use serde::Serialize;
+
+/// Of more target points than this the page gets so many, evenly chosen, and the worst of each candidate.
+const MOST_POINTS: usize = 400;
+/// The most alternatives of a candidate that can be played.
+pub(super) const MOST_ALTERNATIVES: usize = 6;
+/// The most linkages through nine points that can be played.
+pub(super) const MOST_EXACT: usize = 100;
+
+/// Everything that the player reads.
+#[derive(Serialize)]
+pub(super) struct Data<'a> {
+    /// The label of lengths.
+    unit: Option<&'static str>,
+    target: Target,
+    /// The least transmission angle asked for, degrees.
+    transmission_deg_min: Option<f64>,
+    /// The key of the mechanism shown first.
+    first: String,
+    mechanisms: Vec<Mechanism<'a>>,
+}
+
+/// The target's points, or those chosen of them.
+#[derive(Serialize)]
+struct Target {
+    points: Vec<[f64; 2]>,
+    /// Their numbers in the problem; absent where all are here.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    numbers: Option<Vec<usize>>,
+    closed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<Vec<f64>>,
+}
+
+/// A linkage that can be played.
+#[derive(Serialize)]
+struct Mechanism<'a> {
+    /// `c1`: candidate 1; `b`: the buildable one; `c1a2`: its second alternative; `x7`: the seventh exact linkage.
+    key: String,
+    /// What a person reads.
+    name: String,
+    linkage: &'a FourBar,
+    drive: Drive,
+    /// The crank angle at each point, degrees.
+    crank_deg: Vec<f64>,
+    /// The assembly at each point; absent where all are the drive's.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    t1_at: Option<Vec<AssemblyMode>>,
+    /// The number of the worst point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    worst: Option<usize>,
+}
+
+/// The key of a candidate's mechanism; `index` counts from 0.
+pub(super) fn candidate_key(index: usize) -> String {
+    format!("c{}", index + 1)
+}
+
+/// The key of the buildable answer where it is none of the candidates.
+pub(super) const BUILDABLE_KEY: &str = "b";
+
+impl<'a> Data<'a> {
+    /// The data of a record; the candidate `first` (from 0) is shown first.
+    pub(super) fn new(record: &'a Record, first: usize) -> Self {
+        let path = &record.problem.resolved.task.path;
+        let chosen = chosen(record);
+        let of = |key, name, linkage, crank_deg, t1_at, worst| {
+            Mechanism::new(key, name, (linkage, crank_deg, t1_at), worst, &chosen)
+        };
+        let mut mechanisms = Vec::new();
+        for (i, c) in record.candidates.iter().enumerate() {
+            let name = format!("candidate {}", i + 1);
+            mechanisms.push(of(
+                candidate_key(i),
+                name,
+                &c.linkage,
+                &c.crank_deg,
+                &c.t1_at,
+                Some(c.error.max_at),
+            ));
+            for (j, a) in c.alternatives.iter().take(MOST_ALTERNATIVES).enumerate() {
+                let name = format!("cognate {} of candidate {}", j + 1, i + 1);
+                let key = format!("{}a{}", candidate_key(i), j + 1);
+                mechanisms.push(of(key, name, &a.linkage, &a.crank_deg, &a.t1_at, Some(c.error.max_at)));
+            }
+        }
+        if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
+            let (key, name) = (BUILDABLE_KEY.to_owned(), "the buildable answer".to_owned());
+            mechanisms.push(of(key, name, &c.linkage, &c.crank_deg, &c.t1_at, Some(c.error.max_at)));
+        }
+        for (i, x) in record.exact.iter().flat_map(|exact| &exact.linkages).take(MOST_EXACT).enumerate() {
+            let name = format!("exact linkage {}", i + 1);
+            mechanisms.push(of(format!("x{}", i + 1), name, &x.linkage, &x.crank_deg, &x.t1_at, None));
+        }
+        let pick =
+            |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
+        Data {
+            unit: record.problem.unit.map(crate::record::Unit::label),
+            target: Target {
+                points: chosen.iter().map(|i| path.points[*i]).collect(),
+                numbers: (chosen.len() < path.points.len()).then(|| chosen.clone()),
+                closed: path.closed,
+                tolerance: path.tolerance.as_ref().map(pick),
+            },
+            transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
+            first: if first < record.candidates.len() {
+                candidate_key(first)
+            } else {
+                BUILDABLE_KEY.to_owned()
+            },
+            mechanisms,
+        }
+    }
+}
+
+impl<'a> Mechanism<'a> {
+    fn new(
+        key: String,
+        name: String,
+        (linkage, crank_deg, t1_at): (&'a FourBar, &[f64], &[AssemblyMode]),
+        worst: Option<usize>,
+        chosen: &[usize],
+    ) -> Self {
+        let drive = Drive::new(linkage, crank_deg, t1_at);
+        // Lists may be shorter than the target in a record from elsewhere: what is there is shown.
+        let there: Vec<usize> =
+            chosen.iter().copied().take_while(|i| *i < crank_deg.len() && *i < t1_at.len()).collect();
+        let t1: Vec<AssemblyMode> = there.iter().map(|i| t1_at[*i]).collect();
+        let same = t1.iter().all(|t1| i64::from(*t1) == drive.t1);
+        Mechanism {
+            key,
+            name,
+            linkage,
+            drive,
+            crank_deg: there.iter().map(|i| crank_deg[*i]).collect(),
+            t1_at: (!same).then_some(t1),
+            worst,
+        }
+    }
+}
+
+/// The numbers of the points that the page gets.
+fn chosen(record: &Record) -> Vec<usize> {
+    let points = &record.problem.resolved.task.path.points;
+    let usable = |i: &usize| points[*i].iter().all(|x| x.abs() <= MAX_MAGNITUDE);
+    let n = points.len();
+    if n <= MOST_POINTS {
+        return (0..n).filter(usable).collect();
+    }
+    let worst = record.candidates.iter().map(worst_of).filter(|i| *i < n);
+    let mut chosen: Vec<usize> = (0..MOST_POINTS).map(|i| i * n / MOST_POINTS).chain(worst).collect();
+    chosen.push(n - 1);
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen.into_iter().filter(usable).collect()
+}
+
+fn worst_of(candidate: &Candidate) -> usize {
+    candidate.error.max_at
+}
+
+/// How many of how many points the page has, where those are not all.
+pub(super) fn thinned(record: &Record) -> Option<(usize, usize)> {
+    let all = record.problem.resolved.task.path.points.len();
+    (all > MOST_POINTS).then(|| (chosen(record).len(), all))
+}

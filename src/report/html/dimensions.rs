@@ -1,0 +1,58 @@
+//! The exact dimensions, as they stand in a linkage file.
+
+use super::page::escaped;
+use crate::linkage::FourBar;
+use crate::linkage_file::to_toml;
+use crate::record::{Candidate, Record, Unit};
+use crate::report::text::{clean, significant};
+use crate::report::words;
+
+/// The most characters of a name in a linkage file.
+const MOST_NAME: usize = 50;
+
+/// A linkage file to copy, and what is not in it: the ground and where P lies along and across the coupler.
+pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> String {
+    let unit = words::unit_suffix(record);
+    let offset = c.linkage.coupler_offset();
+    let digits = |value: f64| super::table::minus(&significant(value, 6));
+    let name = named(record, short);
+    format!(
+        "{}<p class=\"notes\">Ground AB {}{unit}; P lies {}{unit} along and {}{unit} across from C to D (positive: to the left).</p>\n",
+        block(&name, record.problem.unit, &c.linkage),
+        digits(c.linkage.ground()),
+        digits(offset.re),
+        digits(offset.im)
+    )
+}
+
+/// The dimensions of the alternatives, folded away.
+pub(super) fn of_alternatives(c: &Candidate) -> String {
+    let list: String = c
+        .alternatives
+        .iter()
+        .take(super::data::MOST_ALTERNATIVES)
+        .enumerate()
+        .map(|(i, a)| {
+            let file = to_toml(&format!("cognate {}", i + 1), None, &a.linkage);
+            format!("<pre class=\"dimensions\">{}</pre>\n", escaped(&without_comments(&file)))
+        })
+        .collect();
+    format!("<details><summary>Dimensions of the cognates</summary>\n{list}</details>\n")
+}
+
+fn block(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
+    format!("<pre class=\"dimensions\">{}</pre>\n", escaped(&without_comments(&to_toml(name, unit, linkage))))
+}
+
+/// The letters are explained once on the page, by the drawing.
+fn without_comments(toml: &str) -> String {
+    toml.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect()
+}
+
+/// A name that a linkage file may have.
+fn named(record: &Record, short: &str) -> String {
+    let plain = |c: char| if c.is_alphanumeric() || " -_.".contains(c) { c } else { '-' };
+    let name: String = clean(&record.problem.name).chars().take(MOST_NAME).map(plain).collect();
+    let name = name.trim_matches([' ', '.', '-']);
+    if name.is_empty() { format!("linkage-{short}") } else { format!("{name}-{short}") }
+}

@@ -1,0 +1,104 @@
+//! Mobility and defects in words.
+
+use super::page::escaped;
+use crate::linkage::{InputRange, LinkageType};
+use crate::problem::spec::TransmissionOver;
+use crate::record::{Candidate, Record};
+use crate::report::text::{brief, significant};
+use crate::report::{table, words};
+
+/// What the linkage can do and what it does along the points, as a list.
+pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
+    let mut said = vec![of_type(c), range(c)];
+    said.extend(table::motion(c).map(|motion| format!("Along the points: {motion}.")));
+    said.push(transmission(c));
+    if c.defects.is_empty() {
+        said.push("No defect: the points are passed in order, on one circuit and on one branch.".to_owned());
+    }
+    for defect in &c.defects {
+        let forbidden = record.problem.resolved.require.forbids(defect);
+        let verdict = if forbidden { "not allowed here" } else { "allowed here" };
+        said.push(format!(
+            "{} defect ({verdict}): {}.",
+            super::body::capital(defect.name()),
+            words::of_defect(defect)
+        ));
+    }
+    if let Some(proof) = c.certified {
+        let unit = words::unit_suffix(record);
+        said.push(format!(
+            "Proved: one linkage, and only one, passes exactly through all nine points within {}{unit} of this one.",
+            significant(proof.radius, 2)
+        ));
+    }
+    let items: String =
+        said.iter().filter(|s| !s.is_empty()).map(|s| format!("<li>{}</li>\n", escaped(s))).collect();
+    format!("<ul class=\"said-list\">\n{items}</ul>\n")
+}
+
+fn of_type(c: &Candidate) -> String {
+    let margin = significant(c.grashof_margin, 3);
+    match c.linkage_type {
+        LinkageType::CrankRocker => {
+            format!("Crank-rocker: the crank turns fully, the follower rocks (Grashof margin {margin}).")
+        }
+        LinkageType::RockerCrank => {
+            format!(
+                "Rocker-crank: the driven link A-C rocks, the follower B-D turns fully (Grashof margin {margin})."
+            )
+        }
+        LinkageType::DoubleCrank => {
+            format!("Double-crank: crank and follower both turn fully (Grashof margin {margin}).")
+        }
+        LinkageType::DoubleRocker => {
+            format!("Double-rocker: crank and follower both rock (Grashof margin {margin}).")
+        }
+        LinkageType::TripleRocker => format!("Triple-rocker: no link turns fully (Grashof margin {margin})."),
+        LinkageType::ChangePoint => {
+            format!(
+                "Change point: it can lie flat, and leaves that position either way (Grashof margin {margin})."
+            )
+        }
+    }
+}
+
+/// How far the input can turn.
+fn range(c: &Candidate) -> String {
+    let mobility = c.linkage.mobility();
+    let of = |arc: &crate::linkage::InputArc| {
+        let (low, high) = (arc.middle - arc.half_width, arc.middle + arc.half_width);
+        format!("between {}° and {}°", brief(low.to_degrees(), 5), brief(high.to_degrees(), 5))
+    };
+    match mobility.input {
+        InputRange::Full => "A motor on the crank can run through.".to_owned(),
+        InputRange::One(arc) => {
+            format!("The crank can move {}; at both ends coupler and follower are in line.", of(&arc))
+        }
+        InputRange::Two([left, right]) => format!(
+            "The crank can move {} or, assembled anew, {}; at the ends coupler and follower are in line.",
+            of(&left),
+            of(&right)
+        ),
+        InputRange::None => "The links cannot be joined.".to_owned(),
+    }
+}
+
+fn transmission(c: &Candidate) -> String {
+    let t = &c.transmission_deg;
+    let over = match t.over {
+        TransmissionOver::Cycle => "over the full turn",
+        TransmissionOver::Used => "over the part used",
+    };
+    let verdict = match t.worst {
+        worst if worst >= 40.0 => "forces pass well",
+        worst if worst >= 30.0 => "good enough for most loads",
+        worst if worst >= 10.0 => "below 30° a loaded linkage may jam",
+        _ => "it will jam under load",
+    };
+    format!(
+        "Transmission angle from {}° to {}° {over}: {} from 0° or 180° at its worst; {verdict}.",
+        significant(t.min, 4),
+        significant(t.max, 4),
+        format_args!("{}°", significant(t.worst, 4)),
+    )
+}

@@ -1,0 +1,107 @@
+//! A run as a page in one file: the linkage moving over its target, every figure and verdict beside it.
+//!
+//! ```text
+//! page.rs         the file: policy, style, script, data; what makes foreign text harmless
+//! data.rs         what the player reads, as JSON; motion.rs: how each mechanism is driven
+//! body.rs         the page's sections in their order; a new section is a line there
+//! table.rs        candidates side by side
+//! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
+//! exact.rs        every linkage through nine points
+//! player/*.mjs    position solver, drawing, charts, transport: they know nothing of this page
+//! report.mjs, report.css    the page around the player
+//! ```
+//!
+//! All words are written here, for every candidate, so that the page reads without its script too. The script draws,
+//! plays, sorts and shows one candidate at a time. Nothing in the page names a place on a network.
+
+use crate::record::Record;
+
+mod body;
+mod candidate;
+mod data;
+mod dimensions;
+mod exact;
+mod mobility;
+mod motion;
+pub(super) mod page;
+mod requirements;
+mod table;
+
+/// The player's modules, each after those that it imports.
+pub(super) const PLAYER: [&str; 7] = [
+    include_str!("player/kinematics.mjs"),
+    include_str!("player/drive.mjs"),
+    include_str!("player/svg.mjs"),
+    include_str!("player/cycle.mjs"),
+    include_str!("player/stage.mjs"),
+    include_str!("player/chart.mjs"),
+    include_str!("player/player.mjs"),
+];
+/// Colours and the player's look.
+pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
+
+/// The report of a record, with its candidate `first` (counted from 0) shown first: a whole HTML file.
+///
+/// A pure function of the record. It is made for records that [`verify`](crate::verify::verify) accepts and shows any
+/// other without harm. Of more than 400 target points the player gets 400; drawings for readers without a script are
+/// there for the first ten candidates.
+pub fn report_html(record: &Record, first: usize) -> String {
+    let mut modules = PLAYER.to_vec();
+    modules.push(include_str!("report.mjs"));
+    page::Page {
+        title: &format!("{}: linkages", super::words::problem_name(record)),
+        styles: &[PLAYER_STYLE, include_str!("report.css")],
+        body: &body::body(record),
+        data: &page::embedded(&data::Data::new(record, first)),
+        modules: &modules,
+    }
+    .render()
+}
+
+/// Whether a file begins as a report of ours does.
+pub fn is_report(bytes: &[u8]) -> bool {
+    bytes.starts_with(page::BEGINNING.as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn all_modules() -> Vec<&'static str> {
+        PLAYER.into_iter().chain([include_str!("report.mjs")]).collect()
+    }
+
+    /// Joined into one scope, two of a name would shadow each other without a word.
+    #[test]
+    fn no_name_is_declared_twice_at_the_top_of_the_modules() {
+        let script = page::joined(&all_modules());
+        let mut names = BTreeSet::new();
+        for line in script.lines() {
+            let mut words = line.split([' ', '(', '=', ';']).filter(|word| !word.is_empty());
+            if let Some("function" | "const" | "let" | "class") = line.split(' ').next() {
+                let name = words.nth(1).expect("a name");
+                assert!(names.insert(name.to_owned()), "{name} is declared twice");
+            }
+        }
+        assert!(names.contains("positionAt") && names.contains("Player"));
+    }
+
+    #[test]
+    fn scripts_and_styles_can_stand_in_a_page() {
+        for text in all_modules().into_iter().chain([PLAYER_STYLE, include_str!("report.css")]) {
+            for end in
+                ["</script", "</style", "<!--", "innerHTML", "outerHTML", "insertAdjacentHTML", "eval("]
+            {
+                assert!(!text.contains(end), "{end}");
+            }
+        }
+        // What the joining relies on.
+        for line in all_modules().into_iter().flat_map(str::lines) {
+            let trimmed = line.trim_start();
+            assert!(!trimmed.starts_with("import ") || (line == trimmed && line.ends_with(';')), "{line}");
+            let export = line.strip_prefix("export ").unwrap_or("function");
+            assert!(["function", "const", "class"].iter().any(|word| export.starts_with(word)), "{line}");
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! How a mechanism is driven on the page: which input moves it, over which range, and where the points lie on it.
+
+use crate::linkage::{AssemblyMode, FourBar, InputRange};
+use serde::Serialize;
+
+/// What the player's one parameter q, degrees, stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum DriveKind {
+    /// q is the crank angle; it turns fully on one assembly.
+    Turn,
+    /// q is the crank angle; it rocks within the range, on one assembly.
+    Rock,
+    /// The motion passes toggles: crank angle = middle + half width sin q, t1 = sign cos q.
+    Through,
+    /// The links cannot be joined.
+    None,
+}
+
+/// The motion that a page plays: the circuit of the first point, and of it the branch used or all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct Drive {
+    pub(super) kind: DriveKind,
+    /// The middle of the crank's range, degrees in (-180, 180].
+    pub(super) middle_deg: f64,
+    /// Half of the crank's range; 180 where it turns fully.
+    pub(super) half_width_deg: f64,
+    /// The assembly; where toggles are passed, that of the first point.
+    pub(super) t1: i64,
+}
+
+impl Drive {
+    /// The drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
+    pub(super) fn new(linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
+        let mobility = linkage.mobility();
+        let positions: Vec<(f64, AssemblyMode)> = crank_deg
+            .iter()
+            .map(|angle| angle.to_radians())
+            .zip(t1_at.iter().copied())
+            .filter(|(angle, _)| angle.is_finite())
+            .collect();
+        let (angle, assembly) =
+            positions.first().copied().unwrap_or_else(|| crate::report::scene::middle_position(linkage));
+        let circuit = mobility.branch(angle, assembly).circuit;
+        let t1 = i64::from(assembly);
+        match mobility.arc(circuit) {
+            None => {
+                let closes = mobility.input != InputRange::None;
+                let kind = if closes { DriveKind::Turn } else { DriveKind::None };
+                Drive { kind, middle_deg: 0.0, half_width_deg: 180.0, t1 }
+            }
+            Some(arc) => {
+                let both = positions
+                    .iter()
+                    .any(|(angle, t1)| *t1 != assembly && mobility.branch(*angle, *t1).circuit == circuit);
+                Drive {
+                    kind: if both { DriveKind::Through } else { DriveKind::Rock },
+                    middle_deg: crate::linkage::mobility::wrapped(arc.middle).to_degrees(),
+                    half_width_deg: arc.half_width.to_degrees(),
+                    t1,
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! A page in one file: no network, one style and one script, both named by their hashes in its security policy.
+//!
+//! Whatever comes from a record reaches the page through [`escaped`] or as JSON in a script element that is no
+//! script. The policy lets the browser run nothing but the style and the script that were put in here.
+
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+/// What a page is made of.
+pub(in crate::report) struct Page<'a> {
+    /// The title, as text.
+    pub(in crate::report) title: &'a str,
+    /// Style sheets, one after the other.
+    pub(in crate::report) styles: &'a [&'a str],
+    /// The body, as markup: foreign text in it is [`escaped`].
+    pub(in crate::report) body: &'a str,
+    /// What the script reads: JSON from [`embedded`].
+    pub(in crate::report) data: &'a str,
+    /// ES modules, each after those that it imports: see [`joined`].
+    pub(in crate::report) modules: &'a [&'a str],
+}
+
+/// How every page begins.
+pub(in crate::report) const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+                                               <meta name=\"generator\" content=\"linkwright ";
+
+impl Page<'_> {
+    /// The page's bytes.
+    pub(in crate::report) fn render(&self) -> String {
+        let style = self.styles.join("\n");
+        let script = joined(self.modules);
+        let policy = format!(
+            "default-src 'none'; style-src '{}'; script-src '{}'; base-uri 'none'; form-action 'none'",
+            source_hash(&style),
+            source_hash(&script)
+        );
+        let mut page =
+            String::with_capacity(style.len() + script.len() + self.body.len() + self.data.len() + 2048);
+        page.push_str(BEGINNING);
+        page.push_str(env!("CARGO_PKG_VERSION"));
+        page.push_str("\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"");
+        page.push_str(&policy);
+        page.push_str(
+            "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"color-scheme\" content=\"light dark\">\n<title>",
+        );
+        page.push_str(&escaped(self.title));
+        page.push_str("</title>\n<style>");
+        page.push_str(&style);
+        page.push_str("</style>\n</head>\n<body>\n");
+        page.push_str(self.body);
+        page.push_str("<script type=\"application/json\" id=\"data\">");
+        page.push_str(self.data);
+        page.push_str("</script>\n<script>");
+        page.push_str(&script);
+        page.push_str("</script>\n</body>\n</html>\n");
+        page
+    }
+}
+
+/// Text as markup, fit for content and for attributes in double quotes. Control characters become spaces.
+pub(in crate::report) fn escaped(text: &str) -> String {
+    let mut markup = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => markup.push_str("&amp;"),
+            '<' => markup.push_str("&lt;"),
+            '>' => markup.push_str("&gt;"),
+            '"' => markup.push_str("&quot;"),
+            '\'' => markup.push_str("&#39;"),
+            '\n' => markup.push('\n'),
+            c if c.is_control() => markup.push(' '),
+            c => markup.push(c),
+        }
+    }
+    markup
+}
+
+/// Data as JSON that no text inside can break out of: every `<` stands as `\u003c`.
+pub(in crate::report) fn embedded(data: &impl Serialize) -> String {
+    // What is given here has string keys and no maps, so that it can always be written.
+    serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
+}
+
+/// ES modules as one script in a scope of its own. Each stands after those that it imports; `import` stands on one
+/// line, `export` in front of a declaration.
+pub(in crate::report) fn joined(modules: &[&str]) -> String {
+    let mut script = String::from("(() => {\n\"use strict\";\n");
+    for line in modules.iter().flat_map(|module| module.lines()) {
+        if !line.starts_with("import ") {
+            script.push_str(line.strip_prefix("export ").unwrap_or(line));
+            script.push('\n');
+        }
+    }
+    script.push_str("})();\n");
+    script
+}
+
+/// `sha256-..` of an inline style or script, as a security policy names it.
+fn source_hash(text: &str) -> String {
+    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
+}
+
+/// RFC 4648, with padding.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for group in bytes.chunks(3) {
+        let [x, y, z] = [0, 1, 2].map(|i| group.get(i).copied().map_or(0, u32::from));
+        let bits = x << 16 | y << 8 | z;
+        for i in 0..4 {
+            let letter = LETTERS[(bits >> (18 - 6 * i) & 63) as usize];
+            text.push(if i <= group.len() { letter as char } else { '=' });
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_writes_the_vectors_of_its_standard() {
+        let vectors = [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+        ];
+        for (text, encoded) in vectors {
+            assert_eq!(base64(text.as_bytes()), encoded);
+        }
+    }
+
+    #[test]
+    fn modules_are_joined_without_their_imports_and_exports() {
+        let one = "export const one = 1;\n";
+        let two = "import { one } from \"./one.mjs\";\n\nexport function two() {\n  return one + one;\n}\n";
+        let script = joined(&[one, two]);
+        assert!(script.contains("\nconst one = 1;\n") && script.contains("\nfunction two() {\n"), "{script}");
+        assert!(!script.contains("import") && !script.contains("export"), "{script}");
+    }
+
+    #[test]
+    fn text_cannot_leave_its_place() {
+        let hostile = "</script><!--\"'><img src=x onerror=alert(1)>&";
+        assert_eq!(
+            escaped(hostile),
+            "&lt;/script&gt;&lt;!--&quot;&#39;&gt;&lt;img src=x onerror=alert(1)&gt;&amp;"
+        );
+        let json = embedded(&hostile);
+        assert!(!json.contains('<'));
+        assert_eq!(serde_json::from_str::<String>(&json).expect("JSON"), hostile);
+    }
+}

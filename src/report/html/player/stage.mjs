@@ -1,0 +1,326 @@
+// The drawing that moves: the linkage over its target, its crank dragged by the hand.
+
+import { angleTicks, element, figure, minus, pathThrough, px, setAll, shape, ticks } from "./svg.mjs";
+
+/** Room around the geometry for letters and stands, pixels. */
+const PADDING = 40;
+/** Numbers stand at every point up to so many, else at round ones. */
+const NUMBERED = 20;
+/** More points than this are plain dots. */
+const MARKED = 120;
+/** Below this part of the frame the target can be looked at by itself. */
+const SMALL_TARGET = 0.3;
+
+/** A box of the plane: [left, bottom, right, top]. */
+function boxOf(points) {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  for (const [x, y] of points) {
+    box[0] = Math.min(box[0], x);
+    box[1] = Math.min(box[1], y);
+    box[2] = Math.max(box[2], x);
+    box[3] = Math.max(box[3], y);
+  }
+  return box[0] <= box[2] ? box : [-1, -1, 1, 1];
+}
+
+const extentOf = (box) => Math.max(box[2] - box[0], box[3] - box[1]);
+
+/** The direction away from neighbours, a unit vector. */
+function awayFrom(joint, neighbours) {
+  let [x, y] = [0, 0];
+  for (const other of neighbours) {
+    const apart = Math.hypot(joint[0] - other[0], joint[1] - other[1]) || 1;
+    x += (joint[0] - other[0]) / apart;
+    y += (joint[1] - other[1]) / apart;
+  }
+  const size = Math.hypot(x, y);
+  return size < 0.2 ? [0, -1] : [x / size, y / size];
+}
+
+/** The drawing. It is told where to stand by `pose`, and tells of drags by `onDrag(crankDeg)`. */
+export class Stage {
+  /**
+   * @param {HTMLElement} place
+   * @param {{unit: string | null, onDrag: (crankDeg: number) => void, onKey: (step: number) => void}} options
+   */
+  constructor(place, options) {
+    this.place = place;
+    this.options = options;
+    this.look = "linkage";
+    this.svg = shape("svg", { class: "stage", role: "group", "aria-label": "The linkage over its target" });
+    this.still = shape("g");
+    this.moving = shape("g");
+    this.svg.append(this.still, this.moving);
+    place.append(this.svg);
+    this.makeMovingParts();
+    this.listen();
+    if (typeof ResizeObserver !== "undefined") {
+      new ResizeObserver(() => {
+        if (Math.abs(place.clientWidth - (this.width ?? 0)) > 1) this.layOut();
+      }).observe(place);
+    }
+  }
+
+  makeMovingParts() {
+    const line = (name) => shape("path", { class: name });
+    this.parts = {
+      coupler: line("coupler"),
+      bars: line("bar-edge"),
+      barsInside: line("bar"),
+      pinA: shape("circle", { class: "pin", r: 5.4 }),
+      pinB: shape("circle", { class: "pin", r: 5.4 }),
+      pinD: shape("circle", { class: "pin", r: 4.4 }),
+      trace: line("now"),
+      P: shape("circle", { class: "tracer", r: 5 }),
+      pinC: shape("circle", { class: "pin", r: 4.4 }),
+      grip: shape("circle", {
+        class: "grip",
+        r: 19,
+        tabindex: 0,
+        role: "slider",
+        "aria-label": "Crank: drag it, or turn it with the arrow keys",
+        "aria-valuemin": 0,
+        "aria-valuemax": 360,
+      }),
+    };
+    this.letters = Object.fromEntries(["A", "B", "C", "D", "P"].map((name) => [name, shape("text", { class: "letter" }, [name])]));
+    this.moving.append(...Object.values(this.parts), ...Object.values(this.letters));
+  }
+
+  listen() {
+    const { grip } = this.parts;
+    const turn = (event) => {
+      if (!this.cycle || !this.toPlane) return;
+      const [x, y] = this.fromEvent(event);
+      const { A } = this.cycle.mechanism.linkage;
+      this.options.onDrag((Math.atan2(y - A[1], x - A[0]) * 180) / Math.PI);
+    };
+    grip.addEventListener("pointerdown", (event) => {
+      grip.setPointerCapture(event.pointerId);
+      grip.classList.add("held");
+      event.preventDefault();
+      grip.focus({ preventScroll: true });
+    });
+    grip.addEventListener("pointermove", (event) => {
+      if (grip.hasPointerCapture(event.pointerId)) turn(event);
+    });
+    for (const name of ["pointerup", "pointercancel"]) grip.addEventListener(name, () => grip.classList.remove("held"));
+    grip.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key];
+      if (step === undefined) return;
+      event.preventDefault();
+      this.options.onKey(event.shiftKey ? 0.1 * step : step);
+    });
+  }
+
+  /** The point of the plane under a pointer. */
+  fromEvent(event) {
+    const box = this.svg.getBoundingClientRect();
+    const [x, y] = [((event.clientX - box.left) * this.width) / box.width, ((event.clientY - box.top) * this.height) / box.height];
+    return this.toPlane([x, y]);
+  }
+
+  /** Shows another mechanism. @param {import("./cycle.mjs").Cycle} cycle @param {boolean} closed whether the target is a closed curve */
+  show(cycle, closed) {
+    this.cycle = cycle;
+    this.closed = closed;
+    this.circuit = cycle.circuit();
+    this.layOut();
+  }
+
+  /** Whether the target is so small that it deserves a look of its own. */
+  hasSmallTarget() {
+    return this.cycle !== undefined && extentOf(this.targetBox()) < SMALL_TARGET * extentOf(this.wholeBox());
+  }
+
+  /** @param {"linkage" | "target"} look */
+  lookAt(look) {
+    this.look = look;
+    this.layOut();
+  }
+
+  targetBox() {
+    const { points } = this.cycle;
+    return boxOf(points.flatMap((point) => (point.reached ? [point.target, point.reached] : [point.target])));
+  }
+
+  wholeBox() {
+    const { A, B } = this.cycle.mechanism.linkage;
+    const moving = this.circuit.flatMap((joints) => (joints ? [joints.C, joints.D, joints.P] : []));
+    return boxOf([A, B, ...moving, ...this.cycle.points.map((point) => point.target)]);
+  }
+
+  /** Draws what stands still, for the width that there is. */
+  layOut() {
+    if (!this.cycle) return;
+    const width = Math.max(this.place.clientWidth || 640, 240);
+    const box = this.look === "target" ? this.targetBox() : this.wholeBox();
+    const [w, h] = [box[2] - box[0] || extentOf(box) || 1, box[3] - box[1] || extentOf(box) || 1];
+    const padding = Math.min(PADDING, 0.09 * width);
+    const footer = 30;
+    const wanted = ((width - 2 * padding) * h) / w + 2 * padding + footer;
+    const height = Math.round(Math.min(Math.max(wanted, 0.5 * width, 260), Math.max(0.84 * width, 300), 600));
+    const scale = Math.min((width - 2 * padding) / w, (height - 2 * padding - footer) / h);
+    const centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+    const middle = [width / 2, (height - footer) / 2];
+    Object.assign(this, { width, height, scale });
+    this.toPixel = ([x, y]) => [middle[0] + (x - centre[0]) * scale, middle[1] - (y - centre[1]) * scale];
+    this.toPlane = ([x, y]) => [centre[0] + (x - middle[0]) / scale, centre[1] - (y - middle[1]) / scale];
+    setAll(this.svg, { viewBox: `0 0 ${width} ${height}`, width, height });
+    this.still.replaceChildren(...this.ground(), ...this.curves(), ...this.target(), ...this.scaleBar());
+    this.moving.classList.toggle("absent", this.look === "target");
+    if (this.q !== undefined) this.pose(this.q);
+  }
+
+  ground() {
+    if (this.look === "target") return [];
+    const { A, B } = this.cycle.mechanism.linkage;
+    const [a, b] = [this.toPixel(A), this.toPixel(B)];
+    const stand = ([x, y]) => {
+      let hatch = "";
+      for (let i = 0; i < 6; i += 1) hatch += `M${px(x - 14 + 5.6 * i)} ${px(y + 16)}l-4.5 5.5`;
+      return shape("g", { class: "stand" }, [
+        shape("path", { d: `M${px(x)} ${px(y)}l11 16h-22z`, class: "stand-body" }),
+        shape("path", { d: `M${px(x - 16)} ${px(y + 16)}h32${hatch}` }),
+      ]);
+    };
+    return [shape("path", { class: "ground", d: pathThrough([a, b]) }), stand(a), stand(b)];
+  }
+
+  curves() {
+    const of = (name) => pathThrough(this.circuit.map((joints) => (joints ? this.toPixel(joints[name]) : null)));
+    const curve = shape("path", { class: "curve", d: of("P") });
+    if (this.look === "target") return [curve];
+    return [shape("path", { class: "pin-path", d: of("C") + of("D") }), curve];
+  }
+
+  target() {
+    const { points } = this.cycle;
+    const many = points.length > MARKED;
+    const radius = many ? 1.8 : points.length > 40 ? 3.4 : 4.6;
+    const spots = points.map((point) => this.toPixel(point.target));
+    const parts = [];
+    const along = this.closed && spots.length > 2 ? [...spots, spots[0]] : spots;
+    parts.push(shape("path", { class: "target-line", d: pathThrough(along) }));
+    let whiskers = "";
+    points.forEach((point, i) => {
+      if (!point.reached) return;
+      const reached = this.toPixel(point.reached);
+      if (Math.hypot(reached[0] - spots[i][0], reached[1] - spots[i][1]) > radius) whiskers += pathThrough([spots[i], reached]);
+    });
+    if (whiskers) parts.push(shape("path", { class: "whisker", d: whiskers }));
+    const worst = this.cycle.worstPoint();
+    points.forEach((point, i) => {
+      const [cx, cy] = spots[i].map(px);
+      if (point === worst) parts.push(shape("circle", { class: "worst-halo", cx, cy, r: radius + 6 }));
+      const name = point.number === 0 ? "target-point first" : "target-point";
+      parts.push(shape("circle", { class: many ? "target-dot" : name, cx, cy, r: point.number === 0 ? radius + 1 : radius }));
+      if (point.reached && !many) {
+        const [rx, ry] = this.toPixel(point.reached).map(px);
+        parts.push(shape("circle", { class: "reached", cx: rx, cy: ry, r: 1.9 }));
+      }
+    });
+    return [...parts, ...this.numbers(spots, radius, worst)];
+  }
+
+  /** Numbers outside of the target: all where they are few, else round ones, and the worst point's. */
+  numbers(spots, radius, worst) {
+    const { points } = this.cycle;
+    const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find((s) => points.length <= NUMBERED * s) ?? 100000;
+    const middle = [0, 1].map((axis) => spots.reduce((sum, spot) => sum + spot[axis], 0) / (spots.length || 1));
+    const taken = [];
+    const parts = [];
+    const place = (point, i) => {
+      const [x, y] = spots[i];
+      const away = Math.hypot(x - middle[0], y - middle[1]) || 1;
+      const far = radius + (point === worst ? 15 : 10);
+      const at = [x + ((x - middle[0]) / away) * far, y + ((y - middle[1]) / away) * far + 4];
+      if (taken.some((other) => Math.abs(other[0] - at[0]) < 15 && Math.abs(other[1] - at[1]) < 11)) return;
+      taken.push(at);
+      const text = point === worst ? `${point.number} worst` : String(point.number);
+      const anchor = point === worst ? (x >= middle[0] ? "start" : "end") : "middle";
+      parts.push(shape("text", { class: point === worst ? "number worst" : "number", x: px(at[0]), y: px(at[1]), "text-anchor": anchor }, [text]));
+    };
+    points.forEach((point, i) => point === worst && place(point, i));
+    points.forEach((point, i) => point !== worst && point.number % step === 0 && place(point, i));
+    return parts;
+  }
+
+  scaleBar() {
+    const most = 0.22 * this.width;
+    const lengths = ticks(0, most / this.scale, 1.9).filter((length) => length > 0 && length * this.scale <= most);
+    const length = lengths.at(-1) ?? most / this.scale;
+    const [left, y, long] = [14, this.height - 12, length * this.scale];
+    const label = `${minus(String(Number(length.toPrecision(3))))}${this.options.unit ? ` ${this.options.unit}` : ""}`;
+    return [
+      shape("path", { class: "scale", d: `M${left} ${y - 4}v4h${px(long)}v-4` }),
+      shape("text", { class: "scale-text", x: px(left + long + 8), y }, [label]),
+    ];
+  }
+
+  /** Moves the linkage to q. @param {number} q */
+  pose(q) {
+    this.q = q;
+    if (!this.toPixel || this.look === "target") return;
+    const joints = this.cycle.at(q);
+    this.moving.classList.toggle("absent", !joints);
+    if (!joints) return;
+    const { A, B } = this.cycle.mechanism.linkage;
+    const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map(this.toPixel);
+    const bars = pathThrough([a, c]) + pathThrough([c, d]) + pathThrough([b, d]);
+    const { parts, letters } = this;
+    setAll(parts.coupler, { d: `${pathThrough([c, d, p])}Z` });
+    setAll(parts.bars, { d: bars });
+    setAll(parts.barsInside, { d: bars });
+    const seats = { pinA: a, pinB: b, pinC: c, pinD: d, P: p, grip: c };
+    for (const [name, [cx, cy]] of Object.entries(seats)) setAll(parts[name], { cx: px(cx), cy: px(cy) });
+    const near = this.cycle.nearestPoint(q);
+    setAll(parts.trace, { d: near ? pathThrough([this.toPixel(near.target), p]) : "" });
+    parts.trace.classList.toggle("absent", !near || Math.hypot(near.target[0] - joints.P[0], near.target[1] - joints.P[1]) * this.scale > 40);
+    const around = { A: [a, [c, b]], B: [b, [d, a]], C: [c, [a, d, p]], D: [d, [b, c, p]], P: [p, [c, d]] };
+    for (const [name, [joint, others]] of Object.entries(around)) {
+      const [x, y] = awayFrom(joint, others);
+      setAll(letters[name], { x: px(joint[0] + 17 * x), y: px(joint[1] + 17 * y + 5) });
+    }
+    const crank = this.cycle.crankDeg(q);
+    setAll(parts.grip, { "aria-valuenow": figure(crank, 5).replace("−", "-"), "aria-valuetext": `${figure(crank, 4)} degrees` });
+  }
+}
+
+/** Marks under a slider: where the points are, and the part that they use. */
+export class Marks {
+  /** @param {HTMLElement} place */
+  constructor(place) {
+    this.svg = shape("svg", { class: "marks", "aria-hidden": "true", viewBox: "0 0 1000 14", preserveAspectRatio: "none" });
+    place.append(this.svg);
+    this.labels = element("div", { class: "marks-labels", "aria-hidden": "true" });
+    place.append(this.labels);
+  }
+
+  /** @param {import("./cycle.mjs").Cycle} cycle */
+  show(cycle) {
+    const [low, high] = cycle.range;
+    const x = (q) => px((1000 * (q - low)) / (high - low));
+    const parts = [];
+    const band = (from, to) => parts.push(shape("rect", { class: "used", x: x(from), y: 0, width: Math.max(0, x(to) - x(from)), height: 14 }));
+    if (cycle.used) {
+      const [from, to] = cycle.used;
+      band(Math.max(from, low), Math.min(to, high));
+      if (cycle.cyclic && to > high) band(low, Math.min(to - 360, high));
+    }
+    const worst = cycle.worstPoint();
+    let data = "";
+    for (const point of cycle.points) if (point.place !== null && point !== worst) data += `M${x(point.place)} 1v8`;
+    parts.push(shape("path", { class: "mark", d: data }));
+    if (worst && worst.place !== null) parts.push(shape("path", { class: "mark worst", d: `M${x(worst.place)} 0v14` }));
+    this.svg.replaceChildren(...parts);
+    const words = cycle.drive.kind === "through" ? "" : "°";
+    this.labels.replaceChildren(
+      ...angleTicks(low, high, 8).map((q) => {
+        const label = element("span", {}, [`${minus(String(q))}${words}`]);
+        label.style.left = `${(100 * (q - low)) / (high - low)}%`;
+        return label;
+      }),
+    );
+  }
+}

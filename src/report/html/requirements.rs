@@ -1,0 +1,118 @@
+//! Each requirement: what was asked, what the candidate has, whether it is met and what it costs.
+
+use super::page::escaped;
+use super::table::{head, minus, scrolling};
+use crate::record::{Candidate, Figure, Record, Requirement};
+use crate::report::text::{clean, exact};
+use crate::report::{price, words};
+
+/// The requirements as a table: those of `[require]` and the tolerance at once, the bounds of `[design]` folded away
+/// unless the candidate stands on one or misses it.
+pub(super) fn requirements(record: &Record, c: &Candidate) -> String {
+    let matters = |r: &Requirement| {
+        !r.name.starts_with("design.") || !r.met || c.costs.iter().any(|cost| cost.name == r.name)
+    };
+    let (shown, folded): (Vec<_>, Vec<_>) = c.requirements.iter().partition(|r| matters(r));
+    let mut out = String::from("<h3>Requirements</h3>\n");
+    if let Some(objections) = refusal(record, c) {
+        out.push_str(&super::body::paragraph("bad", &objections));
+    }
+    if !shown.is_empty() {
+        out.push_str(&table("Requirements", record, c, &shown));
+    }
+    if !folded.is_empty() {
+        out.push_str(&format!(
+            "<details><summary>{} bounds of the design, all met with room</summary>\n{}</details>\n",
+            folded.len(),
+            table("Bounds of the design", record, c, &folded)
+        ));
+    }
+    // Limits that stand beside the requirements, such as the Grashof margin of a type.
+    let mut told: Vec<&str> = c.requirements.iter().map(|r| r.name.as_str()).collect();
+    for cost in &c.costs {
+        if !told.contains(&cost.name.as_str()) {
+            told.push(&cost.name);
+            let text = price::clause(record, c, &cost.name).unwrap_or_default();
+            out.push_str(&super::body::paragraph("", &format!("{}: {text}", clean(&cost.name))));
+        }
+    }
+    out
+}
+
+/// Why it isn't accepted.
+fn refusal(record: &Record, c: &Candidate) -> Option<String> {
+    let objections = words::objections(record, c);
+    let list: Vec<String> = objections.into_iter().map(|o| o.sentence).collect();
+    (!list.is_empty()).then(|| format!("Not accepted: {}.", list.join("; ")))
+}
+
+fn table(name: &str, record: &Record, c: &Candidate, list: &[&Requirement]) -> String {
+    let priced = list.iter().any(|r| price::clause(record, c, &r.name).is_some());
+    let mut columns = vec![("requirement", false), ("asked", true), ("has", true), ("", false)];
+    if priced {
+        columns.push(("what it costs", false));
+    }
+    let rows: String = list.iter().map(|r| row(record, c, r, priced)).collect();
+    scrolling(name, "wide", &format!("{}<tbody>\n{rows}</tbody>\n", head(&columns)))
+}
+
+fn row(record: &Record, c: &Candidate, r: &Requirement, priced: bool) -> String {
+    let (mut asked, mut has) = (words::figure(&r.limit, words::short), words::figure(&r.value, words::short));
+    if asked == has && !r.met {
+        // Rounding must not make a missed limit look met.
+        (asked, has) = (words::figure(&r.limit, exact), words::figure(&r.value, exact));
+    }
+    let asked = format!("{}{}", relation(r), signed(&asked, &r.limit));
+    let has = signed(&has, &r.value);
+    let (class, verdict) = if r.met { ("good", "met") } else { ("bad", "not met") };
+    let cost = priced.then(|| {
+        let text = price::clause(record, c, &r.name).unwrap_or_default();
+        format!("<td>{}</td>", escaped(&text))
+    });
+    format!(
+        "<tr><th scope=\"row\">{}</th><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{class}\">{verdict}</td>{}</tr>\n",
+        escaped(&label(&r.name)),
+        escaped(&asked),
+        escaped(&has),
+        cost.unwrap_or_default()
+    )
+}
+
+fn signed(text: &str, figure: &Figure) -> String {
+    match figure {
+        Figure::Number(_) => minus(text),
+        Figure::Numbers(_) => format!("[{}]", text.replace('-', "\u{2212}")),
+        Figure::Word(_) | Figure::Words(_) => text.to_owned(),
+    }
+}
+
+/// Which way the limit binds.
+fn relation(r: &Requirement) -> &'static str {
+    match (r.name.as_str(), &r.limit) {
+        ("transmission_deg_min", _) => "at least ",
+        ("link_ratio_max" | "tolerance", _) => "at most ",
+        ("pivots_in" | "footprint_in", _) => "in ",
+        (_, Figure::Numbers(_)) => "in ",
+        _ => "",
+    }
+}
+
+/// What a person calls it; the problem file's key where there is no word for it.
+fn label(name: &str) -> String {
+    match name {
+        "type" => "type".to_owned(),
+        "transmission_deg_min" => "worst transmission angle, °".to_owned(),
+        "link_ratio_max" => "longest to shortest link".to_owned(),
+        "pivots_in" => "fixed pivots inside".to_owned(),
+        "footprint_in" => "motion inside".to_owned(),
+        "order" => "order of the points".to_owned(),
+        "branch" => "branch".to_owned(),
+        "circuit" => "circuit".to_owned(),
+        "direction" => "direction".to_owned(),
+        "tolerance" => "error at the worst point".to_owned(),
+        other => {
+            let plain = clean(other.strip_prefix("design.").unwrap_or(other));
+            if plain.is_empty() { "a requirement".to_owned() } else { plain }
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Candidates side by side, each figure in a column of its own.
+
+use super::body::section;
+use super::data::{BUILDABLE_KEY, candidate_key};
+use super::page::escaped;
+use crate::problem::spec::{Objective, TransmissionOver};
+use crate::record::{Candidate, Record};
+use crate::report::text::{NO_NUMBER, significant};
+use crate::report::words;
+
+/// A cell: what is read, and the number that it is sorted by.
+pub(super) struct Cell {
+    text: String,
+    value: Option<f64>,
+    class: &'static str,
+}
+
+impl Cell {
+    /// A number, right-aligned.
+    pub(super) fn number(value: f64, text: String) -> Self {
+        Cell { text, value: Some(value).filter(|v| v.is_finite()), class: "n" }
+    }
+
+    /// A number with so many significant digits.
+    pub(super) fn figure(value: f64, digits: usize) -> Self {
+        Cell::number(value, minus(&significant(value, digits)))
+    }
+
+    /// Words.
+    pub(super) fn words(text: &str) -> Self {
+        Cell { text: text.to_owned(), value: None, class: "" }
+    }
+
+    /// Words that say yes or no.
+    pub(super) fn verdict(text: &str, good: bool) -> Self {
+        Cell { text: text.to_owned(), value: None, class: if good { "verdict good" } else { "verdict bad" } }
+    }
+
+    /// The cell as markup.
+    pub(super) fn markup(&self) -> String {
+        let class = if self.class.is_empty() { String::new() } else { format!(" class=\"{}\"", self.class) };
+        let value = self.value.map_or(String::new(), |value| format!(" data-v=\"{value:?}\""));
+        format!("<td{class}{value}>{}</td>", escaped(&self.text))
+    }
+}
+
+/// With a true minus sign.
+pub(super) fn minus(text: &str) -> String {
+    if text == NO_NUMBER { text.to_owned() } else { text.replacen('-', "\u{2212}", 2) }
+}
+
+/// A head of columns; those of numbers are right-aligned.
+pub(super) fn head(columns: &[(&str, bool)]) -> String {
+    let cells: String = columns
+        .iter()
+        .map(|(name, number)| {
+            let class = if *number { " class=\"n\"" } else { "" };
+            format!("<th scope=\"col\"{class}>{}</th>", escaped(name))
+        })
+        .collect();
+    format!("<thead><tr>{cells}</tr></thead>\n")
+}
+
+/// A table that may be wider than the page, in a region that scrolls.
+pub(super) fn scrolling(name: &str, class: &str, inside: &str) -> String {
+    format!(
+        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table class=\"{class}\">\n{inside}</table></div>\n",
+        escaped(name)
+    )
+}
+
+/// The section with the table.
+pub(super) fn candidates(record: &Record) -> String {
+    if record.candidates.is_empty() {
+        let drawing = crate::report::svg::candidate_svg(record, 0);
+        let inside = format!(
+            "<p>No candidate was found.</p>\n<figure>{}</figure>\n",
+            super::candidate::inline(&drawing)
+        );
+        return section("candidates", "Candidates", &inside);
+    }
+    let deviation = record.problem.resolved.solve.objective == Objective::MaxDeviation;
+    let unit = words::unit_suffix(record);
+    let in_unit = |name: &str| if unit.is_empty() { name.to_owned() } else { format!("{name},{unit}") };
+    let columns = [
+        ("#".to_owned(), true),
+        (in_unit("rms error"), true),
+        (in_unit("largest"), true),
+        ("at point".to_owned(), true),
+        (if deviation { "deviation" } else { "sum of squares" }.to_owned(), true),
+        (in_unit("to curve"), true),
+        ("type".to_owned(), false),
+        ("transmission".to_owned(), true),
+        ("over".to_owned(), false),
+        ("link ratio".to_owned(), true),
+        (in_unit("longest link"), true),
+        ("defects".to_owned(), false),
+        ("verdict".to_owned(), false),
+    ];
+    let columns: Vec<(&str, bool)> = columns.iter().map(|(name, number)| (name.as_str(), *number)).collect();
+    let mut rows: Vec<String> = record
+        .candidates
+        .iter()
+        .enumerate()
+        .map(|(i, c)| {
+            row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string()), deviation)
+        })
+        .collect();
+    if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
+        // After all others when sorted by rank.
+        let name =
+            Cell { text: "buildable".into(), value: Some(record.candidates.len() as f64 + 1.0), class: "n" };
+        rows.push(row(record, c, BUILDABLE_KEY, &name, deviation));
+    }
+    let table = format!("{}<tbody>\n{}</tbody>\n", head(&columns), rows.concat());
+    let notes = "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
+                 90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
+    let inside = format!(
+        "{}{}",
+        scrolling("Candidates", "candidates wide", &table),
+        super::body::paragraph("notes", notes)
+    );
+    section("candidates", "Candidates side by side", &inside)
+}
+
+fn row(record: &Record, c: &Candidate, key: &str, name: &Cell, deviation: bool) -> String {
+    let objective = if deviation { c.error.objective } else { c.error.sum_sq };
+    let over = match c.transmission_deg.over {
+        TransmissionOver::Cycle => "full turn",
+        TransmissionOver::Used => "part used",
+    };
+    let defects = if c.defects.is_empty() { "none".to_owned() } else { words::defect_names(c) };
+    let verdict =
+        if c.accepted { "accepted".to_owned() } else { words::verdict(record, c).replacen("no:", "not:", 1) };
+    let cells = [
+        Cell::figure(c.error.rms, 4),
+        Cell::figure(c.error.max, 4),
+        Cell::number(c.error.max_at as f64, c.error.max_at.to_string()),
+        Cell::figure(objective, 5),
+        Cell::figure(c.error.to_curve.rms, 4),
+        Cell::words(c.linkage_type.name()),
+        Cell::number(c.transmission_deg.worst, format!("{}°", significant(c.transmission_deg.worst, 3))),
+        Cell::words(over),
+        Cell::figure(c.link_ratio, 3),
+        Cell::figure(c.linkage.longest_link(), 4),
+        Cell::words(&defects),
+        Cell::verdict(&verdict, c.accepted),
+    ];
+    let first = name.markup().replacen("<td", "<th scope=\"row\"", 1).replace("</td>", "</th>");
+    let cells: String = cells.iter().map(Cell::markup).collect();
+    format!("<tr data-key=\"{key}\">{first}{cells}</tr>\n")
+}
