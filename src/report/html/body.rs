@@ -90,7 +90,7 @@ fn header(record: &Record) -> String {
 }
 
 fn family(record: &Record) -> Option<String> {
-    record.family.as_ref().map(|family| format!("{}.", clean(&family.text)))
+    record.family.as_ref().map(|family| format!("{}.", capital(&clean(&family.text))))
 }
 
 /// What came of it, in a sentence.

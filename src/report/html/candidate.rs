@@ -1,6 +1,6 @@
 //! One candidate in words: figures, mobility and defects, requirements, dimensions, the same curve by others.
 
-use super::body::{capital, paragraph};
+use super::body::paragraph;
 use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
 use super::page::escaped;
 use super::table::{Cell, head, minus, scrolling};
@@ -87,7 +87,7 @@ fn warnings(c: &Candidate) -> String {
     let items: String = c
         .warnings
         .iter()
-        .map(|w| format!("<li class=\"warning\">{}</li>\n", escaped(&capital(&clean(&w.text)))))
+        .map(|w| format!("<li class=\"warning\">{}</li>\n", escaped(&clean(&w.text))))
         .collect();
     format!("<h3>Look twice</h3>\n<ul class=\"said-list\">\n{items}</ul>\n")
 }
@@ -114,7 +114,7 @@ fn alternatives(c: &Candidate, key: &str) -> String {
     let table = format!("{}<tbody>\n{rows}</tbody>\n", head(&columns));
     format!(
         "<h3>The same curve by other linkages</h3>\n{}{}",
-        scrolling("Cognates", "wide", &table),
+        scrolling("Cognates", "wide tight", &table),
         dimensions::of_alternatives(c)
     )
 }
