@@ -3,7 +3,8 @@
 // Pages come from `cargo test --test tool pages_for` in the folder PAGES; see .ci/check-report.
 
 import assert from "node:assert/strict";
-import { readdirSync } from "node:fs";
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
@@ -219,6 +220,29 @@ test("texts of a hostile record are shown as texts", async () => {
   assert.equal(await page.locator("script").count(), 2);
   assert.match(await page.locator("h1").textContent(), /<script>alert\(1\)<\/script>/);
   await done();
+});
+
+test("the security policy stops a script that got in all the same", async () => {
+  const folder = mkdtempSync(join(tmpdir(), "linkwright-policy-"));
+  const place = join(folder, "bad.html");
+  const page = readFileSync(join(pages, "five.html"), "utf8");
+  writeFileSync(place, page.replace("<h1>", "<script>alert(1)</script><img src=x onerror=alert(2)><h1 onclick=alert(3)>"));
+  const context = await browser.newContext();
+  const tab = await context.newPage();
+  const dialogs = [];
+  const refused = [];
+  tab.on("dialog", (dialog) => {
+    dialogs.push(dialog.message());
+    dialog.dismiss();
+  });
+  tab.on("console", (message) => refused.push(message.text()));
+  await tab.goto(pathToFileURL(place).href);
+  await tab.locator("h1").click();
+  await tab.waitForTimeout(100);
+  assert.deepEqual(dialogs, []);
+  assert.ok(refused.filter((text) => text.includes("Content Security Policy")).length >= 2, refused.join("\n"));
+  await context.close();
+  rmSync(folder, { recursive: true });
 });
 
 test("without a script the drawings, the table and all candidates are there", async () => {

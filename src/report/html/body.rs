@@ -7,7 +7,7 @@ use crate::report::text::{clean, significant};
 use crate::report::{price, table as text_table, words};
 
 /// Everything that is seen. Each section is one line at the end.
-pub(super) fn body(record: &Record) -> String {
+pub(super) fn body(record: &Record, drawings: &[&str]) -> String {
     let mut out = String::new();
     out.push_str(&header(record));
     out.push_str("<main>\n");
@@ -15,7 +15,7 @@ pub(super) fn body(record: &Record) -> String {
         out.push_str(LIVE);
     }
     out.push_str(&table::candidates(record));
-    out.push_str(&candidate::articles(record));
+    out.push_str(&candidate::articles(record, drawings));
     out.push_str(&exact::exact(record));
     if !record.candidates.is_empty() {
         out.push_str(POINTS);

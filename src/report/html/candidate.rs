@@ -7,21 +7,26 @@ use super::table::{Cell, head, minus, scrolling};
 use super::{dimensions, mobility, requirements};
 use crate::record::{Alternative, Candidate, Record};
 use crate::report::text::{clean, significant};
-use crate::report::{svg, words};
+use crate::report::words;
 
 /// So many candidates get a drawing for readers without a script.
 const MOST_DRAWN: usize = 10;
 
+/// How many candidates are drawn.
+pub(super) fn drawn(record: &Record) -> usize {
+    record.candidates.len().min(MOST_DRAWN)
+}
+
 /// An article for each candidate, and for the buildable answer where it is none of them.
-pub(super) fn articles(record: &Record) -> String {
+pub(super) fn articles(record: &Record, drawings: &[&str]) -> String {
     let mut out: String = record
         .candidates
         .iter()
         .enumerate()
         .map(|(i, c)| {
             let title = format!("Candidate {}", i + 1);
-            let drawing = (i < MOST_DRAWN).then(|| svg::candidate_svg(record, i));
-            article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing.as_deref())
+            let drawing = drawings.get(i).copied().filter(|_| i < MOST_DRAWN);
+            article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing)
         })
         .collect();
     if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {

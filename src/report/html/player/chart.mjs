@@ -138,7 +138,7 @@ export class CycleChart extends Chart {
     const lines = this.options.high !== undefined ? angleTicks(low, high, 5) : ticks(low, high, 4);
     parts.push(...this.frame(low, high, lines));
     const angles = angleTicks(from, to, (this.width - LEFT - RIGHT) / 44);
-    parts.push(...this.bottomTicks(angles, tickTexts(angles).map((text) => `${text}°`), x));
+    parts.push(...this.bottomTicks(angles, tickTexts(angles).map((text) => (cycle.drive.kind === "through" ? text : `${text}°`)), x));
     for (const level of this.levels) {
       parts.push(shape("path", { class: "level", d: `M${LEFT} ${px(this.y(level, low, high))}H${px(this.width - RIGHT)}` }));
     }
