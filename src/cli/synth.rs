@@ -242,13 +242,14 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
         ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
+    let mut drawings = Vec::new();
     for (i, candidate) in record.candidates.iter().enumerate() {
         let n = i + 1;
         let name = numbered(&record.problem.name, &n.to_string());
         let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
         files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
         files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
-        files.push((format!("candidate-{n}.svg"), svg::candidate_svg(record, i).into_bytes()));
+        drawings.push(svg::candidate_svg(record, i));
     }
     if let Some(candidate) = &record.buildable {
         let name = numbered(&record.problem.name, BUILDABLE);
@@ -263,7 +264,10 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
     if record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()) {
         files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
     }
-    files.push(("report.html".into(), html::report_html(record, 0).into_bytes()));
+    let drawn: Vec<&str> = drawings.iter().map(String::as_str).collect();
+    files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn).into_bytes()));
+    files
+        .extend((1..).zip(drawings).map(|(n, drawing)| (format!("candidate-{n}.svg"), drawing.into_bytes())));
     Ok(files)
 }
 

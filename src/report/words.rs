@@ -100,7 +100,7 @@ fn of_requirement(requirement: &Requirement) -> Objection {
     Objection { key: key.to_owned(), sentence }
 }
 
-pub(super) fn short(value: f64) -> String {
+fn short(value: f64) -> String {
     brief(value, 5)
 }
 

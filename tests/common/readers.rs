@@ -16,9 +16,9 @@ use linkwright::record::Record;
 use linkwright::report::compare::{Entry, SortKey, compare};
 use linkwright::report::plot::{Glyphs, terminal_plot};
 use linkwright::report::{Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text};
-use linkwright::report::{contact_sheet, csv, exact, exact_sheet, svg, table};
 use linkwright::run::{Context, Job};
 use linkwright::search::keeper::{Keeper, Pace, SearchState};
+use linkwright::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
 use linkwright::svg_file::{self, SvgOptions};
 use linkwright::{points_file, results_folder, run, verify};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -227,6 +227,7 @@ fn reports(record: &Record) {
     exact::exact_text(record, true, Colour::Never);
     exact_sheet::exact_svg(record);
     csv::candidates_csv(record);
+    assert!(html::report_html(record, 0).ends_with("</html>\n"));
     contact_sheet::contact_sheet_svg(record);
     let mut entries = Vec::new();
     for i in 0..record.candidates.len().min(3) {

@@ -12,10 +12,14 @@ mod continuation;
 mod corpora;
 mod documents;
 mod faults;
+mod player_golden;
 mod problem_file_document;
+#[path = "../common/random.rs"]
+mod random;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;
+mod report_page;
 mod rooms;
 mod seeds_document;
 mod shipped_problems;

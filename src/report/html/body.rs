@@ -7,7 +7,7 @@ use crate::report::text::{clean, significant};
 use crate::report::{price, table as text_table, words};
 
 /// Everything that is seen. Each section is one line at the end.
-pub(super) fn body(record: &Record) -> String {
+pub(super) fn body(record: &Record, drawings: &[&str]) -> String {
     let mut out = String::new();
     out.push_str(&header(record));
     out.push_str("<main>\n");
@@ -15,7 +15,7 @@ pub(super) fn body(record: &Record) -> String {
         out.push_str(LIVE);
     }
     out.push_str(&table::candidates(record));
-    out.push_str(&candidate::articles(record));
+    out.push_str(&candidate::articles(record, drawings));
     out.push_str(&exact::exact(record));
     if !record.candidates.is_empty() {
         out.push_str(POINTS);
@@ -90,7 +90,7 @@ fn header(record: &Record) -> String {
 }
 
 fn family(record: &Record) -> Option<String> {
-    record.family.as_ref().map(|family| format!("{}.", clean(&family.text)))
+    record.family.as_ref().map(|family| format!("{}.", capital(&clean(&family.text))))
 }
 
 /// What came of it, in a sentence.

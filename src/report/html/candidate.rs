@@ -1,27 +1,32 @@
 //! One candidate in words: figures, mobility and defects, requirements, dimensions, the same curve by others.
 
-use super::body::{capital, paragraph};
+use super::body::paragraph;
 use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
 use super::page::escaped;
 use super::table::{Cell, head, minus, scrolling};
 use super::{dimensions, mobility, requirements};
 use crate::record::{Alternative, Candidate, Record};
 use crate::report::text::{clean, significant};
-use crate::report::{svg, words};
+use crate::report::words;
 
 /// So many candidates get a drawing for readers without a script.
 const MOST_DRAWN: usize = 10;
 
+/// How many candidates are drawn.
+pub(super) fn drawn(record: &Record) -> usize {
+    record.candidates.len().min(MOST_DRAWN)
+}
+
 /// An article for each candidate, and for the buildable answer where it is none of them.
-pub(super) fn articles(record: &Record) -> String {
+pub(super) fn articles(record: &Record, drawings: &[&str]) -> String {
     let mut out: String = record
         .candidates
         .iter()
         .enumerate()
         .map(|(i, c)| {
             let title = format!("Candidate {}", i + 1);
-            let drawing = (i < MOST_DRAWN).then(|| svg::candidate_svg(record, i));
-            article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing.as_deref())
+            let drawing = drawings.get(i).copied().filter(|_| i < MOST_DRAWN);
+            article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing)
         })
         .collect();
     if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
@@ -87,7 +92,7 @@ fn warnings(c: &Candidate) -> String {
     let items: String = c
         .warnings
         .iter()
-        .map(|w| format!("<li class=\"warning\">{}</li>\n", escaped(&capital(&clean(&w.text)))))
+        .map(|w| format!("<li class=\"warning\">{}</li>\n", escaped(&clean(&w.text))))
         .collect();
     format!("<h3>Look twice</h3>\n<ul class=\"said-list\">\n{items}</ul>\n")
 }
@@ -114,7 +119,7 @@ fn alternatives(c: &Candidate, key: &str) -> String {
     let table = format!("{}<tbody>\n{rows}</tbody>\n", head(&columns));
     format!(
         "<h3>The same curve by other linkages</h3>\n{}{}",
-        scrolling("Cognates", "wide", &table),
+        scrolling("Cognates", "wide tight", &table),
         dimensions::of_alternatives(c)
     )
 }

@@ -17,7 +17,7 @@ pub(super) fn exact(record: &Record) -> String {
     if !exact.linkages.is_empty() {
         let unit = words::unit_suffix(record);
         let columns = [
-            ("", true),
+            ("#", true),
             ("candidate", true),
             ("the curve can be", false),
             ("type", false),
@@ -30,7 +30,7 @@ pub(super) fn exact(record: &Record) -> String {
         let shown = exact.linkages.iter().take(MOST_EXACT).enumerate();
         let rows: String = shown.map(|(i, linkage)| row(i, linkage, &unit)).collect();
         let table = format!("{}<tbody>\n{rows}</tbody>\n", head(&columns));
-        inside.push_str(&scrolling("Exact linkages", "sortable wide", &table));
+        inside.push_str(&scrolling("Exact linkages", "sortable wide tight", &table));
         let mut notes = String::from(
             "the curve can be: what the best of its six mechanisms (three cognates, either link driven) can do. defects, \
              transmission, ratio: of the one listed. proved within: one exact linkage is proved to stand this near.",

@@ -32,7 +32,7 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
         ));
     }
     let items: String =
-        said.iter().filter(|s| !s.is_empty()).map(|s| format!("<li>{}</li>\n", escaped(s))).collect();
+        said.iter().map(|s| format!("<li>{}</li>\n", escaped(&s.replace(" -", " \u{2212}")))).collect();
     format!("<ul class=\"said-list\">\n{items}</ul>\n")
 }
 

@@ -46,12 +46,20 @@ pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 /// other without harm. Of more than 400 target points the player gets 400; drawings for readers without a script are
 /// there for the first ten candidates.
 pub fn report_html(record: &Record, first: usize) -> String {
+    let drawn: Vec<String> =
+        (0..candidate::drawn(record)).map(|i| super::svg::candidate_svg(record, i)).collect();
+    report_with_drawings(record, first, &drawn.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// As [`report_html`] for a caller who has the candidates' drawings already:
+/// [`candidate_svg`](super::svg::candidate_svg) of each, in their order, is most of the work.
+pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str]) -> String {
     let mut modules = PLAYER.to_vec();
     modules.push(include_str!("report.mjs"));
     page::Page {
         title: &format!("{}: linkages", super::words::problem_name(record)),
         styles: &[PLAYER_STYLE, include_str!("report.css")],
-        body: &body::body(record),
+        body: &body::body(record, drawings),
         data: &page::embedded(&data::Data::new(record, first)),
         modules: &modules,
     }

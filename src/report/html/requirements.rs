@@ -3,7 +3,7 @@
 use super::page::escaped;
 use super::table::{head, minus, scrolling};
 use crate::record::{Candidate, Figure, Record, Requirement};
-use crate::report::text::{clean, exact};
+use crate::report::text::{brief, clean, exact};
 use crate::report::{price, words};
 
 /// The requirements as a table: those of `[require]` and the tolerance at once, the bounds of `[design]` folded away
@@ -47,35 +47,36 @@ fn refusal(record: &Record, c: &Candidate) -> Option<String> {
 }
 
 fn table(name: &str, record: &Record, c: &Candidate, list: &[&Requirement]) -> String {
-    let priced = list.iter().any(|r| price::clause(record, c, &r.name).is_some());
-    let mut columns = vec![("requirement", false), ("asked", true), ("has", true), ("", false)];
-    if priced {
-        columns.push(("what it costs", false));
-    }
-    let rows: String = list.iter().map(|r| row(record, c, r, priced)).collect();
-    scrolling(name, "wide", &format!("{}<tbody>\n{rows}</tbody>\n", head(&columns)))
+    let columns = [("requirement", false), ("asked", true), ("has", true), ("", false)];
+    let rows: String = list.iter().map(|r| row(record, c, r)).collect();
+    scrolling(name, "wide requirements", &format!("{}<tbody>\n{rows}</tbody>\n", head(&columns)))
 }
 
-fn row(record: &Record, c: &Candidate, r: &Requirement, priced: bool) -> String {
-    let (mut asked, mut has) = (words::figure(&r.limit, words::short), words::figure(&r.value, words::short));
+/// A row for the requirement, and where the candidate stands on it one for what that costs.
+fn row(record: &Record, c: &Candidate, r: &Requirement) -> String {
+    let (mut asked, mut has) = (words::figure(&r.limit, short), words::figure(&r.value, short));
     if asked == has && !r.met {
         // Rounding must not make a missed limit look met.
         (asked, has) = (words::figure(&r.limit, exact), words::figure(&r.value, exact));
     }
     let asked = format!("{}{}", relation(r), signed(&asked, &r.limit));
     let has = signed(&has, &r.value);
-    let (class, verdict) = if r.met { ("good", "met") } else { ("bad", "not met") };
-    let cost = priced.then(|| {
-        let text = price::clause(record, c, &r.name).unwrap_or_default();
-        format!("<td>{}</td>", escaped(&text))
+    let (colour, verdict) = if r.met { ("good", "met") } else { ("bad", "not met") };
+    let cost = price::clause(record, c, &r.name);
+    let class = if cost.is_some() { " class=\"has-cost\"" } else { "" };
+    let cost = cost.map_or(String::new(), |text| {
+        format!("<tr class=\"cost\"><td colspan=\"4\">{}</td></tr>\n", escaped(&text))
     });
     format!(
-        "<tr><th scope=\"row\">{}</th><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{class}\">{verdict}</td>{}</tr>\n",
+        "<tr{class}><th scope=\"row\">{}</th><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{colour}\">{verdict}</td></tr>\n{cost}",
         escaped(&label(&r.name)),
         escaped(&asked),
         escaped(&has),
-        cost.unwrap_or_default()
     )
+}
+
+fn short(value: f64) -> String {
+    brief(value, 4)
 }
 
 fn signed(text: &str, figure: &Figure) -> String {

@@ -74,30 +74,28 @@ pub(super) fn candidates(record: &Record) -> String {
     if record.candidates.is_empty() {
         let drawing = crate::report::svg::candidate_svg(record, 0);
         let inside = format!(
-            "<p>No candidate was found.</p>\n<figure>{}</figure>\n",
+            "<p>No candidate was found.</p>\n<figure class=\"still\">{}</figure>\n",
             super::candidate::inline(&drawing)
         );
         return section("candidates", "Candidates", &inside);
     }
     let deviation = record.problem.resolved.solve.objective == Objective::MaxDeviation;
     let unit = words::unit_suffix(record);
-    let in_unit = |name: &str| if unit.is_empty() { name.to_owned() } else { format!("{name},{unit}") };
     let columns = [
-        ("#".to_owned(), true),
-        (in_unit("rms error"), true),
-        (in_unit("largest"), true),
-        ("at point".to_owned(), true),
-        (if deviation { "deviation" } else { "sum of squares" }.to_owned(), true),
-        (in_unit("to curve"), true),
-        ("type".to_owned(), false),
-        ("transmission".to_owned(), true),
-        ("over".to_owned(), false),
-        ("link ratio".to_owned(), true),
-        (in_unit("longest link"), true),
-        ("defects".to_owned(), false),
-        ("verdict".to_owned(), false),
+        ("#", true),
+        ("rms error", true),
+        ("largest", true),
+        ("at point", true),
+        (if deviation { "deviation" } else { "sum of squares" }, true),
+        ("to curve", true),
+        ("type", false),
+        ("transmission", true),
+        ("over", false),
+        ("link ratio", true),
+        ("longest link", true),
+        ("defects", false),
+        ("verdict", false),
     ];
-    let columns: Vec<(&str, bool)> = columns.iter().map(|(name, number)| (name.as_str(), *number)).collect();
     let mut rows: Vec<String> = record
         .candidates
         .iter()
@@ -113,12 +111,17 @@ pub(super) fn candidates(record: &Record) -> String {
         rows.push(row(record, c, BUILDABLE_KEY, &name, deviation));
     }
     let table = format!("{}<tbody>\n{}</tbody>\n", head(&columns), rows.concat());
+    let lengths = if unit.is_empty() {
+        String::new()
+    } else {
+        format!("Lengths in {}. ", if unit == " in" { "inches" } else { unit.trim() })
+    };
     let notes = "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
                  90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
     let inside = format!(
         "{}{}",
-        scrolling("Candidates", "candidates wide", &table),
-        super::body::paragraph("notes", notes)
+        scrolling("Candidates", "candidates wide tight", &table),
+        super::body::paragraph("notes", &format!("{lengths}{notes}"))
     );
     section("candidates", "Candidates side by side", &inside)
 }

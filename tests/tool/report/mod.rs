@@ -8,6 +8,7 @@ use linkwright::record::{
 };
 use linkwright::report::compare::{Entry, SortKey, compare};
 use linkwright::report::csv::{candidates_csv, curve_csv};
+use linkwright::report::html::report_html;
 use linkwright::report::plot::{Glyphs, terminal_plot};
 use linkwright::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use linkwright::report::{Colour, contact_sheet::contact_sheet_svg, svg::candidate_svg};
@@ -38,6 +39,8 @@ fn everything(record: &Record) -> Vec<(&'static str, String)> {
         ("csv", comparison.csv()),
         ("svg", comparison.svg()),
         ("svg", contact_sheet_svg(record)),
+        // Without the player, whose words are its own.
+        ("html", report_html(record, 0).split("<script>").next().unwrap().to_owned()),
     ];
     for i in 0..=record.candidates.len() {
         all.push(("svg", candidate_svg(record, i)));

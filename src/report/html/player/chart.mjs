@@ -4,7 +4,7 @@ import { angleTicks, element, figure, pathThrough, px, setAll, shape, tickTexts,
 
 /** Pixels left of, right of, above and below the area of a chart. */
 const LEFT = 56;
-const RIGHT = 12;
+const RIGHT = 16;
 const TOP = 10;
 const BOTTOM = 24;
 
@@ -14,7 +14,9 @@ class Chart {
   constructor(place, { title, height }) {
     this.height = height;
     this.reading = element("span", { class: "reading" });
-    this.title = element("span", {}, [title]);
+    this.note = element("small", {});
+    this.name = title;
+    this.title = element("span", {}, [title, this.note]);
     this.svg = shape("svg", { class: "chart", role: "img" });
     this.figure = element("figure", { class: "chart-box" }, [element("figcaption", {}, [this.title, this.reading]), this.svg]);
     place.append(this.figure);
@@ -83,8 +85,12 @@ export class CycleChart extends Chart {
     });
   }
 
-  /** @param {import("./cycle.mjs").Cycle} cycle @param {any[]} samples @param {{value: number, name: string}[]} [levels] */
-  show(cycle, samples, levels = []) {
+  /**
+   * @param {import("./cycle.mjs").Cycle} cycle @param {any[]} samples
+   * @param {number[]} [levels] dashed lines @param {string} [note] what they are
+   */
+  show(cycle, samples, levels = [], note = "") {
+    this.note.textContent = note;
     Object.assign(this, { cycle, samples, levels });
     this.draw();
   }
@@ -129,12 +135,12 @@ export class CycleChart extends Chart {
       band(Math.max(cycle.used[0], from), Math.min(cycle.used[1], to));
       if (cycle.cyclic) band(from, Math.min(cycle.used[1] - 360, to));
     }
-    const lines = this.options.high !== undefined ? angleTicks(low, high, 5) : ticks(low, high, 3);
+    const lines = this.options.high !== undefined ? angleTicks(low, high, 5) : ticks(low, high, 4);
     parts.push(...this.frame(low, high, lines));
-    const angles = angleTicks(from, to, this.width < 330 ? 4 : 8);
-    parts.push(...this.bottomTicks(angles, tickTexts(angles).map((text) => `${text}°`), x));
+    const angles = angleTicks(from, to, (this.width - LEFT - RIGHT) / 44);
+    parts.push(...this.bottomTicks(angles, tickTexts(angles).map((text) => (cycle.drive.kind === "through" ? text : `${text}°`)), x));
     for (const level of this.levels) {
-      parts.push(shape("path", { class: "level", d: `M${LEFT} ${px(this.y(level.value, low, high))}H${px(this.width - RIGHT)}` }));
+      parts.push(shape("path", { class: "level", d: `M${LEFT} ${px(this.y(level, low, high))}H${px(this.width - RIGHT)}` }));
     }
     const clipped = (value) => Math.min(Math.max(value, low - (high - low)), high + (high - low));
     for (const line of this.options.lines) {
@@ -161,11 +167,11 @@ export class CycleChart extends Chart {
   summary() {
     const { of } = this.options.lines[0];
     const list = this.samples.filter((sample) => sample && Number.isFinite(of(sample)));
-    if (list.length === 0) return `${this.title.textContent}: nothing to show`;
+    if (list.length === 0) return `${this.name}: nothing to show`;
     const least = list.reduce((best, sample) => (of(sample) < of(best) ? sample : best));
     const most = list.reduce((best, sample) => (of(sample) > of(best) ? sample : best));
     const where = (sample) => `${figure(of(sample), 3)} at a crank angle of ${figure(this.cycle.crankDeg(sample.q), 3)} degrees`;
-    return `${this.title.textContent}: from ${where(least)} to ${where(most)}`;
+    return `${this.name}: from ${where(least)} to ${where(most)}`;
   }
 
   /** Moves the cursor. @param {number} q @param {any} [given] the sample there */
@@ -217,15 +223,16 @@ export class ErrorChart extends Chart {
     this.xOf = (i) => LEFT + (room * (i + 0.5)) / points.length;
     const y = (value) => this.y(value, 0, high);
     const base = this.height - BOTTOM;
-    const parts = this.frame(0, high, ticks(0, high, 3));
+    const parts = this.frame(0, high, ticks(0, high, 4));
     const step = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => points.length / s <= room / 28) ?? 1000;
     const shown = points.map((_, i) => i).filter((i) => i % step === 0);
     parts.push(...this.bottomTicks(shown, shown.map((i) => String(points[i].number)), this.xOf));
     const limit = points.map((point, i) => (point.tolerance === null || point.tolerance > high ? null : [this.xOf(i), y(point.tolerance)]));
+    this.note.textContent = limit.some(Boolean) ? "dashed: tolerance" : "";
     if (limit.some(Boolean)) parts.push(shape("path", { class: "level", d: pathThrough(limit) }));
     points.forEach((point, i) => {
       if (!Number.isFinite(point.error)) return;
-      const kind = point === worst ? "stem worst" : "stem";
+      const kind = point === worst ? "stem worst" : points.length > 120 ? "stem thin" : "stem";
       const x = px(this.xOf(i));
       parts.push(shape("path", { class: kind, d: `M${x} ${px(base)}V${px(y(point.error))}` }));
       if (points.length <= 120) parts.push(shape("circle", { class: kind, cx: x, cy: px(y(point.error)), r: point === worst ? 4 : 2.8 }));

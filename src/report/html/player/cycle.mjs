@@ -72,11 +72,33 @@ export class Cycle {
 
   /** The joints along the whole circuit, for its curves. */
   circuit() {
+    return Array.from({ length: CURVE_SAMPLES + 1 }, (_, i) => this.onCircuit(i));
+  }
+
+  /** The joints at a place on the whole circuit, in parts of CURVE_SAMPLES. @param {number} i */
+  onCircuit(i) {
     const drive = this.drive.kind === "rock" ? { ...this.drive, kind: /** @type {const} */ ("through") } : this.drive;
-    return Array.from({ length: CURVE_SAMPLES + 1 }, (_, i) => {
-      const { angle, t1 } = inputAt(drive, (360 * i) / CURVE_SAMPLES);
-      return positionAt(this.kernel, angle, t1);
-    });
+    const { angle, t1 } = inputAt(drive, (360 * i) / CURVE_SAMPLES);
+    return positionAt(this.kernel, angle, t1);
+  }
+
+  /**
+   * The curve of P in and around a box, each step cut into `parts`; null where it is elsewhere.
+   * @param {number[]} box left, bottom, right, top @param {number} parts
+   */
+  curveNear(box, parts) {
+    const [w, h] = [box[2] - box[0], box[3] - box[1]];
+    const holds = (joints) =>
+      joints && joints.P[0] > box[0] - w && joints.P[0] < box[2] + w && joints.P[1] > box[1] - h && joints.P[1] < box[3] + h;
+    const curve = [];
+    for (let i = 0; i < CURVE_SAMPLES; i += 1) {
+      if (!holds(this.onCircuit(i)) && !holds(this.onCircuit(i + 1))) {
+        curve.push(null);
+        continue;
+      }
+      for (let j = 0; j <= parts; j += 1) curve.push(this.onCircuit(i + j / parts)?.P ?? null);
+    }
+    return curve;
   }
 
   /** Whether q lies in the part that the points use. @param {number} q */

@@ -159,13 +159,14 @@ export class Player {
     this.stage.show(this.cycle, this.options.target.closed);
     this.lookChoice.hidden = !this.stage.hasSmallTarget();
     this.marks.show(this.cycle);
-    setAll(this.scrub, { min: range[0], max: range[1] });
+    // Whole quarters of a degree, as the slider steps.
+    setAll(this.scrub, { min: Math.ceil(4 * range[0]) / 4, max: Math.floor(4 * range[1]) / 4 });
     for (const control of [this.scrub, this.play.button]) control.disabled = !moves;
     this.scrubLabel.textContent = drive.kind === "through" ? "Place on the motion" : "Crank angle";
     this.samples = this.cycle.samples();
     this.errors.show(this.cycle);
     const least = this.options.transmissionMin;
-    this.mu.show(this.cycle, this.samples, least ? [{ value: least, name: "least" }, { value: 180 - least, name: "most" }] : []);
+    this.mu.show(this.cycle, this.samples, least ? [least, 180 - least] : [], least ? "dashed: asked" : "");
     this.drawRates();
     const kept = before && before.drive.kind === "turn" && drive.kind === "turn";
     this.moveTo(kept ? this.q : this.cycle.start);

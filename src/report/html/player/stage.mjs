@@ -1,6 +1,6 @@
 // The drawing that moves: the linkage over its target, its crank dragged by the hand.
 
-import { angleTicks, element, figure, minus, pathThrough, px, setAll, shape, ticks } from "./svg.mjs";
+import { angleTicks, element, figure, minus, pathThrough, px, roundLength, setAll, shape } from "./svg.mjs";
 
 /** Room around the geometry for letters and stands, pixels. */
 const PADDING = 40;
@@ -23,6 +23,13 @@ function boxOf(points) {
   return box[0] <= box[2] ? box : [-1, -1, 1, 1];
 }
 
+/** A box as wide as high around the same middle. */
+function squared(box) {
+  const half = extentOf(box) / 2 || 1;
+  const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+  return [x - half, y - half, x + half, y + half];
+}
+
 const extentOf = (box) => Math.max(box[2] - box[0], box[3] - box[1]);
 
 /** The direction away from neighbours, a unit vector. */
@@ -35,6 +42,49 @@ function awayFrom(joint, neighbours) {
   }
   const size = Math.hypot(x, y);
   return size < 0.2 ? [0, -1] : [x / size, y / size];
+}
+
+/** What the marks are. */
+function legend() {
+  const key = (part, text) =>
+    element("span", {}, [shape("svg", { class: "stage", width: 22, height: 12, viewBox: "0 0 22 12", "aria-hidden": "true" }, [part]), text]);
+  return element("div", { class: "legend" }, [
+    key(shape("circle", { class: "target-point", cx: 11, cy: 6, r: 4.4 }), "desired"),
+    key(shape("circle", { class: "target-point first", cx: 11, cy: 6, r: 5 }), "the first"),
+    key(shape("circle", { class: "reached", cx: 11, cy: 6, r: 2.4 }), "generated"),
+    key(shape("path", { class: "curve", d: "M1 6h20" }), "curve of P"),
+  ]);
+}
+
+/** Labels beside their points, placed where they hide least. */
+class Labels {
+  /** @param {[number, number][]} ink where something is drawn */
+  constructor(ink) {
+    this.ink = ink;
+    /** @type {[number, number, number][]} middles and half widths */
+    this.taken = [];
+  }
+
+  /**
+   * The middle of a label `width` wide at `far` from a point, near the direction `wished`; null where it would cover
+   * another label and is not needed.
+   */
+  place(point, far, width, wished, needed) {
+    let best = null;
+    for (let i = 0; i < 24; i += 1) {
+      const turn = (Math.ceil((i % 12) / 2) * (i % 2 === 0 ? 1 : -1) * Math.PI) / 6;
+      const reach = i < 12 ? far : 1.8 * far;
+      const [dx, dy] = [Math.cos(wished + turn), Math.sin(wished + turn)];
+      const at = [point[0] + dx * (reach + width / 2), point[1] + dy * (reach + 6)];
+      const covers = this.taken.some((other) => Math.abs(other[0] - at[0]) < other[2] + width / 2 + 1 && Math.abs(other[1] - at[1]) < 11);
+      const hidden = this.ink.filter((spot) => Math.abs(spot[0] - at[0]) < width / 2 + 1 && Math.abs(spot[1] - at[1]) < 7).length;
+      const cost = hidden + 0.9 * Math.abs(turn) + (i < 12 ? 0 : 1) + (covers ? 100 : 0);
+      if (!best || cost < best.cost) best = { cost, at, covers };
+    }
+    if (best.covers && !needed) return null;
+    this.taken.push([best.at[0], best.at[1], width / 2]);
+    return best.at;
+  }
 }
 
 /** The drawing. It is told where to stand by `pose`, and tells of drags by `onDrag(crankDeg)`. */
@@ -50,8 +100,9 @@ export class Stage {
     this.svg = shape("svg", { class: "stage", role: "group", "aria-label": "The linkage over its target" });
     this.still = shape("g");
     this.moving = shape("g");
-    this.svg.append(this.still, this.moving);
-    place.append(this.svg);
+    this.labels = shape("g", { class: "labels" });
+    this.svg.append(this.still, this.moving, this.labels);
+    place.append(this.svg, legend());
     this.makeMovingParts();
     this.listen();
     if (typeof ResizeObserver !== "undefined") {
@@ -159,7 +210,7 @@ export class Stage {
     const padding = Math.min(PADDING, 0.09 * width);
     const footer = 30;
     const wanted = ((width - 2 * padding) * h) / w + 2 * padding + footer;
-    const height = Math.round(Math.min(Math.max(wanted, 0.5 * width, 260), Math.max(0.84 * width, 300), 600));
+    const height = Math.round(Math.min(Math.max(wanted, 0.5 * width, 260), Math.max((width < 500 ? 1.1 : 0.84) * width, 300), 600));
     const scale = Math.min((width - 2 * padding) / w, (height - 2 * padding - footer) / h);
     const centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
     const middle = [width / 2, (height - footer) / 2];
@@ -168,7 +219,7 @@ export class Stage {
     this.toPlane = ([x, y]) => [centre[0] + (x - middle[0]) / scale, centre[1] - (y - middle[1]) / scale];
     setAll(this.svg, { viewBox: `0 0 ${width} ${height}`, width, height });
     this.still.replaceChildren(...this.ground(), ...this.curves(), ...this.target(), ...this.scaleBar());
-    this.moving.classList.toggle("absent", this.look === "target");
+    this.moving.classList.toggle("only-point", this.look === "target");
     if (this.q !== undefined) this.pose(this.q);
   }
 
@@ -189,9 +240,14 @@ export class Stage {
 
   curves() {
     const of = (name) => pathThrough(this.circuit.map((joints) => (joints ? this.toPixel(joints[name]) : null)));
-    const curve = shape("path", { class: "curve", d: of("P") });
-    if (this.look === "target") return [curve];
-    return [shape("path", { class: "pin-path", d: of("C") + of("D") }), curve];
+    if (this.look === "target") {
+      // Finer where it is enlarged.
+      const box = squared(this.targetBox());
+      const parts = Math.min(64, Math.ceil(extentOf(this.wholeBox()) / extentOf(box)));
+      const near = this.cycle.curveNear(box, parts).map((P) => P && this.toPixel(P));
+      return [shape("path", { class: "curve", d: pathThrough(near) })];
+    }
+    return [shape("path", { class: "pin-path", d: of("C") + of("D") }), shape("path", { class: "curve", d: of("P") })];
   }
 
   target() {
@@ -220,7 +276,8 @@ export class Stage {
         parts.push(shape("circle", { class: "reached", cx: rx, cy: ry, r: 1.9 }));
       }
     });
-    return [...parts, ...this.numbers(spots, radius, worst)];
+    this.labels.replaceChildren(...this.numbers(spots, radius, worst));
+    return parts;
   }
 
   /** Numbers outside of the target: all where they are few, else round ones, and the worst point's. */
@@ -228,18 +285,15 @@ export class Stage {
     const { points } = this.cycle;
     const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find((s) => points.length <= NUMBERED * s) ?? 100000;
     const middle = [0, 1].map((axis) => spots.reduce((sum, spot) => sum + spot[axis], 0) / (spots.length || 1));
-    const taken = [];
+    const curve = this.circuit.flatMap((joints, i) => (joints && i % 3 === 0 ? [this.toPixel(joints.P)] : []));
+    const labels = new Labels([...curve, ...spots]);
     const parts = [];
     const place = (point, i) => {
-      const [x, y] = spots[i];
-      const away = Math.hypot(x - middle[0], y - middle[1]) || 1;
-      const far = radius + (point === worst ? 15 : 10);
-      const at = [x + ((x - middle[0]) / away) * far, y + ((y - middle[1]) / away) * far + 4];
-      if (taken.some((other) => Math.abs(other[0] - at[0]) < 15 && Math.abs(other[1] - at[1]) < 11)) return;
-      taken.push(at);
-      const text = point === worst ? `${point.number} worst` : String(point.number);
-      const anchor = point === worst ? (x >= middle[0] ? "start" : "end") : "middle";
-      parts.push(shape("text", { class: point === worst ? "number worst" : "number", x: px(at[0]), y: px(at[1]), "text-anchor": anchor }, [text]));
+      const isWorst = point === worst;
+      const text = isWorst ? `${point.number} worst` : String(point.number);
+      const wished = Math.atan2(spots[i][1] - middle[1], spots[i][0] - middle[0]);
+      const at = labels.place(spots[i], radius + (isWorst ? 8 : 3), 6.6 * text.length, wished, isWorst);
+      if (at) parts.push(shape("text", { class: isWorst ? "number worst" : "number", x: px(at[0]), y: px(at[1] + 4), "text-anchor": "middle" }, [text]));
     };
     points.forEach((point, i) => point === worst && place(point, i));
     points.forEach((point, i) => point !== worst && point.number % step === 0 && place(point, i));
@@ -247,9 +301,7 @@ export class Stage {
   }
 
   scaleBar() {
-    const most = 0.22 * this.width;
-    const lengths = ticks(0, most / this.scale, 1.9).filter((length) => length > 0 && length * this.scale <= most);
-    const length = lengths.at(-1) ?? most / this.scale;
+    const length = roundLength((0.22 * this.width) / this.scale);
     const [left, y, long] = [14, this.height - 12, length * this.scale];
     const label = `${minus(String(Number(length.toPrecision(3))))}${this.options.unit ? ` ${this.options.unit}` : ""}`;
     return [
@@ -261,7 +313,7 @@ export class Stage {
   /** Moves the linkage to q. @param {number} q */
   pose(q) {
     this.q = q;
-    if (!this.toPixel || this.look === "target") return;
+    if (!this.toPixel) return;
     const joints = this.cycle.at(q);
     this.moving.classList.toggle("absent", !joints);
     if (!joints) return;
@@ -316,7 +368,7 @@ export class Marks {
     this.svg.replaceChildren(...parts);
     const words = cycle.drive.kind === "through" ? "" : "°";
     this.labels.replaceChildren(
-      ...angleTicks(low, high, 8).map((q) => {
+      ...angleTicks(low, high, (this.labels.clientWidth || 600) / 52).map((q) => {
         const label = element("span", {}, [`${minus(String(q))}${words}`]);
         label.style.left = `${(100 * (q - low)) / (high - low)}%`;
         return label;

@@ -57,15 +57,21 @@ export function figure(value, digits = 4) {
 /** With a true minus sign. @param {string} text */
 export const minus = (text) => text.replace("-", "−");
 
+/** The largest of 1, 2, 5 times a power of ten that is at most `length`. @param {number} length */
+export function roundLength(length) {
+  const power = 10 ** Math.floor(Math.log10(length));
+  return [5, 2, 1].map((m) => m * power).find((round) => round <= length) ?? power;
+}
+
 /** Round steps for an axis from low to high, about `count` of them. @returns {number[]} */
 export function ticks(low, high, count) {
   const span = high - low;
   if (!(span > 0) || !Number.isFinite(span)) return [low];
   const raw = span / Math.max(1, count);
   const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.999) ?? 10 * power;
+  const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.8) ?? 10 * power;
   const list = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * span; i += 1) list.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * span; i += 1) list.push(i * step + 0);
   return list;
 }
 
@@ -73,7 +79,7 @@ export function ticks(low, high, count) {
 export function angleTicks(low, high, count) {
   const step = [1, 2, 5, 10, 15, 30, 45, 60, 90, 180].find((s) => (high - low) / s <= count) ?? 180;
   const list = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9; i += 1) list.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9; i += 1) list.push(i * step + 0);
   return list;
 }
 
