@@ -38,6 +38,7 @@
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
+//! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | linkage, plates, record, report, analysis, linkage_file, name |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
@@ -48,6 +49,7 @@ pub mod checkpoint;
 pub mod cli;
 pub mod diagnostic;
 pub mod exact;
+pub mod export;
 mod input_text;
 pub mod linkage;
 pub mod linkage_file;

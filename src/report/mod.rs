@@ -35,7 +35,7 @@ mod labels;
 mod parts;
 pub mod plot;
 pub mod price;
-mod scene;
+pub(crate) mod scene;
 mod sheet;
 pub mod suite;
 pub mod svg;

@@ -56,6 +56,8 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("suite", &["record"]),
         ("analysis.rs", &["linkage", "record"]),
         ("analysis", &["linkage", "record"]),
+        ("export.rs", &["analysis", "linkage", "linkage_file", "report"]),
+        ("export", &["linkage", "linkage_file", "name", "plates", "record", "report", "toml_text"]),
         ("plates.rs", &["linkage"]),
         ("plates", &["linkage"]),
         ("record.rs", &["linkage", "task", "problem"]),
