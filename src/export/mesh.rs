@@ -5,32 +5,47 @@
 //! opposite directions. [`Mesh::is_closed`] checks that for every body that is made.
 
 use crate::linkage::{Complex, cross};
-use crate::plates::{Edge, Plate};
+use crate::plates::{Edge, Placement, Plate};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Corners of triangles, counter-clockwise from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mesh {
-    pub(super) vertices: Vec<[f64; 3]>,
+    /// In single precision, as every reader of STL keeps them.
+    pub(super) vertices: Vec<[f32; 3]>,
     pub(super) triangles: Vec<[usize; 3]>,
 }
 
-/// Phases of the polygons of holes, in parts of a side: another is tried where points in line leave a triangulation
-/// that is not closed.
-const PHASES: [f64; 4] = [0.5, 0.291, 0.637, 0.113];
+/// Phases of the polygons of holes, in parts of a side, such that no two corners lie on one level; another is tried
+/// where points in line leave a triangulation that is not closed.
+const PHASES: [f64; 4] = [0.291, 0.137, 0.413, 0.067];
+/// The phase of each next hole differs by this.
+const STAGGER: f64 = 0.019;
 
 impl Mesh {
-    /// A plate of a thickness with round holes; `chord` is how far arcs may lie from their polygons. `None` where no
-    /// closed body was found (holes that leave the plate).
-    pub(super) fn of(plate: &Plate, hole: f64, thickness: f64, chord: f64) -> Option<Self> {
-        PHASES.iter().find_map(|phase| Mesh::with_phase(plate, hole, thickness, chord, *phase))
+    /// A plate of a thickness with round holes, standing on z = 0; `chord` is how far arcs may lie from their
+    /// polygons. `None` where no closed body was found (holes that leave the plate).
+    pub(super) fn of(
+        (plate, at): (&Plate, &Placement),
+        hole: f64,
+        thickness: f64,
+        chord: f64,
+    ) -> Option<Self> {
+        PHASES.iter().find_map(|phase| Mesh::with_phase((plate, at), hole, thickness, chord, *phase))
     }
 
-    fn with_phase(plate: &Plate, hole: f64, thickness: f64, chord: f64, phase: f64) -> Option<Self> {
+    fn with_phase(
+        (plate, place): (&Plate, &Placement),
+        hole: f64,
+        thickness: f64,
+        chord: f64,
+        phase: f64,
+    ) -> Option<Self> {
         let mut rings = vec![polygon(&plate.outline(), plate.radius, chord)];
-        for (_, centre) in plate.distinct_holes() {
+        for (k, (_, centre)) in plate.distinct_holes().into_iter().enumerate() {
             let n = sides(0.5 * hole, chord);
+            let phase = phase + STAGGER * k as f64;
             let turn = |i: usize| Complex::from_polar(0.5 * hole, -TAU * (i as f64 + phase) / n as f64);
             rings.push((0..n).map(|i| centre + turn(i)).collect());
         }
@@ -61,7 +76,8 @@ impl Mesh {
                 triangles.push([here, total + next, total + here]);
             }
         }
-        let level = |z: f64| flat.iter().map(move |p| [p[0], p[1], z]);
+        let placed = |p: &[f64; 2]| place.of(Complex::new(p[0], p[1]));
+        let level = |z: f64| flat.iter().map(placed).map(move |p| [p.re as f32, p.im as f32, z as f32]);
         let mesh = Mesh { vertices: level(0.0).chain(level(thickness)).collect(), triangles };
         mesh.is_closed().then_some(mesh)
     }
@@ -75,11 +91,12 @@ impl Mesh {
             }
         }
         edges.iter().all(|(&(from, to), &count)| count == 1 && edges.contains_key(&(to, from)))
+            && self.triangles.iter().all(|triangle| self.normal(*triangle) != [0.0; 3])
     }
 
     /// The unit normal of a triangle; zeros for one without area.
     pub(super) fn normal(&self, triangle: [usize; 3]) -> [f64; 3] {
-        let [p, q, r] = triangle.map(|i| self.vertices[i]);
+        let [p, q, r] = triangle.map(|i| self.vertices[i].map(f64::from));
         let u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
         let v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
         let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];

@@ -229,7 +229,10 @@ pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal>
         ..p
     };
     FourBar::new(parameters).map_err(|e| {
-        Refusal::new(format!("scaled {} times, this is no linkage: {e}", exact(factor)), "choose another scale")
+        Refusal::new(
+            format!("scaled {} times, this is no linkage: {e}", exact(factor)),
+            "choose another scale",
+        )
     })
 }
 

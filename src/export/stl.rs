@@ -11,19 +11,18 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
     let mut out = String::new();
     for (plate, at) in plates {
         let name = plate.link.name();
-        let mesh = Mesh::of(plate, model.hole, model.thickness, model.chord).ok_or_else(|| {
+        let mesh = Mesh::of((plate, at), model.hole, model.thickness, model.chord).ok_or_else(|| {
             Refusal::new(
                 format!("the {name} cannot be made a closed body with these sizes"),
                 "choose a smaller hole_mm, or a larger margin_mm or chord_mm",
             )
         })?;
-        let placed = |[x, y, z]: [f64; 3]| [x + at.origin.re, y + at.origin.im, z];
         let _ = writeln!(out, "solid {name}");
         for triangle in &mesh.triangles {
-            let _ = writeln!(out, "facet normal {}", numbers(mesh.normal(*triangle)));
+            let _ = writeln!(out, "facet normal {}", numbers(mesh.normal(*triangle).map(|x| x as f32)));
             out.push_str("outer loop\n");
             for corner in triangle {
-                let _ = writeln!(out, "vertex {}", numbers(placed(mesh.vertices[*corner])));
+                let _ = writeln!(out, "vertex {}", numbers(mesh.vertices[*corner]));
             }
             out.push_str("endloop\nendfacet\n");
         }
@@ -32,8 +31,8 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
     Ok(out)
 }
 
-/// Single precision, as every reader of STL keeps it.
-fn numbers(v: [f64; 3]) -> String {
-    let [x, y, z] = v.map(|x| x as f32 + 0.0);
+fn numbers(v: [f32; 3]) -> String {
+    // -0 is 0.
+    let [x, y, z] = v.map(|x| x + 0.0);
     format!("{x} {y} {z}")
 }

@@ -10,6 +10,7 @@ mod common;
 mod continuation;
 mod corpora;
 mod documents;
+mod exports;
 mod faults;
 mod problem_file_document;
 #[path = "../reference/mod.rs"]
