@@ -223,9 +223,8 @@ def check_openscad(path):
         assert done.returncode == 0 and "WARNING" not in done.stderr, done.stderr
         mesh = trimesh.load_mesh(out)
         assert mesh.is_watertight
-        if view == "plates":
-            assert mesh.body_count == 4, mesh.body_count
-            assert abs(mesh.volume - expected) < 0.02 * expected, (mesh.volume, expected)
+        assert mesh.body_count == 4, mesh.body_count
+        assert abs(mesh.volume - expected) < 0.02 * expected, (mesh.volume, expected)
 
 
 CHECK = {"dxf": check_dxf, "stl": check_stl, "openscad": check_openscad}[KIND]

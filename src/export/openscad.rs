@@ -54,6 +54,7 @@ B = [Bx, By];
 g = norm(B - A);
 P = [Px, Py];
 r = hole / 2 + margin;
+washer = thickness / 10; // between the layers of the assembly
 function sides(radius) = max(24, ceil(180 / acos(max(0, 1 - chord / radius))));
 
 // A plate: the hull of its holes grown by the radius r, holes taken out.
@@ -82,7 +83,7 @@ D = C + [V.x * u - V.y * q, V.y * u + V.x * q];
 
 // Puts a plate's first hole on one joint and its x axis towards another, in a layer.
 module place(from, to, layer)
-    translate([from.x, from.y, layer * thickness])
+    translate([from.x, from.y, layer * (thickness + washer)])
         rotate(atan2(to.y - from.y, to.x - from.x)) children();
 
 if (view == "assembly") {
