@@ -37,15 +37,18 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
 
 /// A turn of the motion, endlessly.
 pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
-    let ((angle, assembly), _) = model.start()?;
+    let ((angle, assembly), start) = model.start()?;
     let curve = CouplerCurve::through(&model.linkage, angle, assembly, 8);
     let n = settings.frames.unwrap_or(FRAMES);
-    let poses: Vec<Joints> = (0..n)
+    let mut poses: Vec<Joints> = (0..n)
         .filter_map(|i| {
             let (angle, assembly) = curve.position_at(TAU * i as f64 / n as f64);
             model.linkage.position_with(angle, assembly).joints()
         })
         .collect();
+    if poses.is_empty() {
+        poses.push(start);
+    }
     let sheet = Sheet::around(model, &poses, settings.size_px.unwrap_or(MOVING_PX));
     let background = sheet.background(model)?;
     let palette = palette();

@@ -55,7 +55,7 @@ g = norm(B - A);
 P = [Px, Py];
 r = hole / 2 + margin;
 washer = thickness / 10; // between the layers of the assembly
-function sides(radius) = max(24, ceil(180 / acos(max(0, 1 - chord / radius))));
+function sides(radius) = max(24, min(720, ceil(180 / max(0.25, acos(max(0, 1 - chord / radius))))));
 
 // A plate: the hull of its holes grown by the radius r, holes taken out.
 module plate(holes) {

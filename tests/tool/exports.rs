@@ -271,7 +271,7 @@ fn dxf_plates_are_closed_contours_moved_by_half_the_kerf() {
                 assert!(circles.iter().all(|c| (values(c, 40)[0] - (0.25 - half)).abs() < 1e-12));
                 // The area by the polygon and the segments of its arcs, bulge = tan(turn/4).
                 let (xs, ys) = (values(contours[0], 10), values(contours[0], 20));
-                let mut bulges = vec![0.0; xs.len()];
+                let mut bulges = vec![0.0_f64; xs.len()];
                 let mut vertex = 0;
                 for (code, value) in contours[0] {
                     match code {
