@@ -174,11 +174,14 @@ fn tags(dxf: &str) -> Vec<(u16, String)> {
     lines.chunks(2).map(|pair| (pair[0].trim().parse().expect("a code"), pair[1].to_owned())).collect()
 }
 
-/// The entities: kind, layer, tags.
-fn entities(dxf: &str) -> Vec<(String, String, Vec<(u16, String)>)> {
+/// An entity: kind, layer, tags.
+type Entity = (String, String, Vec<(u16, String)>);
+
+/// The entities of a drawing.
+fn entities(dxf: &str) -> Vec<Entity> {
     let tags = tags(dxf);
     let start = tags.iter().position(|t| *t == (2, "ENTITIES".into())).expect("entities");
-    let mut found: Vec<(String, String, Vec<(u16, String)>)> = Vec::new();
+    let mut found: Vec<Entity> = Vec::new();
     for (code, value) in &tags[start + 1..] {
         match (code, value.as_str()) {
             (0, "ENDSEC") => break,
@@ -309,9 +312,12 @@ fn dxf_plates_are_closed_contours_moved_by_half_the_kerf() {
 
 // ---- STL ----
 
-/// The solids of a file: name and triangles, corners as they are written.
-fn solids(stl: &str) -> Vec<(String, Vec<[[String; 3]; 3]>)> {
-    let mut found: Vec<(String, Vec<[[String; 3]; 3]>)> = Vec::new();
+/// A solid: name and triangles, corners as they are written.
+type Solid = (String, Vec<[[String; 3]; 3]>);
+
+/// The solids of a file.
+fn solids(stl: &str) -> Vec<Solid> {
+    let mut found: Vec<Solid> = Vec::new();
     let mut corners: Vec<[String; 3]> = Vec::new();
     for line in stl.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -603,4 +609,36 @@ fn a_record_alone_is_enough() {
         assert!(export("r", "x") == export("alone.json", "y"), "{name}");
         assert!(export("r:1", "x") == export("alone.json:1", "y"), "{name}");
     }
+}
+
+#[cfg(feature = "images")]
+#[test]
+fn pictures_have_their_size_their_colours_and_their_frames() {
+    let subject = &subjects()[0];
+    let bytes = |format: Format, set: &[(&str, &str)]| {
+        export(subject, format, &settings(format, set)).unwrap_or_else(|e| panic!("{e}")).bytes
+    };
+    let png = bytes(Format::Png, &[("size_px", "400")]);
+    let picture = tiny_skia::Pixmap::decode_png(&png).expect("a PNG");
+    assert_eq!(picture.width().max(picture.height()), 400);
+    let of = |rgb: [u8; 3]| {
+        let same = |p: &&tiny_skia::PremultipliedColorU8| [p.red(), p.green(), p.blue()] == rgb;
+        picture.pixels().iter().filter(same).count()
+    };
+    // Paper, links, curve and P, target.
+    let all = picture.pixels().len();
+    assert!(of([0xff, 0xff, 0xff]) > all / 2 && of([0x34, 0x49, 0x5e]) > all / 200);
+    assert!(of([0xc0, 0x39, 0x2b]) > 100 && of([0x24, 0x71, 0xa3]) > 5);
+
+    let moving = bytes(Format::Gif, &[("size_px", "200"), ("frames", "12")]);
+    let mut reader = gif::DecodeOptions::new().read_info(moving.as_slice()).expect("a GIF");
+    assert_eq!(reader.width().max(reader.height()), 200);
+    let (mut frames, mut different) = (0, 0);
+    let mut before: Vec<u8> = Vec::new();
+    while let Some(frame) = reader.read_next_frame().expect("a frame") {
+        frames += 1;
+        different += usize::from(before != *frame.buffer);
+        before = frame.buffer.to_vec();
+    }
+    assert_eq!((frames, different), (12, 12));
 }
