@@ -31,12 +31,14 @@
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
+//! | [`plates`] | the links as plates with holes: outlines, distances between them | linkage |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
 //! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, linkage_file, task, problem, record, analysis, suite |
+//! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | linkage, plates, record, report, analysis, linkage_file, name |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
@@ -47,10 +49,12 @@ pub mod checkpoint;
 pub mod cli;
 pub mod diagnostic;
 pub mod exact;
+pub mod export;
 mod input_text;
 pub mod linkage;
 pub mod linkage_file;
 pub mod name;
+pub mod plates;
 pub mod points_file;
 pub mod problem;
 pub mod problem_file;

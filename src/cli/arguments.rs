@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use crate::analysis::PositionMethod;
+use crate::export::Format;
 use crate::report::compare::SortKey;
 use crate::schema::SchemaKind;
 use clap::{Args, Parser, Subcommand};
@@ -43,6 +44,8 @@ pub enum Command {
     Cognates(Cognates),
     /// Run problems whose answer is known from many seeds, beside what was published
     Suite(Suite),
+    /// Write a linkage as a file to build from: drawings in millimetres, DXF, STL, OpenSCAD, lists
+    Export(Export),
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
         /// problem or linkage
@@ -240,6 +243,23 @@ pub struct Suite {
     pub write: bool,
 }
 
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// A result's folder or record.json (its first candidate), either with `:2` for another, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// svg, svg-plates, dxf, dxf-plates, stl, scad, csv, toml, json, cut-list or cut-list-csv
+    #[arg(long, value_name = "FORMAT", value_parser = export_format)]
+    pub format: Format,
+    /// Set a size or the scale, e.g. --set hole_mm=4
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Write it to this file [default: to standard output]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+}
+
 fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.abs() <= crate::linkage::MAX_MAGNITUDE => Ok(number),
@@ -253,6 +273,17 @@ fn key_value(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
         _ => Err("write KEY=VALUE, for example solve.candidates=9".into()),
     }
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("write KEY=VALUE, for example hole_mm=4".into()),
+    }
+}
+
+fn export_format(text: &str) -> Result<Format, String> {
+    text.parse().map_err(|e: crate::export::UnknownFormat| e.to_string())
 }
 
 fn sort_key(text: &str) -> Result<SortKey, String> {

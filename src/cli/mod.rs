@@ -7,6 +7,7 @@ mod analyze;
 mod arguments;
 mod check;
 mod compare;
+mod export;
 mod inputs;
 mod interrupt;
 mod man;
@@ -80,6 +81,7 @@ fn dispatch(command: Command) -> Ended {
         Command::Cognates(options) => analyze::cognates(&options),
         Command::Report(options) => report::run(&options),
         Command::Suite(options) => suite::run(&options),
+        Command::Export(options) => export::run(&options),
         Command::Schema { kind, markdown } => {
             terminal::answer(&match markdown {
                 true => crate::schema::reference(kind),

@@ -164,7 +164,7 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
 }
 
 /// Head and rows as CSV with line feeds.
-pub(super) fn written(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(crate) fn written(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
     // Writing to memory does not fail; if it did, what is there so far is the answer.
     let mut good = writer.write_record(head).is_ok();

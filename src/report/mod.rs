@@ -37,7 +37,7 @@ mod labels;
 mod parts;
 pub mod plot;
 pub mod price;
-mod scene;
+pub(crate) mod scene;
 mod sheet;
 pub mod suite;
 pub mod svg;

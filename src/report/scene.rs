@@ -112,7 +112,7 @@ pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
 }
 
 /// A position in the middle of what the input of a linkage can reach.
-pub(super) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
+pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
     let arc = linkage.mobility().arc(crate::linkage::Circuit { index: 0 });
     (arc.map_or(0.0, |arc| arc.middle), linkage.assembly())
 }
@@ -124,7 +124,7 @@ pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>
 }
 
 /// The joints along every circuit that holds one of the positions (crank angle in radians, assembly).
-pub(super) fn circuits_through(
+pub(crate) fn circuits_through(
     linkage: &FourBar,
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
     samples: usize,

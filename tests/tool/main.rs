@@ -11,6 +11,7 @@ mod compare;
 mod continuation;
 mod corpora;
 mod documents;
+mod exports;
 mod faults;
 mod player_golden;
 mod problem_file_document;

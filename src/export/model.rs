@@ -1,0 +1,292 @@
+//! The linkage in millimetres, with every size of its plates decided.
+
+use super::settings::{Refusal, Settings};
+use super::{Format, Subject};
+use crate::linkage::{AssemblyMode, Complex, FourBar, Joints, NaturalCoordinates, point};
+use crate::plates::{Placement, Plate};
+use crate::record::Unit;
+use crate::report::scene::{circuits_through, middle_position};
+use crate::report::text::{brief, exact};
+
+/// The longest link of a file in millimetres: from a hundredth of a millimetre to ten kilometres.
+const LONGEST_MM: std::ops::RangeInclusive<f64> = 1e-2..=1e7;
+/// The largest coordinate: a millionth of a millimetre is above its rounding.
+const FARTHEST_MM: f64 = 1e9;
+/// A hole where a unit is given and the linkage leaves room for it.
+const HOLE_MM: f64 = 4.0;
+/// A hole where no unit is given, in parts of the longest link.
+const HOLE_SHARE: f64 = 1.0 / 40.0;
+/// A hole at most, in parts of the distance of the nearest two.
+const HOLE_BESIDE: f64 = 1.0 / 3.0;
+/// Chord error in parts of a hole: 0.01 mm at 4 mm.
+const CHORD_SHARE: f64 = 1.0 / 400.0;
+
+/// A subject in millimetres.
+pub(super) struct Model<'a> {
+    pub(super) subject: &'a Subject,
+    /// The linkage in millimetres.
+    pub(super) linkage: FourBar,
+    /// One unit of the file, at this scale.
+    pub(super) mm_per_unit: f64,
+    pub(super) target: Vec<Complex>,
+    /// Every circuit that is used: P along it, closed.
+    pub(super) curves: Vec<Vec<Complex>>,
+    pub(super) hole: f64,
+    pub(super) margin: f64,
+    pub(super) kerf: f64,
+    pub(super) thickness: f64,
+    pub(super) gap: f64,
+    pub(super) chord: f64,
+    assumed: Vec<(&'static str, String)>,
+    crowded: Option<Refusal>,
+}
+
+impl<'a> Model<'a> {
+    pub(super) fn new(subject: &'a Subject, settings: &Settings) -> Result<Self, Refusal> {
+        let mut assumed = Vec::new();
+        let unit = unit_of(subject, settings)?;
+        if unit.is_none() {
+            assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
+        }
+        let mm_per_unit = settings.scale() * unit.map_or(1.0, millimetres);
+        let linkage = scaled(&subject.linkage, mm_per_unit)?;
+        check_size(&linkage, settings)?;
+        let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
+        if target.iter().any(|p| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM)) {
+            return Err(too_far(settings));
+        }
+
+        let (nearest, crowd) = nearest_holes(&linkage);
+        let mut default = |key: &'static str, set: Option<f64>, value: f64| {
+            set.unwrap_or_else(|| {
+                let value = rounded_down(value);
+                assumed.push((key, format!("{key} = {}", exact(value))));
+                value
+            })
+        };
+        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest(&linkage) };
+        let hole = default("hole_mm", settings.hole_mm, largest.min(HOLE_BESIDE * nearest));
+        let margin = default("margin_mm", settings.margin_mm, hole);
+        let kerf = settings.kerf_mm.unwrap_or(0.0);
+        let thickness = default("thickness_mm", settings.thickness_mm, 0.75 * hole);
+        let gap = default("gap_mm", settings.gap_mm, margin) + kerf;
+        let chord = default("chord_mm", settings.chord_mm, CHORD_SHARE * hole);
+        if kerf >= hole {
+            return Err(Refusal::about(
+                settings,
+                "kerf_mm",
+                format!("a kerf of {} mm leaves nothing to cut of holes of {} mm", exact(kerf), exact(hole)),
+                "choose kerf_mm below hole_mm",
+            ));
+        }
+        let crowded = (hole >= nearest).then(|| {
+            let apart = brief(nearest, 3);
+            Refusal::about(
+                settings,
+                "hole_mm",
+                format!("holes of {} mm run into each other: {crowd} are {apart} mm apart", exact(hole)),
+                format!("choose hole_mm below {apart}, or a larger scale"),
+            )
+        });
+
+        let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
+        let all = std::iter::once(first).chain(subject.positions.iter().copied());
+        let circuits = circuits_through(&linkage, all, settings.samples());
+        let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
+        Ok(Model {
+            subject,
+            linkage,
+            mm_per_unit,
+            target,
+            curves,
+            hole,
+            margin,
+            kerf,
+            thickness,
+            gap,
+            chord,
+            assumed,
+            crowded,
+        })
+    }
+
+    /// What was assumed and matters for a format, a sentence each.
+    pub(super) fn notes(&self, format: Format) -> Vec<String> {
+        let matters = |key: &&'static str| format.settings().contains(key);
+        let (unit, sizes): (Vec<_>, Vec<_>) =
+            self.assumed.iter().filter(|(key, _)| matters(key)).partition(|(key, _)| *key == "unit");
+        let mut notes: Vec<String> = unit.into_iter().map(|(_, note)| note.clone()).collect();
+        if !sizes.is_empty() {
+            let sizes: Vec<&str> = sizes.into_iter().map(|(_, note)| note.as_str()).collect();
+            notes.push(format!("by default {}", sizes.join(", ")));
+        }
+        notes
+    }
+
+    /// `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`: foreign text, cleaned.
+    pub(super) fn heading(&self) -> String {
+        format!(
+            "{}, {}, lengths in mm, 1 in the file is {} mm",
+            self.subject.title(),
+            self.subject.standing,
+            exact(self.mm_per_unit)
+        )
+    }
+
+    /// The position that is drawn: at the crank angle that is set, else at the first target point that is
+    /// reached, else in the middle of the motion.
+    pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
+        if let Some(angle) = settings.crank_deg {
+            let joints = self.linkage.position(angle.to_radians()).joints();
+            return joints.ok_or_else(|| {
+                Refusal::about(
+                    settings,
+                    "crank_deg",
+                    format!("the links cannot be joined at a crank angle of {} degrees", exact(angle)),
+                    "choose another crank_deg, or leave it out",
+                )
+            });
+        }
+        self.start().map(|(_, joints)| joints)
+    }
+
+    /// Crank angle (radians), assembly and joints where drawings start.
+    pub(super) fn start(&self) -> Result<((f64, AssemblyMode), Joints), Refusal> {
+        let middle = middle_position(&self.linkage);
+        let mut tried = self.subject.positions.iter().copied().chain([middle]);
+        let found = tried.find_map(|(angle, assembly)| {
+            Some(((angle, assembly), self.linkage.position_with(angle, assembly).joints()?))
+        });
+        found.ok_or_else(|| {
+            Refusal::new(
+                "the links of this linkage cannot be joined: there is no position to draw",
+                "its plates can be exported: svg-plates, dxf-plates, stl, cut-list",
+            )
+        })
+    }
+
+    /// The four plates as they are meant to be, each with its place in the layout (with room for the kerf).
+    pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
+        if let Some(refusal) = &self.crowded {
+            return Err(refusal.clone());
+        }
+        let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
+        let mut top = 0.0;
+        let placed = plates.into_iter().map(|plate| {
+            let [low, high] = plate.bounds();
+            let origin = Complex::new(-low.re, top - low.im);
+            top += high.im - low.im + self.gap;
+            (plate, Placement { origin, ..Placement::HOME })
+        });
+        Ok(placed.collect())
+    }
+
+    /// The outline of a plate as the tool's centre follows it: grown by half the kerf.
+    pub(super) fn cut(&self, plate: &Plate) -> Plate {
+        plate.with_radius(plate.radius + 0.5 * self.kerf)
+    }
+
+    /// The radius of a hole as the tool's centre follows it.
+    pub(super) fn cut_hole(&self) -> f64 {
+        0.5 * (self.hole - self.kerf)
+    }
+}
+
+/// A unit in millimetres.
+fn millimetres(unit: Unit) -> f64 {
+    match unit {
+        Unit::Mm => 1.0,
+        Unit::Cm => 10.0,
+        Unit::M => 1000.0,
+        Unit::In => 25.4,
+    }
+}
+
+/// The unit of the file, or the one that is set where it has none.
+pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<Unit>, Refusal> {
+    match (subject.unit, settings.unit) {
+        (Some(own), Some(set)) if own != set => Err(Refusal::about(
+            settings,
+            "unit",
+            format!("the lengths are in {} already", own.label()),
+            "`unit` says what lengths without a unit are in; use `scale` to enlarge",
+        )),
+        (own, set) => Ok(own.or(set)),
+    }
+}
+
+/// A linkage that many times as large.
+pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
+    let p = linkage.natural_coordinates();
+    let parameters = NaturalCoordinates {
+        crank_pivot: p.crank_pivot.map(|x| x * factor),
+        follower_pivot: p.follower_pivot.map(|x| x * factor),
+        crank: p.crank * factor,
+        coupler: p.coupler * factor,
+        follower: p.follower * factor,
+        crank_side: p.crank_side * factor,
+        follower_side: p.follower_side * factor,
+        ..p
+    };
+    FourBar::new(parameters).map_err(|e| {
+        Refusal::new(
+            format!("scaled {} times, this is no linkage: {e}", exact(factor)),
+            "choose another scale",
+        )
+    })
+}
+
+fn longest(linkage: &FourBar) -> f64 {
+    linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+}
+
+fn check_size(linkage: &FourBar, settings: &Settings) -> Result<(), Refusal> {
+    let longest = longest(linkage);
+    if !LONGEST_MM.contains(&longest) {
+        return Err(Refusal::about(
+            settings,
+            "scale",
+            format!("the longest link would be {} mm long", brief(longest, 3)),
+            "set scale=.. so that it is between 0.01 and 10000000 mm",
+        ));
+    }
+    let coordinates = [linkage.crank_pivot(), linkage.follower_pivot()];
+    if coordinates.iter().any(|p| p.re.abs().max(p.im.abs()) > FARTHEST_MM) {
+        return Err(too_far(settings));
+    }
+    Ok(())
+}
+
+fn too_far(settings: &Settings) -> Refusal {
+    Refusal::about(
+        settings,
+        "scale",
+        "the drawing lies more than 1000 km from the origin",
+        "set a smaller scale, or move the problem to the origin",
+    )
+}
+
+/// The distance of the nearest two holes of one plate that are two, and which they are.
+fn nearest_holes(linkage: &FourBar) -> (f64, String) {
+    let mut nearest = (f64::INFINITY, String::new());
+    for plate in Plate::all(linkage, 0.0) {
+        let holes = plate.distinct_holes();
+        for (i, (name, at)) in holes.iter().enumerate() {
+            for (other, there) in &holes[..i] {
+                let distance = (at - there).norm();
+                if distance < nearest.0 {
+                    nearest = (distance, format!("{other} and {name} of the {}", plate.link.name()));
+                }
+            }
+        }
+    }
+    nearest
+}
+
+/// The largest number of two digits that is no larger.
+fn rounded_down(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32 - 1;
+    // A little above, so that 0.3 is not taken for 0.29999.
+    let digits = (value / 10f64.powi(exponent) * (1.0 + 1e-12)).floor();
+    format!("{digits}e{exponent}").parse().unwrap_or(value)
+}

@@ -1,0 +1,38 @@
+//! STL as text: one solid a plate, laid out side by side on z = 0, in millimetres.
+
+use super::mesh::Mesh;
+use super::model::Model;
+use super::settings::Refusal;
+use crate::plates::{Placement, Plate};
+use std::fmt::Write;
+
+/// The plates as solids.
+pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result<String, Refusal> {
+    let mut out = String::new();
+    for (plate, at) in plates {
+        let name = plate.link.name();
+        let mesh = Mesh::of((plate, at), model.hole, model.thickness, model.chord).ok_or_else(|| {
+            Refusal::new(
+                format!("the {name} cannot be made a closed body with these sizes"),
+                "choose a smaller hole_mm, or a larger margin_mm or chord_mm",
+            )
+        })?;
+        let _ = writeln!(out, "solid {name}");
+        for triangle in &mesh.triangles {
+            let _ = writeln!(out, "facet normal {}", numbers(mesh.normal(*triangle).map(|x| x as f32)));
+            out.push_str("outer loop\n");
+            for corner in triangle {
+                let _ = writeln!(out, "vertex {}", numbers(mesh.vertices[*corner]));
+            }
+            out.push_str("endloop\nendfacet\n");
+        }
+        let _ = writeln!(out, "endsolid {name}");
+    }
+    Ok(out)
+}
+
+fn numbers(v: [f32; 3]) -> String {
+    // -0 is 0.
+    let [x, y, z] = v.map(|x| x + 0.0);
+    format!("{x} {y} {z}")
+}

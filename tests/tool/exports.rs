@@ -1,0 +1,644 @@
+//! `export`: every format in millimetres, closed bodies, hostile names, refusals.
+
+use crate::common::root;
+use assert_cmd::Command;
+use linkwright::export::{Format, Settings, Subject, export};
+use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::plates::{Link, Plate};
+use linkwright::record::Unit;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::path::Path;
+
+const HOSTILE: &str =
+    "</title><script>alert(1)</script>\n  0\nEOF\r\n\"]; cube(9); // */ \u{202e}\u{7}é𝄞 ${x}";
+
+fn linkage(numbers: [f64; 9], side: CouplerSide) -> FourBar {
+    let [ax, ay, bx, by, crank, coupler, follower, crank_side, follower_side] = numbers;
+    FourBar::new(NaturalCoordinates {
+        crank_pivot: [ax, ay],
+        follower_pivot: [bx, by],
+        crank,
+        coupler,
+        follower,
+        crank_side,
+        follower_side,
+        assembly: AssemblyMode::Plus,
+        side,
+    })
+    .expect("a linkage")
+}
+
+fn subject(linkage: FourBar, unit: Option<Unit>) -> Subject {
+    Subject {
+        name: "test".into(),
+        standing: "a linkage file".into(),
+        unit,
+        linkage,
+        target: vec![[1.0, 2.0], [3.0, 2.5], [4.0, 1.0]],
+        closed: true,
+        positions: vec![(0.4, AssemblyMode::Plus)],
+    }
+}
+
+/// Ordinary, right-handed, P in line, P on C, coincident pivots.
+fn subjects() -> Vec<Subject> {
+    let plus = CouplerSide::Plus;
+    vec![
+        subject(linkage([0.0, 0.0, 40.0, 10.0, 20.0, 50.0, 45.0, 30.0, 35.0], plus), Some(Unit::Mm)),
+        subject(
+            linkage([-1.0, 0.5, 2.0, 1.0, 1.0, 2.5, 2.75, 1.5, 2.25], CouplerSide::Minus),
+            Some(Unit::In),
+        ),
+        subject(linkage([0.0, 0.0, 4.0, 1.0, 2.0, 5.0, 4.5, 3.0, 2.0], plus), Some(Unit::Cm)),
+        subject(linkage([0.0, 0.0, 4.0, 1.0, 2.0, 5.0, 4.5, 0.0, 5.0], plus), None),
+        subject(linkage([3.0, 3.0, 3.0, 3.0, 30.0, 10.0, 32.0, 12.0, 9.0], plus), None),
+    ]
+}
+
+fn settings(format: Format, set: &[(&str, &str)]) -> Settings {
+    let pairs: Vec<_> = set
+        .iter()
+        .filter(|(key, _)| format.settings().contains(key))
+        .map(|(k, v)| ((*k).to_owned(), (*v).to_owned()))
+        .collect();
+    Settings::parse(format, &pairs).expect("settings")
+}
+
+fn text(subject: &Subject, format: Format, set: &[(&str, &str)]) -> String {
+    let exported = export(subject, format, &settings(format, set)).unwrap_or_else(|e| panic!("{e}"));
+    String::from_utf8(exported.bytes).expect("text")
+}
+
+fn mm(unit: Option<Unit>) -> f64 {
+    match unit {
+        Some(Unit::Cm) => 10.0,
+        Some(Unit::M) => 1000.0,
+        Some(Unit::In) => 25.4,
+        Some(Unit::Mm) | None => 1.0,
+    }
+}
+
+/// The linkage's own size times `factor`, computed apart from the program.
+fn plates_of(subject: &Subject, factor: f64, radius: f64) -> Vec<Plate> {
+    let plates = Plate::all(&subject.linkage, 0.0).map(|plate| {
+        let mut holes = plate.holes;
+        holes.iter_mut().for_each(|hole| hole.at *= factor);
+        Plate::new(plate.link, holes, radius)
+    });
+    plates.to_vec()
+}
+
+// ---- SVG ----
+
+fn attribute(node: roxmltree::Node<'_, '_>, name: &str) -> f64 {
+    node.attribute(name).unwrap_or_else(|| panic!("{name}")).parse().expect("a number")
+}
+
+#[test]
+fn svg_dimensions_are_true_millimetres() {
+    for subject in subjects() {
+        let factor = 2.0 * mm(subject.unit);
+        let svg = text(&subject, Format::Svg, &[("scale", "2"), ("hole_mm", "1.5")]);
+        let document = roxmltree::Document::parse(&svg).expect("XML");
+        let page = document.root_element();
+        let size = |name: &str| -> f64 {
+            let text = page.attribute(name).expect("a size");
+            text.strip_suffix("mm").expect("in mm").parse().expect("a number")
+        };
+        let view: Vec<f64> =
+            page.attribute("viewBox").expect("a view").split(' ').map(|x| x.parse().expect("x")).collect();
+        assert_eq!(view, [0.0, 0.0, size("width"), size("height")]);
+        let at = |id: &str| {
+            let node = document.descendants().find(|n| n.attribute("id") == Some(id)).expect("a joint");
+            assert!((attribute(node, "r") - 0.75).abs() < 1e-9);
+            let (x, y) = (attribute(node, "cx"), attribute(node, "cy"));
+            assert!(x > 0.0 && x < view[2] && y > 0.0 && y < view[3]);
+            (x, y)
+        };
+        let apart = |p: &str, q: &str| (at(p).0 - at(q).0).hypot(at(p).1 - at(q).1);
+        let n = subject.linkage.natural_coordinates();
+        let expected = [
+            ("A", "B", subject.linkage.ground()),
+            ("A", "C", n.crank),
+            ("C", "D", n.coupler),
+            ("B", "D", n.follower),
+            ("C", "P", n.crank_side),
+            ("D", "P", n.follower_side),
+        ];
+        for (p, q, length) in expected {
+            assert!((apart(p, q) - factor * length).abs() < 1e-6, "{p}{q}");
+        }
+        // y is turned: the sign of the turn from C -> D to C -> P is the other one on the page.
+        let ((cx, cy), (dx, dy), (px, py)) = (at("C"), at("D"), at("P"));
+        let turn = (dx - cx) * (py - cy) - (dy - cy) * (px - cx);
+        assert!(turn * n.side.sign() < 1e-6);
+    }
+}
+
+#[test]
+fn svg_plates_have_the_outline_of_the_plates() {
+    for subject in subjects() {
+        let set = [("hole_mm", "0.5"), ("margin_mm", "1"), ("kerf_mm", "0.1"), ("gap_mm", "2")];
+        let svg = text(&subject, Format::SvgPlates, &set);
+        let document = roxmltree::Document::parse(&svg).expect("XML");
+        for plate in plates_of(&subject, mm(subject.unit), 1.3) {
+            let name = plate.link.name();
+            let group = document.descendants().find(|n| n.attribute("id") == Some(name)).expect("a group");
+            let holes: Vec<_> = group.children().filter(|n| n.has_tag_name("circle")).collect();
+            assert_eq!(holes.len(), plate.distinct_holes().len());
+            let place = |i: usize| (attribute(holes[i], "cx"), attribute(holes[i], "cy"));
+            for (i, hole) in holes.iter().enumerate() {
+                assert!((attribute(*hole, "r") - 0.2).abs() < 1e-9);
+                let wanted = (plate.distinct_holes()[i].1 - plate.distinct_holes()[0].1).norm();
+                let apart = (place(i).0 - place(0).0).hypot(place(i).1 - place(0).1);
+                assert!((apart - wanted).abs() < 1e-6);
+            }
+            // The path's length by its own commands is the perimeter.
+            let data = group.children().find_map(|n| n.attribute("d")).expect("a path");
+            let path = kurbo::BezPath::from_svg(data).expect("path data");
+            use kurbo::{ParamCurveArclen, Shape};
+            let length: f64 = path.segments().map(|segment| segment.arclen(1e-7)).sum();
+            assert!((length - plate.perimeter()).abs() < 2e-3 * plate.perimeter(), "{name} {length}");
+            assert!((path.area().abs() - plate.area()).abs() < 2e-3 * plate.area(), "{name}");
+        }
+    }
+}
+
+// ---- DXF ----
+
+/// Pairs of code and value.
+fn tags(dxf: &str) -> Vec<(u16, String)> {
+    let lines: Vec<&str> = dxf.lines().collect();
+    assert!(lines.len().is_multiple_of(2));
+    lines.chunks(2).map(|pair| (pair[0].trim().parse().expect("a code"), pair[1].to_owned())).collect()
+}
+
+/// An entity: kind, layer, tags.
+type Entity = (String, String, Vec<(u16, String)>);
+
+/// The entities of a drawing.
+fn entities(dxf: &str) -> Vec<Entity> {
+    let tags = tags(dxf);
+    let start = tags.iter().position(|t| *t == (2, "ENTITIES".into())).expect("entities");
+    let mut found: Vec<Entity> = Vec::new();
+    for (code, value) in &tags[start + 1..] {
+        match (code, value.as_str()) {
+            (0, "ENDSEC") => break,
+            (0, kind) => found.push((kind.to_owned(), String::new(), Vec::new())),
+            (code, value) => {
+                let entity = found.last_mut().expect("an entity");
+                if *code == 8 {
+                    entity.1 = value.to_owned();
+                }
+                entity.2.push((*code, value.to_owned()));
+            }
+        }
+    }
+    found
+}
+
+fn values(entity: &[(u16, String)], code: u16) -> Vec<f64> {
+    entity.iter().filter(|(c, _)| *c == code).map(|(_, v)| v.parse().expect("a number")).collect()
+}
+
+#[test]
+fn dxf_numbers_read_back_to_the_same_digits_on_named_layers() {
+    for subject in subjects() {
+        let factor = mm(subject.unit);
+        let dxf = text(&subject, Format::Dxf, &[("hole_mm", "1.5")]);
+        let entities = entities(&dxf);
+        let on = |layer: &str, kind: &str| -> Vec<_> {
+            entities.iter().filter(|e| e.1 == layer && e.0 == kind).map(|e| &e.2).collect()
+        };
+        let n = subject.linkage.natural_coordinates();
+        let scaled = FourBar::new(NaturalCoordinates {
+            crank_pivot: n.crank_pivot.map(|x| x * factor),
+            follower_pivot: n.follower_pivot.map(|x| x * factor),
+            crank: n.crank * factor,
+            coupler: n.coupler * factor,
+            follower: n.follower * factor,
+            crank_side: n.crank_side * factor,
+            follower_side: n.follower_side * factor,
+            ..n
+        })
+        .expect("a linkage");
+        let joints = scaled.position(0.4).joints().expect("it closes");
+        let (a, b) = (scaled.crank_pivot(), scaled.follower_pivot());
+        let circles = on("JOINTS", "CIRCLE");
+        assert_eq!(circles.len(), 5);
+        let all = [a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point];
+        for (circle, at) in circles.iter().zip(all) {
+            assert_eq!((values(circle, 10)[0], values(circle, 20)[0]), (at.re, at.im));
+            assert_eq!(values(circle, 40), [0.75]);
+        }
+        assert!(on("SKELETON", "LINE").len() >= 4);
+        let targets = on("TARGET", "POINT");
+        for (point, at) in targets.iter().zip(&subject.target) {
+            assert_eq!((values(point, 10)[0], values(point, 20)[0]), (at[0] * factor, at[1] * factor));
+        }
+        assert_eq!((targets.len(), on("TARGET", "LWPOLYLINE").len()), (3, 1));
+        let curve = on("CURVE", "LWPOLYLINE");
+        assert!(
+            curve.iter().all(|c| values(c, 70) == [1.0] && values(c, 90) == [values(c, 10).len() as f64])
+        );
+        assert!(!curve.is_empty());
+        assert!(tags(&dxf).windows(2).any(|w| w[0].1 == "$INSUNITS" && w[1] == (70, "4".into())));
+        // Handles are unique.
+        let mut handles: Vec<String> =
+            tags(&dxf).into_iter().filter(|t| t.0 == 5 || t.0 == 105).map(|t| t.1).collect();
+        let before = handles.len();
+        handles.sort();
+        handles.dedup();
+        // $HANDSEED is one above the last.
+        assert_eq!(handles.len(), before);
+    }
+}
+
+#[test]
+fn dxf_plates_are_closed_contours_moved_by_half_the_kerf() {
+    for subject in subjects() {
+        for kerf in ["0", "0.2"] {
+            let set = [("hole_mm", "0.5"), ("margin_mm", "1"), ("kerf_mm", kerf), ("gap_mm", "3")];
+            let dxf = text(&subject, Format::DxfPlates, &set);
+            let half: f64 = 0.5 * kerf.parse::<f64>().expect("a number");
+            let entities = entities(&dxf);
+            let mut boxes: Vec<[f64; 4]> = Vec::new();
+            for plate in plates_of(&subject, mm(subject.unit), 1.25 + half) {
+                let layer = plate.link.name().to_uppercase();
+                let on = |kind: &str| -> Vec<_> {
+                    entities.iter().filter(|e| e.1 == layer && e.0 == kind).map(|e| &e.2).collect()
+                };
+                let (contours, circles) = (on("LWPOLYLINE"), on("CIRCLE"));
+                assert_eq!((contours.len(), circles.len()), (1, plate.distinct_holes().len()));
+                assert!(circles.iter().all(|c| (values(c, 40)[0] - (0.25 - half)).abs() < 1e-12));
+                // The area by the polygon and the segments of its arcs, bulge = tan(turn/4).
+                let (xs, ys) = (values(contours[0], 10), values(contours[0], 20));
+                let mut bulges = vec![0.0_f64; xs.len()];
+                let mut vertex = 0;
+                for (code, value) in contours[0] {
+                    match code {
+                        10 => vertex += 1,
+                        42 => bulges[vertex - 1] = value.parse().expect("a number"),
+                        _ => {}
+                    }
+                }
+                let n = xs.len();
+                let area: f64 = (0..n)
+                    .map(|i| {
+                        let j = (i + 1) % n;
+                        let chord = (xs[j] - xs[i]).hypot(ys[j] - ys[i]);
+                        let turn = 4.0 * bulges[i].atan();
+                        let radius = if turn > 0.0 { chord / (2.0 * (0.5 * turn).sin()) } else { 0.0 };
+                        0.5 * (xs[i] * ys[j] - xs[j] * ys[i]) + 0.5 * radius * radius * (turn - turn.sin())
+                    })
+                    .sum();
+                assert!((area - plate.area()).abs() < 1e-9 * plate.area(), "{area} {}", plate.area());
+                let place = |v: &[f64], f: fn(f64, f64) -> f64| v.iter().copied().fold(f64::NAN, f);
+                boxes.push([
+                    place(&xs, f64::min),
+                    place(&ys, f64::min),
+                    place(&xs, f64::max),
+                    place(&ys, f64::max),
+                ]);
+            }
+            // One above the other, apart by the gap (vertices of arcs lie inside of their boxes by at most the radius).
+            for pair in boxes.windows(2) {
+                assert!(pair[1][1] - pair[0][3] >= 3.0 - 1e-9, "{boxes:?}");
+            }
+        }
+    }
+}
+
+// ---- STL ----
+
+/// A solid: name and triangles, corners as they are written.
+type Solid = (String, Vec<[[String; 3]; 3]>);
+
+/// The solids of a file.
+fn solids(stl: &str) -> Vec<Solid> {
+    let mut found: Vec<Solid> = Vec::new();
+    let mut corners: Vec<[String; 3]> = Vec::new();
+    for line in stl.lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words[..] {
+            ["solid", name] => found.push((name.to_owned(), Vec::new())),
+            ["vertex", x, y, z] => corners.push([x.to_owned(), y.to_owned(), z.to_owned()]),
+            ["endfacet"] => {
+                let triangle: [[String; 3]; 3] =
+                    std::mem::take(&mut corners).try_into().expect("three corners");
+                found.last_mut().expect("a solid").1.push(triangle);
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn stl_plates_are_closed_oriented_and_have_their_volume() {
+    for subject in subjects() {
+        for (hole, chord) in [(0.5, 0.002), (1.2, 0.0005)] {
+            let (h, c) = (hole.to_string(), chord.to_string());
+            let set =
+                [("hole_mm", h.as_str()), ("margin_mm", "1"), ("thickness_mm", "2.5"), ("chord_mm", &c)];
+            let stl = text(&subject, Format::Stl, &set);
+            let plates = plates_of(&subject, mm(subject.unit), 0.5 * hole + 1.0);
+            let solids = solids(&stl);
+            assert_eq!(solids.len(), 4);
+            for ((name, triangles), plate) in solids.iter().zip(plates) {
+                assert_eq!(name, plate.link.name());
+                let mut edges: BTreeMap<(&[String; 3], &[String; 3]), i32> = BTreeMap::new();
+                let mut volume = 0.0;
+                let (mut vertices, mut faces) = (std::collections::BTreeSet::new(), 0);
+                for triangle in triangles {
+                    for i in 0..3 {
+                        *edges.entry((&triangle[i], &triangle[(i + 1) % 3])).or_default() += 1;
+                        vertices.insert(&triangle[i]);
+                    }
+                    faces += 1;
+                    let p = triangle.each_ref().map(|v| v.each_ref().map(|x| x.parse::<f64>().expect("x")));
+                    let [u, v, w] = p;
+                    volume += (u[0] * (v[1] * w[2] - v[2] * w[1])
+                        + u[1] * (v[2] * w[0] - v[0] * w[2])
+                        + u[2] * (v[0] * w[1] - v[1] * w[0]))
+                        / 6.0;
+                }
+                for ((from, to), count) in &edges {
+                    assert_eq!((*count, edges.get(&(*to, *from))), (1, Some(&1)), "{name}");
+                }
+                let holes = plate.distinct_holes().len();
+                // V - E + F = 2 - 2 holes.
+                let euler = vertices.len() as i64 - edges.len() as i64 / 2 + faces;
+                assert_eq!(euler, 2 - 2 * holes as i64, "{name}");
+                let expected = 2.5 * (plate.area() - holes as f64 * PI * (0.5 * hole).powi(2));
+                let slack = 2.5 * chord * 2.0 * PI * (plate.radius + hole * holes as f64);
+                assert!((volume - expected).abs() < slack + 1e-5 * expected, "{name} {volume} {expected}");
+            }
+        }
+    }
+}
+
+// ---- the others ----
+
+#[test]
+fn scad_parameters_are_the_linkage_in_millimetres() {
+    for subject in subjects() {
+        let scad = text(&subject, Format::Scad, &[("hole_mm", "0.75"), ("scale", "3")]);
+        let number = |name: &str| -> f64 {
+            let head = format!("{name} = ");
+            let line = scad.lines().find(|line| line.starts_with(&head)).expect("a parameter");
+            line[head.len()..].split(';').next().expect("a value").parse().expect("a number")
+        };
+        let (factor, n) = (3.0 * mm(subject.unit), subject.linkage.natural_coordinates());
+        for (name, value) in [("a", n.crank), ("b", n.coupler), ("c", n.follower), ("Ax", n.crank_pivot[0])] {
+            assert_eq!(number(name), value * factor, "{name}");
+        }
+        assert!((number("Px").hypot(number("Py")) - n.crank_side * factor).abs() < 1e-12 * factor);
+        assert_eq!((number("hole"), number("t1")), (0.75, 1.0));
+    }
+}
+
+#[test]
+fn linkage_files_read_back_and_scale() {
+    let subject = &subjects()[1];
+    let toml = text(subject, Format::Toml, &[("scale", "2")]);
+    let read = linkwright::linkage_file::parse("x.toml", &toml).expect("a linkage file");
+    let n = subject.linkage.natural_coordinates();
+    assert_eq!((read.unit, read.name.as_str()), (Some(Unit::In), "test"));
+    assert_eq!(read.linkage.natural_coordinates().crank, 2.0 * n.crank);
+    let json: serde_json::Value = serde_json::from_str(&text(subject, Format::Json, &[])).expect("JSON");
+    let linkage: FourBar = serde_json::from_value(json["linkage"].clone()).expect("a linkage");
+    assert_eq!((linkage, json["unit"].as_str()), (subject.linkage, Some("in")));
+    let csv = text(subject, Format::Csv, &[("positions", "24")]);
+    assert_eq!(csv.lines().count(), 25);
+    assert!(csv.starts_with("crank_deg,t1,t2,Cx,Cy,Dx,Dy,Px,Py,"));
+}
+
+#[test]
+fn cut_lists_have_every_distance() {
+    for subject in subjects() {
+        let set = [("hole_mm", "0.5"), ("margin_mm", "1"), ("thickness_mm", "2")];
+        let csv = text(&subject, Format::CutListCsv, &set);
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+        for plate in plates_of(&subject, mm(subject.unit), 1.25) {
+            let of: Vec<_> = rows.iter().filter(|row| &row[0] == plate.link.name()).collect();
+            let holes = plate.distinct_holes();
+            assert_eq!(of.len(), (holes.len() * (holes.len() - 1) / 2).max(1));
+            let place = |name: &str| holes.iter().find(|h| h.0 == name).expect("a hole").1;
+            for row in of {
+                let number = |i: usize| row[i].parse::<f64>().expect("a number");
+                assert!((number(4) - (place(&row[2]) - place(&row[3])).norm()).abs() < 1e-9);
+                let area = plate.area() - holes.len() as f64 * PI * 0.0625;
+                assert!((number(9) - area).abs() < 1e-9 * area);
+                assert_eq!((number(5), number(8)), (0.5, 2.0));
+            }
+        }
+        let list = text(&subject, Format::CutList, &set);
+        let pins = if subject.linkage.ground() == 0.0 { "3 pins" } else { "4 pins" };
+        assert!(list.contains(pins) && list.contains("material 2.000 mm thick"), "{list}");
+        assert_eq!(list.contains("P is on a pin"), subject.linkage.crank_side() == 0.0);
+    }
+}
+
+#[test]
+fn hostile_names_break_out_of_no_format() {
+    let mut subject = subjects().remove(0);
+    subject.name = HOSTILE.into();
+    for format in Format::ALL.iter().copied().filter(|format| format.is_text()) {
+        let out = text(&subject, format, &[]);
+        assert!(!out.contains('\r') && !out.contains('\u{7}') && !out.contains('\u{202e}'), "{format:?}");
+        match format {
+            Format::Svg | Format::SvgPlates => {
+                let document = roxmltree::Document::parse(&out).expect("XML");
+                assert!(!document.descendants().any(|n| n.has_tag_name("script")));
+            }
+            Format::Dxf | Format::DxfPlates => {
+                assert!(out.is_ascii() && out.contains("\\U+00E9\\U+D834\\U+DD1E"));
+                assert_eq!(tags(&out).iter().filter(|t| *t == &(0, "EOF".into())).count(), 1);
+                assert!(tags(&out).last() == Some(&(0, "EOF".into())));
+            }
+            Format::Scad => {
+                let first = out.lines().next().expect("a line");
+                assert!(first.starts_with("// ") && first.contains("cube(9)"));
+                assert_eq!(out.matches("cube").count(), 1);
+            }
+            Format::Toml => {
+                linkwright::linkage_file::parse("x.toml", &out).expect("a linkage file");
+            }
+            Format::Json => {
+                let json: serde_json::Value = serde_json::from_str(&out).expect("JSON");
+                assert!(linkwright::name::check(json["name"].as_str().expect("a name")).is_ok());
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn settings_that_do_not_fit_are_refused_with_a_remedy() {
+    let subject = &subjects()[0];
+    let refused = |format: Format, key: &str, value: &str| {
+        let pairs = [(key.to_owned(), value.to_owned())];
+        let refusal = Settings::parse(format, &pairs)
+            .and_then(|settings| export(subject, format, &settings))
+            .expect_err("it is refused");
+        assert_eq!(refusal.setting, Some((key.to_owned(), value.to_owned())));
+        assert!(!refusal.help.is_empty());
+        refusal.message
+    };
+    for (key, value) in [
+        ("hole_mm", "0"),
+        ("hole_mm", "NaN"),
+        ("hole_mm", "-1"),
+        ("hole_mm", "1e300"),
+        ("hole_mm", "4,5"),
+        ("kerf_mm", "-0.1"),
+        ("kerf_mm", "1e6"),
+        ("margin_mm", "x"),
+        ("unit", "furlong"),
+        ("unit", "cm"),
+        ("scale", "1e8"),
+        ("scale", "1e-8"),
+        ("hole", "4"),
+        ("thickness_mm", "3"),
+    ] {
+        let message = refused(Format::DxfPlates, key, value);
+        assert!(message.contains(key) || key == "kerf_mm" || key == "unit" || key == "scale", "{message}");
+    }
+    assert!(refused(Format::DxfPlates, "hole_mm", "25").contains("A and C of the crank are 20"));
+    assert!(refused(Format::Csv, "hole_mm", "4").contains("means nothing for csv"));
+    assert!(refused(Format::Svg, "samples", "1").contains("samples"));
+    // A crank angle that a rocker does not reach.
+    let rocker = Subject {
+        linkage: linkage([0.0, 0.0, 5.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus),
+        ..subject.clone()
+    };
+    let away = settings(Format::Svg, &[("crank_deg", "180")]);
+    assert!(export(&rocker, Format::Svg, &away).expect_err("open").message.contains("cannot be joined"));
+    // Links that never meet: no drawing, but plates.
+    let apart = Subject {
+        linkage: linkage([0.0, 0.0, 50.0, 0.0, 4.0, 2.0, 2.5, 1.0, 1.5], CouplerSide::Plus),
+        positions: Vec::new(),
+        ..subject.clone()
+    };
+    let none = settings(Format::Dxf, &[]);
+    assert!(export(&apart, Format::Dxf, &none).expect_err("no position").help.contains("dxf-plates"));
+    assert!(export(&apart, Format::DxfPlates, &none).is_ok());
+}
+
+#[test]
+fn defaults_fit_every_linkage_and_are_stated() {
+    for subject in subjects() {
+        for format in Format::ALL {
+            let exported =
+                export(&subject, *format, &settings(*format, &[])).unwrap_or_else(|e| panic!("{e}"));
+            let notes = exported.notes.join("; ");
+            if format.settings().contains(&"hole_mm") {
+                assert!(notes.contains("hole_mm = "), "{notes}");
+                assert_eq!(notes.contains("no unit is given"), subject.unit.is_none(), "{notes}");
+            }
+            // The same again, byte for byte.
+            let again = export(&subject, *format, &settings(*format, &[])).expect("again");
+            assert_eq!(again, exported);
+        }
+    }
+    assert!(Plate::of(&subjects()[4].linkage, Link::Ground, 1.0).distinct_holes().len() == 1);
+}
+
+fn program(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_linkwright"))
+        .args(arguments)
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("it runs");
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    (output.status.code().expect("it ends"), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn the_command_writes_whole_files_or_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let linkage = root().join("problems/linkages/hoeken.toml");
+    let linkage = linkage.to_str().expect("a path");
+    let run = |arguments: &[&str]| program(folder.path(), arguments);
+    let (code, out, err) = run(&["export", linkage, "--format", "dxf-plates", "--out", "h.dxf"]);
+    assert_eq!(code, 0, "{err}");
+    assert!(out.starts_with("Wrote h.dxf: ") && err.contains("note: by default hole_mm = "), "{out}{err}");
+    let (code, out, _) = run(&["export", linkage, "--format", "dxf-plates"]);
+    assert_eq!((code, out), (0, std::fs::read_to_string(folder.path().join("h.dxf")).expect("a file")));
+    // What is refused leaves the file as it was.
+    let before = std::fs::read(folder.path().join("h.dxf")).expect("a file");
+    let (code, _, err) =
+        run(&["export", linkage, "--format", "dxf-plates", "--set", "hole_mm=1e6", "--out", "h.dxf"]);
+    assert!(
+        code == 2 && err.contains("--set hole_mm=1e6") && err.contains("help: choose hole_mm below"),
+        "{err}"
+    );
+    assert_eq!(std::fs::read(folder.path().join("h.dxf")).expect("a file"), before);
+    let (code, _, err) = run(&["export", linkage, "--format", "dwg"]);
+    assert!(code == 2 && err.contains("choose from svg, svg-plates, dxf"), "{err}");
+    let (code, _, err) = run(&["export", linkage, "--format", "svg", "--out", "no/such/folder.svg"]);
+    assert!(code == 2 && err.contains("folder.svg"), "{err}");
+    let (code, _, err) = run(&["export", "nothing-here", "--format", "svg"]);
+    assert!(code == 2 && err.contains("nothing-here"), "{err}");
+    // A chain is no four-bar.
+    let chain = root().join("problems/linkages/jansen-leg.toml");
+    let (code, _, _) = run(&["export", chain.to_str().expect("a path"), "--format", "svg"]);
+    assert_eq!(code, 2);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 1);
+}
+
+#[test]
+fn a_record_alone_is_enough() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let problem = root().join("problems/examples/straight-line.toml");
+    let (code, _, err) =
+        program(folder.path(), &["synth", problem.to_str().expect("a path"), "--out", "r", "--quiet"]);
+    assert_eq!(code, 0, "{err}");
+    std::fs::copy(folder.path().join("r/record.json"), folder.path().join("alone.json")).expect("a copy");
+    for format in Format::ALL {
+        let name = format.name();
+        let export = |of: &str, to: &str| {
+            let (code, _, err) = program(folder.path(), &["export", of, "--format", name, "--out", to]);
+            assert_eq!(code, 0, "{name} {err}");
+            std::fs::read(folder.path().join(to)).expect("a file")
+        };
+        assert!(export("r", "x") == export("alone.json", "y"), "{name}");
+        assert!(export("r:1", "x") == export("alone.json:1", "y"), "{name}");
+    }
+}
+
+#[cfg(feature = "images")]
+#[test]
+fn pictures_have_their_size_their_colours_and_their_frames() {
+    let subject = &subjects()[0];
+    let bytes = |format: Format, set: &[(&str, &str)]| {
+        export(subject, format, &settings(format, set)).unwrap_or_else(|e| panic!("{e}")).bytes
+    };
+    let png = bytes(Format::Png, &[("size_px", "400")]);
+    let picture = tiny_skia::Pixmap::decode_png(&png).expect("a PNG");
+    assert_eq!(picture.width().max(picture.height()), 400);
+    let of = |rgb: [u8; 3]| {
+        let same = |p: &&tiny_skia::PremultipliedColorU8| [p.red(), p.green(), p.blue()] == rgb;
+        picture.pixels().iter().filter(same).count()
+    };
+    // Paper, links, curve and P, target.
+    let all = picture.pixels().len();
+    assert!(of([0xff, 0xff, 0xff]) > all / 2 && of([0x34, 0x49, 0x5e]) > all / 200);
+    assert!(of([0xc0, 0x39, 0x2b]) > 100 && of([0x24, 0x71, 0xa3]) > 5);
+
+    let moving = bytes(Format::Gif, &[("size_px", "200"), ("frames", "12")]);
+    let mut reader = gif::DecodeOptions::new().read_info(moving.as_slice()).expect("a GIF");
+    assert_eq!(reader.width().max(reader.height()), 200);
+    let (mut frames, mut different) = (0, 0);
+    let mut before: Vec<u8> = Vec::new();
+    while let Some(frame) = reader.read_next_frame().expect("a frame") {
+        frames += 1;
+        different += usize::from(before != *frame.buffer);
+        before = frame.buffer.to_vec();
+    }
+    assert_eq!((frames, different), (12, 12));
+}
