@@ -119,7 +119,7 @@ pub struct New {
 pub struct Compare {
     /// Results: a folder, a record.json, either with `:2` for its second candidate, or a linkage file
     #[arg(required = true, value_name = "RESULT")]
-    pub results: Vec<String>,
+    pub results: Vec<PathBuf>,
     /// The problem whose target bare linkages are measured on
     #[arg(long, value_name = "PROBLEM")]
     pub target: Option<PathBuf>,

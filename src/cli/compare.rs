@@ -1,15 +1,17 @@
 //! `compare`: results and linkages side by side.
 
 use super::arguments::Compare;
+use super::result::{self, Given};
 use super::{Ended, terminal};
 use crate::assess::assess;
 use crate::diagnostic::escaped;
+use crate::linkage_file::LinkageFile;
 use crate::problem::Problem;
+use crate::problem_file;
 use crate::problem_file::ProblemFile;
 use crate::report::compare::{Entry, compare};
-use crate::results_folder::{read_record, write_file};
+use crate::results_folder::write_file;
 use crate::search::nearest::nearest_positions;
-use crate::{linkage_file, problem_file};
 use ariadne::ReportKind;
 use std::path::Path;
 
@@ -56,40 +58,27 @@ fn refuse(text: &str) -> Ended {
 }
 
 /// The entries of one argument: a linkage file, or the candidates of a result (one with `:2`).
-fn load(argument: &str, target: Option<&(ProblemFile, Problem)>) -> Result<Vec<Entry>, Ended> {
-    let path = Path::new(argument);
-    if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return Ok(vec![bare(path, target)?]);
+fn load(argument: &Path, target: Option<&(ProblemFile, Problem)>) -> Result<Vec<Entry>, Ended> {
+    match result::read(argument)? {
+        Given::Linkage(file) => {
+            let shown = escaped(&argument.display().to_string());
+            Ok(vec![bare(*file, &shown, target)?])
+        }
+        Given::Run(run) => {
+            let record = &run.record;
+            let entries = run.chosen().into_iter().map(|chosen| Entry {
+                label: chosen.label,
+                candidate: chosen.candidate.clone(),
+                target: record.problem.resolved.task.path.points.clone(),
+                unit: record.problem.unit,
+            });
+            Ok(entries.collect())
+        }
     }
-    let (folder, which) = match argument.rsplit_once(':') {
-        Some((folder, rank)) if !path.exists() => match rank.parse::<usize>() {
-            Ok(rank) if rank >= 1 => (folder, Some(rank)),
-            _ => {
-                return Err(refuse(&format!(
-                    "{argument}: after the colon stands a candidate's rank, from 1"
-                )));
-            }
-        },
-        _ => (argument, None),
-    };
-    let record = read_record(Path::new(folder)).map_err(|e| refuse(&e.to_string()))?;
-    let n = record.candidates.len();
-    if let Some(rank) = which.filter(|rank| *rank > n) {
-        return Err(refuse(&format!("{argument}: there is no candidate {rank}, the result has {n}")));
-    }
-    let ranks = which.map_or(1..=n, |rank| rank..=rank);
-    let label =
-        |rank: usize| format!("{}:{rank}", folder.trim_end_matches("/record.json").trim_end_matches('/'));
-    Ok(ranks.filter_map(|rank| Entry::from_record(&label(rank), &record, rank - 1)).collect())
 }
 
 /// A linkage without a run: measured at the positions nearest to the target's points, or at its angles.
-fn bare(path: &Path, target: Option<&(ProblemFile, Problem)>) -> Result<Entry, Ended> {
-    let file = linkage_file::load(path).map_err(|diagnostic| {
-        terminal::diagnose(ReportKind::Error, &diagnostic);
-        Ended::Refused
-    })?;
-    let shown = escaped(&path.display().to_string());
+fn bare(file: LinkageFile, shown: &str, target: Option<&(ProblemFile, Problem)>) -> Result<Entry, Ended> {
     let Some((target_file, problem)) = target else {
         return Err(refuse(&format!(
             "{shown} is a linkage without a target: say which with --target PROBLEM.toml"

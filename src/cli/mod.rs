@@ -13,6 +13,7 @@ mod man;
 mod new;
 mod one_job;
 mod progress;
+mod result;
 mod suite;
 mod synth;
 mod terminal;

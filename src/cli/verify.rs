@@ -1,21 +1,25 @@
 //! `verify`: recompute a result.
 
 use super::arguments::Verify;
+use super::result::{self, Which};
 use super::{Ended, terminal};
 use crate::diagnostic::escaped;
-use crate::results_folder::read_record;
 
 /// Runs the command.
 pub fn run(options: &Verify) -> Ended {
     let mut ended = Ended::Good;
     for path in &options.results {
         let shown = escaped(&path.display().to_string());
-        let record = match read_record(path) {
-            Ok(record) => record,
-            Err(e) => {
-                terminal::complain(&e.to_string());
+        let record = match result::read_run_of(path, "verify") {
+            Ok(run) if run.which == Which::All => run.record,
+            Ok(run) => {
+                terminal::complain(&format!(
+                    "{shown}: a record is verified as a whole; give {} alone",
+                    run.named
+                ));
                 return Ended::Refused;
             }
+            Err(ended) => return ended,
         };
         match crate::verify::verify(&record) {
             Ok(mismatches) if mismatches.is_empty() => {
