@@ -1,0 +1,22 @@
+//! What stands between a linkage and a workshop: which plates need layers of their own, what comes near what, and
+//! how much a wrong dimension moves the path.
+//!
+//! Pure functions of a linkage and its motion, and of the target where there is one.
+//!
+//! | question | answer |
+//! |---|---|
+//! | which plates can share a plane, in which order do they stack? | [`layers::layering`] |
+//! | how near do pivots and pins come to each other? | [`clearance::pivot_distances`] |
+//! | how much does each dimension's error move the path? | [`sensitivity::sensitivity`] |
+//!
+//! Distances over a motion are least values with a proof ([`closest`]), not the least of samples.
+
+pub mod clearance;
+pub mod closest;
+pub mod layers;
+pub mod sensitivity;
+pub mod sweep;
+
+pub use clearance::{Build, Pin};
+pub use closest::Closest;
+pub use sweep::Sweep;
