@@ -31,6 +31,7 @@
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
+//! | [`plates`] | the links as plates with holes: outlines, distances between them | linkage |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
 //! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
@@ -51,6 +52,7 @@ mod input_text;
 pub mod linkage;
 pub mod linkage_file;
 pub mod name;
+pub mod plates;
 pub mod points_file;
 pub mod problem;
 pub mod problem_file;

@@ -56,6 +56,8 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("suite", &["record"]),
         ("analysis.rs", &["linkage", "record"]),
         ("analysis", &["linkage", "record"]),
+        ("plates.rs", &["linkage"]),
+        ("plates", &["linkage"]),
         ("record.rs", &["linkage", "task", "problem"]),
         ("record", &["linkage", "task", "problem"]),
         ("assess.rs", &["linkage", "task", "problem", "record"]),
