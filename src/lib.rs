@@ -38,6 +38,8 @@
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
 //! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, task, problem, record, analysis, suite |
+//! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, plates |
+//! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
@@ -54,6 +56,7 @@ pub mod linkage_file;
 pub mod name;
 pub mod plates;
 pub mod points_file;
+pub mod practicality;
 pub mod problem;
 pub mod problem_file;
 pub mod problem_template;
@@ -65,6 +68,7 @@ pub mod results_folder;
 pub mod run;
 pub mod schema;
 pub mod search;
+
 pub mod solve;
 pub mod suite;
 pub mod svg_file;

@@ -9,6 +9,9 @@ use crate::linkage::{AssemblyMode, Joints};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// A value is proved to within this part of itself, if the margin is less: what is far from touching need not be
+/// known to the last digit.
+pub const RELATIVE: f64 = 1e-3;
 /// Stretches that a motion is cut into to begin with, each.
 const FIRST: usize = 32;
 /// Evaluations at most; beyond them the bound stays further below than the margin, and says so.
@@ -53,7 +56,7 @@ impl Ord for Piece {
     }
 }
 
-/// The least value of `measure` over a motion, proved to within `margin`.
+/// The least value of `measure` over a motion, proved to within `margin` or [`RELATIVE`] of itself.
 ///
 /// `moves` says by how much `measure` can differ within a stretch, given how far the joints move. `None` where the
 /// loop is open in the motion, or the motion is empty.
@@ -65,7 +68,7 @@ pub fn closest(
 ) -> Option<Closest> {
     let mut best: Option<Closest> = None;
     let mut heap = BinaryHeap::new();
-    let mut put = |stretch: Stretch, heap: &mut BinaryHeap<Piece>, best: &mut Option<Closest>| {
+    let put = |stretch: Stretch, heap: &mut BinaryHeap<Piece>, best: &mut Option<Closest>| {
         let (joints, reach) = sweep.reach(&stretch)?;
         let value = measure(&joints);
         let bound = value - moves(&reach);
@@ -90,7 +93,7 @@ pub fn closest(
         let Stretch { from, to, .. } = piece.stretch;
         let middle = piece.stretch.middle();
         let indivisible = middle <= from || middle >= to;
-        if found.value - piece.bound <= margin || evaluations >= MOST || indivisible {
+        if found.value - piece.bound <= margin.max(RELATIVE * found.value.abs()) || evaluations >= MOST || indivisible {
             let refined = refine(sweep, &found, &measure);
             return Some(Closest { bound: piece.bound.min(refined.value), ..refined });
         }

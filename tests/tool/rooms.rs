@@ -67,6 +67,10 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("verify", &["assess", "linkage", "problem", "record", "search"]),
         ("results_folder.rs", &["record"]),
         ("results_folder", &[]),
+        ("practicality.rs", &[]),
+        ("practicality", &["linkage", "plates", "task"]),
+        ("snap.rs", &["assess", "linkage", "practicality", "problem", "record", "run", "search", "task"]),
+        ("snap", &["assess", "linkage", "practicality", "problem", "record", "run", "search", "task"]),
         ("diagnostic.rs", &[]),
         ("name.rs", &[]),
     ];
