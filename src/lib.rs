@@ -68,7 +68,7 @@ pub mod results_folder;
 pub mod run;
 pub mod schema;
 pub mod search;
-
+pub mod snap;
 pub mod solve;
 pub mod suite;
 pub mod svg_file;
