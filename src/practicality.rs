@@ -8,6 +8,7 @@
 //! | which plates can share a plane, in which order do they stack? | [`layers::layering`] |
 //! | how near do pivots and pins come to each other? | [`clearance::pivot_distances`] |
 //! | how much does each dimension's error move the path? | [`sensitivity::sensitivity`] |
+//! | all of it at once, for a candidate or a linkage by itself | [`Practicality`] |
 //!
 //! Distances over a motion are least values with a proof ([`closest`]), not the least of samples.
 
@@ -17,6 +18,9 @@ pub mod layers;
 pub mod sensitivity;
 pub mod sweep;
 
+mod subject;
+
 pub use clearance::{Build, Pin};
 pub use closest::Closest;
+pub use subject::{Practicality, crank_of};
 pub use sweep::Sweep;

@@ -15,6 +15,6 @@ mod search;
 mod stock;
 
 pub use record::{own_curve, record};
-pub use refit::{Fixed, Length};
-pub use search::{Request, SnapError, Snapped, crank_of, snap};
+pub use refit::{Fixed, Length, refit};
+pub use search::{Request, SnapError, Snapped, snap};
 pub use stock::{Stock, StockError};

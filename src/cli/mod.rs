@@ -5,6 +5,7 @@
 
 mod analyze;
 mod arguments;
+mod build;
 mod check;
 mod compare;
 mod inputs;
@@ -14,6 +15,7 @@ mod new;
 mod one_job;
 mod progress;
 mod result;
+mod snap;
 mod suite;
 mod synth;
 mod terminal;
@@ -76,6 +78,8 @@ fn dispatch(command: Command) -> Ended {
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
+        Command::Build(options) => build::run(&options),
+        Command::Snap(options) => snap::run(&options),
         Command::Suite(options) => suite::run(&options),
         Command::Schema { kind, markdown } => {
             terminal::answer(&match markdown {

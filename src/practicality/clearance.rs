@@ -17,6 +17,28 @@ pub struct Build {
     pub pin_radius: f64,
 }
 
+/// A hole where millimetres are known, millimetres; and where they are not, in parts of the longest link.
+const HOLE_MM: f64 = 4.0;
+const HOLE_SHARE: f64 = 1.0 / 40.0;
+/// A hole at most, in parts of the distance of the nearest two.
+const HOLE_BESIDE: f64 = 1.0 / 3.0;
+
+impl Build {
+    /// Plates with holes of this diameter and this much material around them.
+    pub fn new(hole: f64, margin: f64) -> Self {
+        Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole }
+    }
+
+    /// Holes of 4 mm (`millimetre`: what that is in the file's unit) or, where the unit is not known, of a fortieth of
+    /// the longest link; smaller where two holes of a plate stand near each other.
+    pub fn usual_hole(linkage: &FourBar, millimetre: Option<f64>) -> f64 {
+        let wanted = millimetre.map_or(HOLE_SHARE * linkage.longest_link(), |mm| HOLE_MM * mm);
+        let holes = [linkage.crank_side(), linkage.follower_side()];
+        let nearest = linkage.links().into_iter().chain(holes.into_iter().filter(|d| *d > 0.0));
+        wanted.min(HOLE_BESIDE * nearest.fold(f64::INFINITY, f64::min))
+    }
+}
+
 /// The pins, each of which joins two plates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pin {

@@ -11,8 +11,6 @@ use crate::search::polish::finish;
 use crate::search::rank::compare;
 use crate::search::warm::start_at;
 
-/// Evaluations of a fit at most.
-const EVALUATIONS: u64 = 200;
 /// A length is what it was fixed at when it is off by no more than this part of itself.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
@@ -148,11 +146,12 @@ impl Fixed {
 }
 
 /// A candidate fitted again with dimensions fixed, judged under the problem as it is; and the evaluations that it
-/// took. `None` where the fit cannot begin or end in a linkage.
+/// took, about `evaluations` at most. `None` where the fit cannot begin or end in a linkage.
 pub fn refit(
     problem: &Problem,
     candidate: &Candidate,
     fixed: &Fixed,
+    evaluations: u64,
     budget: &Budget<'_>,
 ) -> (Option<Candidate>, u64) {
     let design = &problem.spec().design;
@@ -162,11 +161,11 @@ pub fn refit(
     let held = fixed.follower_pivot.is_some()
         || design.follower_pivot.is_some_and(|b| b.iter().all(Limits::is_fixed));
     let polar = has_pivot && ground && !held;
-    let (found, mut used) = fit(problem, candidate, fixed, polar, budget);
+    let (found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
     let Some(found) = found else { return (None, used) };
     let out = |r: &crate::record::Requirement| !r.met && (r.name == "design.Bx" || r.name == "design.By");
     if polar && found.requirements.iter().any(out) {
-        let (within, more) = fit(problem, candidate, fixed, false, budget);
+        let (within, more) = fit(problem, candidate, fixed, (false, evaluations), budget);
         used += more;
         if let Some(within) = within.filter(|within| compare(problem, within, &found).is_lt()) {
             return (Some(within), used);
@@ -179,14 +178,14 @@ fn fit(
     problem: &Problem,
     candidate: &Candidate,
     fixed: &Fixed,
-    polar: bool,
+    (polar, evaluations): (bool, u64),
     budget: &Budget<'_>,
 ) -> (Option<Candidate>, u64) {
     let mut spec = problem.spec().clone();
     spec.design = fixed.design(&spec.design, polar);
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
     let Some(start) = start_at(&narrowed, candidate) else { return (None, 0) };
-    let fitted = finish(&narrowed, &start, EVALUATIONS, budget);
+    let fitted = finish(&narrowed, &start, evaluations, budget);
     let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
         let linkage = to_the_digit(&found.linkage, fixed)?;
         assess(problem, &linkage, &found.crank_deg, &found.t1_at)

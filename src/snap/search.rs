@@ -2,13 +2,13 @@
 
 use super::refit::{Fixed, Length, refit};
 use super::stock::Stock;
-use crate::practicality::sensitivity::{At, Crank, sensitivity};
+use crate::practicality::crank_of;
+use crate::practicality::sensitivity::{At, sensitivity};
 use crate::problem::Problem;
 use crate::problem::spec::Limits;
 use crate::record::{Candidate, Evaluations};
 use crate::search::Budget;
 use crate::search::rank::compare;
-use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -75,6 +75,12 @@ pub struct Snapped {
     pub evaluations: Evaluations,
 }
 
+/// Evaluations of a fit while choices are compared, and of the last ones, at most.
+const QUICK: u64 = 60;
+const THOROUGH: u64 = 400;
+/// Answers that are fitted thoroughly besides those that are wanted.
+const SPARE: usize = 4;
+
 /// A choice of stock lengths with what was fitted to it.
 #[derive(Clone)]
 struct Choice {
@@ -121,7 +127,7 @@ pub fn snap(
         near(length, candidate, 1).first().map_or(fixed.clone(), |value| fixed.with(length, *value))
     });
     let root = Choice { fixed: request.fixed.clone(), candidate: candidate.clone() };
-    let at_once = search.fitted(vec![(plain, candidate)]);
+    let at_once = search.fitted(vec![(plain, candidate)], THOROUGH);
     let mut beam = vec![root];
     for &length in &lengths {
         let choices = beam
@@ -131,7 +137,7 @@ pub fn snap(
                 values.into_iter().map(|value| (choice.fixed.with(length, value), &choice.candidate))
             })
             .collect();
-        let mut next = search.fitted(choices);
+        let mut next = search.fitted(choices, QUICK);
         next.truncate(BEAM);
         beam = next;
     }
@@ -141,7 +147,7 @@ pub fn snap(
     let nearest = at_once.first().map(|choice| choice.candidate.clone());
     let mut tried: BTreeSet<Vec<u64>> = beam.iter().chain(&at_once).map(|c| bits(&c.fixed)).collect();
     let mut all = beam;
-    all.extend(at_once.into_iter().filter(|one| !all.iter().any(|c| c.fixed == one.fixed)).collect::<Vec<_>>());
+    all.extend(at_once);
     search.sort(&mut all);
     let mut improved: BTreeSet<Vec<u64>> = BTreeSet::new();
     for _ in 0..ROUNDS {
@@ -158,10 +164,17 @@ pub fn snap(
                 }
             }
         }
-        let found = search.fitted(choices);
+        let found = search.fitted(choices, QUICK);
         all.extend(found);
         search.sort(&mut all);
     }
+    // The best once more from where they are, with all the patience that a result deserves.
+    let leaders: Vec<Choice> = all.iter().take(request.wanted.max(1) + SPARE).cloned().collect();
+    let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
+    all.extend(search.fitted(again, THOROUGH));
+    search.sort(&mut all);
+    let mut told: BTreeSet<Vec<u64>> = BTreeSet::new();
+    all.retain(|choice| told.insert(bits(&choice.fixed)));
     let accepted = all.first().is_some_and(|c| c.candidate.accepted);
     let candidates: Vec<Candidate> = all
         .into_iter()
@@ -200,13 +213,7 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
         .filter(|length| request.lengths.contains(length))
         .filter(free)
         .collect();
-    let at: Vec<At> = candidate
-        .crank_deg
-        .iter()
-        .zip(&candidate.t1_at)
-        .map(|(deg, assembly)| At { crank_angle: deg.to_radians(), assembly: *assembly })
-        .collect();
-    if let Some(felt) = sensitivity(&candidate.linkage, &at, crank_of(problem)) {
+    if let Some(felt) = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)) {
         let of = |length: &Length| match length {
             Length::Ground => felt.ground.rms,
             // d and e are each as much as both where the coupler is measured along and across.
@@ -215,16 +222,6 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
         lengths.sort_by(|x, y| of(y).total_cmp(&of(x)));
     }
     lengths
-}
-
-/// What the crank angles of a problem do when a dimension is off.
-pub fn crank_of(problem: &Problem) -> Crank {
-    match problem.task().timing() {
-        Timing::Free => Crank::Settles,
-        Timing::Prescribed { offset: AngleOffset::Free, .. } => Crank::OffsetIsSet,
-        Timing::Prescribed { offset: AngleOffset::Fixed, .. } => Crank::Stays,
-        Timing::Prescribed { offset: AngleOffset::Ground, .. } => Crank::TurnsWithGround,
-    }
 }
 
 /// A choice as something that can be told from another.
@@ -266,12 +263,12 @@ fn neighbours(
 
 impl Search<'_> {
     /// What comes of choices, best first; those that cannot be fitted left out.
-    fn fitted(&mut self, choices: Vec<(Fixed, &Candidate)>) -> Vec<Choice> {
+    fn fitted(&mut self, choices: Vec<(Fixed, &Candidate)>, evaluations: u64) -> Vec<Choice> {
         self.fits += choices.len() as u64;
         let fitted: Vec<(Option<Choice>, u64)> = choices
             .into_par_iter()
             .map(|(fixed, from)| {
-                let (candidate, used) = refit(self.problem, from, &fixed, self.budget);
+                let (candidate, used) = refit(self.problem, from, &fixed, evaluations, self.budget);
                 (candidate.map(|candidate| Choice { fixed, candidate }), used)
             })
             .collect();
