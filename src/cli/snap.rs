@@ -108,7 +108,10 @@ fn subject(path: &Path) -> Result<Subject, Ended> {
     match result::read(path)? {
         Given::Linkage(file) => {
             let (problem, candidate) = own_curve(&file.linkage).ok_or_else(|| {
-                refuse(&format!("{} cannot be assembled, so it has no curve to keep", escaped(&path.display().to_string())))
+                refuse(&format!(
+                    "{} cannot be assembled, so it has no curve to keep",
+                    escaped(&path.display().to_string())
+                ))
             })?;
             let label = format!("{}, measured on its own coupler curve", clean(&file.name));
             Ok(Subject { label, name: file.name, source: None, unit: file.unit, problem, candidate })
@@ -118,10 +121,19 @@ fn subject(path: &Path) -> Result<Subject, Ended> {
             let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
             let asked = run.record.problem;
             let problem = Problem::new(asked.resolved).map_err(|e| refuse(&e.to_string()))?;
-            if candidate.crank_deg.len() != problem.task().len() || candidate.t1_at.len() != problem.task().len() {
+            if candidate.crank_deg.len() != problem.task().len()
+                || candidate.t1_at.len() != problem.task().len()
+            {
                 return Err(refuse(&format!("{label} has no position for each of the target's points")));
             }
-            Ok(Subject { label, name: asked.name, source: asked.source, unit: asked.unit, problem, candidate })
+            Ok(Subject {
+                label,
+                name: asked.name,
+                source: asked.source,
+                unit: asked.unit,
+                problem,
+                candidate,
+            })
         }
     }
 }
@@ -155,7 +167,9 @@ fn shortened(name: &str) -> String {
 /// Writes the record with everything that stands beside it, or the best linkage alone; where it is now.
 fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
     let told = |e: &dyn std::fmt::Display| refuse(&e.to_string());
-    if let Some(path) = options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))) {
+    if let Some(path) =
+        options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
+    {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
         let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
         write_file(path, text.as_bytes()).map_err(|e| told(&e))?;
@@ -164,7 +178,12 @@ fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> R
     let place = options.out.clone().unwrap_or_else(|| Path::new("results").join(&record.problem.name));
     let mut folder = ResultsFolder::take(&place).map_err(|e| told(&e))?;
     let total_s = begun.elapsed().as_secs_f64();
-    let timing = synth::Timing { search_s, beside_s: total_s - search_s, total_s, threads: rayon::current_num_threads() };
+    let timing = synth::Timing {
+        search_s,
+        beside_s: total_s - search_s,
+        total_s,
+        threads: rayon::current_num_threads(),
+    };
     let files = synth::files(record, &timing).map_err(|e| told(&e))?;
     folder.replace(&files).map_err(|e| told(&e))?;
     Ok(place)

@@ -93,7 +93,10 @@ pub fn closest(
         let Stretch { from, to, .. } = piece.stretch;
         let middle = piece.stretch.middle();
         let indivisible = middle <= from || middle >= to;
-        if found.value - piece.bound <= margin.max(RELATIVE * found.value.abs()) || evaluations >= MOST || indivisible {
+        if found.value - piece.bound <= margin.max(RELATIVE * found.value.abs())
+            || evaluations >= MOST
+            || indivisible
+        {
             let refined = refine(sweep, &found, &measure);
             return Some(Closest { bound: piece.bound.min(refined.value), ..refined });
         }
@@ -112,7 +115,8 @@ fn refine(sweep: &Sweep, found: &Closest, measure: &impl Fn(&Joints) -> f64) -> 
     const AROUND: f64 = 0.02;
     let mut best = *found;
     let mut try_at = |angle: f64, assembly: AssemblyMode| {
-        let value = sweep.linkage.position_with(angle, assembly).joints().map_or(f64::INFINITY, |j| measure(&j));
+        let value =
+            sweep.linkage.position_with(angle, assembly).joints().map_or(f64::INFINITY, |j| measure(&j));
         if value < best.value {
             best = Closest { value, crank_angle: angle, assembly, bound: value };
         }

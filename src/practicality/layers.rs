@@ -115,9 +115,9 @@ impl Layering {
                 let digit = |i: u32| (code / count.pow(i)) % count;
                 [digit(0), digit(1), digit(2), digit(3)]
             });
-            let fits =
-                all.filter(|places| (0..count).all(|l| places.contains(&l)) && self.works(places));
-            let through = |places: &Places| Pin::ALL.iter().map(|pin| between(places, *pin).len()).sum::<usize>();
+            let fits = all.filter(|places| (0..count).all(|l| places.contains(&l)) && self.works(places));
+            let through =
+                |places: &Places| Pin::ALL.iter().map(|pin| between(places, *pin).len()).sum::<usize>();
             let merit = |places: &Places| {
                 let coupler = layer(places, Link::Coupler);
                 let inside = coupler != 0 && coupler + 1 != count;
@@ -146,8 +146,7 @@ impl Layering {
             layer(places, one) != layer(places, other) || clear(&pair.closest)
         });
         let crossed = |pin: Pin, plate: Link| between(places, pin).contains(&layer(places, plate));
-        let plates =
-            self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
+        let plates = self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
         let side_by_side = |pins: [Pin; 2]| {
             let [one, other] = pins.map(|pin| between(places, pin));
             one.start.max(other.start) < one.end.min(other.end)

@@ -150,13 +150,13 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
         rows.push((row, by_crank));
     }
     settle(&mut rows, crank);
-    let of = |k: usize, name: &'static str| dimension(name, &places, rows.iter().map(|(row, _)| length(row[k])));
+    let of =
+        |k: usize, name: &'static str| dimension(name, &places, rows.iter().map(|(row, _)| length(row[k])));
     let mut names = ["Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e"];
     if flat {
         (names[7], names[8]) = ("coupler_x", "coupler_y");
     }
-    let together =
-        rows.iter().map(|(row, _)| row[..9].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
+    let together = rows.iter().map(|(row, _)| row[..9].iter().map(Complex::norm_sqr).sum::<f64>().sqrt());
     let all = dimension("all", &places, together)?;
     let mut dimensions = [all; 9];
     for (k, name) in names.into_iter().enumerate() {
@@ -200,11 +200,7 @@ fn settle(rows: &mut [([Complex; 10], Complex)], crank: Crank) {
     }
 }
 
-fn dimension(
-    name: &'static str,
-    places: &[usize],
-    shifts: impl Iterator<Item = f64>,
-) -> Option<Dimension> {
+fn dimension(name: &'static str, places: &[usize], shifts: impl Iterator<Item = f64>) -> Option<Dimension> {
     let mut of = Dimension { name, rms: 0.0, worst: 0.0, worst_at: *places.first()? };
     for (&place, shift) in places.iter().zip(shifts) {
         of.rms += shift * shift;

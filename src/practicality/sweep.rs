@@ -77,11 +77,7 @@ impl Sweep {
         };
         let [from, to] = [arc.middle - arc.half_width, arc.middle + arc.half_width];
         let assembly = linkage.assembly();
-        Some(Sweep {
-            linkage: *linkage,
-            stretches: vec![Stretch { from, to, assembly }],
-            full_turn: false,
-        })
+        Some(Sweep { linkage: *linkage, stretches: vec![Stretch { from, to, assembly }], full_turn: false })
     }
 
     /// The motion through the points of a task. With `cycle` all of the circuit: the full turn, or both branches

@@ -36,7 +36,9 @@ pub fn practicality_text(
     out.push_str(&words.head("How much a wrong dimension moves the path"));
     match &practicality.sensitivity {
         Some(felt) => out.push_str(&words.sensitivity(felt, practicality.at_points, tolerance)),
-        None => out.push_str("  At every position looked at the linkage stands at a toggle: there are no derivatives.\n"),
+        None => out.push_str(
+            "  At every position looked at the linkage stands at a toggle: there are no derivatives.\n",
+        ),
     }
     out
 }
@@ -66,7 +68,10 @@ impl Words {
                 let of = |s: &crate::practicality::sweep::Stretch| {
                     format!("{} to {}", degrees(s.from), degrees(s.to))
                 };
-                format!("crank {}", practicality.sweep.stretches.iter().map(of).collect::<Vec<_>>().join(", "))
+                format!(
+                    "crank {}",
+                    practicality.sweep.stretches.iter().map(of).collect::<Vec<_>>().join(", ")
+                )
             }
         };
         let text = format!(
@@ -108,7 +113,9 @@ impl Words {
                 );
             }
         }
-        line("Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) overlap at it and never share a layer.");
+        line(
+            "Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) overlap at it and never share a layer.",
+        );
         out
     }
 
@@ -128,7 +135,10 @@ impl Words {
 
     fn crossing(&self, p: &PinPlate) -> String {
         let (pin, plate) = (p.pin.name(), p.plate.name());
-        format!("A pin {pin} that stood through the layer of the {plate} would cross it ({}).", at(&p.closest))
+        format!(
+            "A pin {pin} that stood through the layer of the {plate} would cross it ({}).",
+            at(&p.closest)
+        )
     }
 
     fn through(
@@ -141,7 +151,14 @@ impl Words {
         let beside: Vec<String> = stack.layers[layer]
             .iter()
             .filter_map(|plate| layering.pins_plates.iter().find(|p| p.pin == pin && p.plate == *plate))
-            .map(|p| format!("never nearer than {} to the {} ({})", self.length(p.closest.value), p.plate.name(), at(&p.closest)))
+            .map(|p| {
+                format!(
+                    "never nearer than {} to the {} ({})",
+                    self.length(p.closest.value),
+                    p.plate.name(),
+                    at(&p.closest)
+                )
+            })
             .collect();
         format!("Pin {} stands through layer {}: {}.", pin.name(), layer + 1, beside.join(", "))
     }
@@ -216,7 +233,10 @@ impl Words {
             text.push_str(" P lies nearly on the line C-D, where d and e hardly say where: coupler_x and coupler_y are P along and across it.");
         }
         if !felt.at_toggles.is_empty() {
-            text.push_str(&format!(" {} positions at a toggle have no derivative and are left out.", felt.at_toggles.len()));
+            text.push_str(&format!(
+                " {} positions at a toggle have no derivative and are left out.",
+                felt.at_toggles.len()
+            ));
         }
         out.push_str(&wrapped("  ", "  ", &text, COLUMNS));
         out
@@ -229,7 +249,9 @@ fn settles(crank: Crank) -> &'static str {
         Crank::Settles => "across the path (along it, a point is only passed earlier or later)",
         Crank::OffsetIsSet => "with the crank's common offset set anew so that the points move least",
         Crank::Stays => "at the same crank angles",
-        Crank::TurnsWithGround => "at the same crank angles from the ground line, which turns with the pivots",
+        Crank::TurnsWithGround => {
+            "at the same crank angles from the ground line, which turns with the pivots"
+        }
     }
 }
 

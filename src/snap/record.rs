@@ -72,8 +72,10 @@ pub fn own_curve(linkage: &FourBar) -> Option<(Problem, Candidate)> {
         .iter()
         .map(|at| Some(xy(linkage.position_with(at.crank_angle, at.assembly).joints()?.coupler_point)))
         .collect::<Option<Vec<_>>>()?;
-    let require =
-        RequireSpec { link_ratio_max: RequireSpec::default().link_ratio_max.max(2.0 * linkage.link_ratio()), ..RequireSpec::default() };
+    let require = RequireSpec {
+        link_ratio_max: RequireSpec::default().link_ratio_max.max(2.0 * linkage.link_ratio()),
+        ..RequireSpec::default()
+    };
     let path =
         PathSpec { points, closed: sweep.full_turn, weight: None, tolerance: None, timing: None, raw: None };
     let spec = ProblemSpec {

@@ -161,7 +161,15 @@ pub fn refit(
     let held = fixed.follower_pivot.is_some()
         || design.follower_pivot.is_some_and(|b| b.iter().all(Limits::is_fixed));
     let polar = has_pivot && ground && !held;
-    let (found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
+    let (mut found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
+    if found.is_none() && held && fixed.crank_pivot.is_none() {
+        // Then with A where it begins on its circle.
+        if let Some(linkage) = on_its_circle(&candidate.linkage, fixed) {
+            let still = Fixed { crank_pivot: Some(xy(linkage.crank_pivot())), ..fixed.clone() };
+            let (there, more) = fit(problem, candidate, &still, (polar, evaluations), budget);
+            (found, used) = (there, used + more);
+        }
+    }
     let Some(found) = found else { return (None, used) };
     let out = |r: &crate::record::Requirement| !r.met && (r.name == "design.Bx" || r.name == "design.By");
     if polar && found.requirements.iter().any(out) {
@@ -184,13 +192,27 @@ fn fit(
     let mut spec = problem.spec().clone();
     spec.design = fixed.design(&spec.design, polar);
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
-    let Some(start) = start_at(&narrowed, candidate) else { return (None, 0) };
+    // Where A goes round a B that is held, the fit has to begin at the right distance: it is a condition, no number
+    // of the design.
+    let moved = (!polar)
+        .then(|| on_its_circle(&candidate.linkage, fixed))
+        .flatten()
+        .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
+    let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
     let fitted = finish(&narrowed, &start, evaluations, budget);
     let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
         let linkage = to_the_digit(&found.linkage, fixed)?;
         assess(problem, &linkage, &found.crank_deg, &found.t1_at)
     });
     (found, fitted.evaluations)
+}
+
+/// The linkage with A moved along the ground line to where a fixed ground puts it; `None` where it is not fixed.
+fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
+    let ground = fixed.get(Length::Ground)?;
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    let moved = b - (b - a) * (ground / linkage.ground());
+    FourBar::new(NaturalCoordinates { crank_pivot: xy(moved), ..linkage.natural_coordinates() }).ok()
 }
 
 /// The linkage with its fixed lengths at exactly what they were fixed at, where a fit has left them a hair away: the

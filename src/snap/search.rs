@@ -40,7 +40,9 @@ pub enum SnapError {
     #[error("every length is kept or fixed, by the command or by the problem: there is nothing to snap")]
     NothingToSnap,
     /// The problem's limits leave no stock length.
-    #[error("no stock length ({stock}) lies within the problem's limits for {key}, {low} to {high}: give a finer stock, or leave {key} out with --snap")]
+    #[error(
+        "no stock length ({stock}) lies within the problem's limits for {key}, {low} to {high}: give a finer stock, or leave {key} out with --snap"
+    )]
     NoStock {
         /// The length.
         key: &'static str,
@@ -52,7 +54,9 @@ pub enum SnapError {
         high: f64,
     },
     /// No combination near the candidate is a linkage that can be assembled at every point.
-    #[error("no combination of stock lengths near this linkage can be assembled at every point of the target: give a finer stock, or fewer lengths with --snap")]
+    #[error(
+        "no combination of stock lengths near this linkage can be assembled at every point of the target: give a finer stock, or fewer lengths with --snap"
+    )]
     NoneFits,
     /// It was interrupted before there was an answer.
     #[error("interrupted before there was an answer")]
@@ -208,11 +212,8 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
             && !length.limits(design).is_fixed()
             && !(*length == Length::Ground && both_pivots)
     };
-    let mut lengths: Vec<Length> = Length::ALL
-        .into_iter()
-        .filter(|length| request.lengths.contains(length))
-        .filter(free)
-        .collect();
+    let mut lengths: Vec<Length> =
+        Length::ALL.into_iter().filter(|length| request.lengths.contains(length)).filter(free).collect();
     if let Some(felt) = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)) {
         let of = |length: &Length| match length {
             Length::Ground => felt.ground.rms,

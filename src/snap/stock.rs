@@ -19,7 +19,9 @@ pub enum StockError {
     #[error("there is no length in the list: give at least one")]
     Empty,
     /// Text that is no number.
-    #[error("line {line}: `{text}` is not a number; write one length a line or several separated by commas or spaces, comments after #")]
+    #[error(
+        "line {line}: `{text}` is not a number; write one length a line or several separated by commas or spaces, comments after #"
+    )]
     NotANumber {
         /// Counted from 1.
         line: usize,
@@ -29,7 +31,11 @@ pub enum StockError {
 }
 
 fn checked(value: f64) -> Result<f64, StockError> {
-    if value > 0.0 && value < crate::linkage::MAX_MAGNITUDE { Ok(value) } else { Err(StockError::NotPositive(value)) }
+    if value > 0.0 && value < crate::linkage::MAX_MAGNITUDE {
+        Ok(value)
+    } else {
+        Err(StockError::NotPositive(value))
+    }
 }
 
 impl Stock {
@@ -95,9 +101,7 @@ impl Stock {
             Stock::Grid(step) => format!("multiples of {step}"),
             Stock::List(list) => match list.len() {
                 1 => format!("the one length {}", list[0]),
-                n if n <= 6 => {
-                    list.iter().map(|l| l.to_string()).collect::<Vec<_>>().join(", ")
-                }
+                n if n <= 6 => list.iter().map(|l| l.to_string()).collect::<Vec<_>>().join(", "),
                 n => format!("{n} lengths from {} to {}", list[0], list[n - 1]),
             },
         }

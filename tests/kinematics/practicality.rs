@@ -2,11 +2,12 @@
 
 use crate::random::{TYPES, linkage};
 use linkwright::linkage::{
-    AssemblyMode, Complex, CouplerCurve, CouplerSide, FourBar, Joints, LinkageType, NaturalCoordinates, cross, dot,
+    AssemblyMode, Complex, CouplerCurve, CouplerSide, FourBar, Joints, LinkageType, NaturalCoordinates,
+    cross, dot,
 };
 use linkwright::plates::{Edge, Link, Plate};
-use linkwright::practicality::closest::RELATIVE;
 use linkwright::practicality::clearance::{MARGIN, Workpieces, pivot_distances};
+use linkwright::practicality::closest::RELATIVE;
 use linkwright::practicality::layers::{FREE_PAIRS, clear, layering};
 use linkwright::practicality::sensitivity::{At, Crank, Sensitivity, along, is_flat, sensitivity};
 use linkwright::practicality::{Build, Pin, Sweep};
@@ -175,9 +176,12 @@ fn pivots_are_as_near_as_the_closed_forms_say() {
             let wanted = (l.coupler() - l.follower()).abs();
             assert!((of(["B", "C"]).closest.value - wanted).abs() <= slack);
         }
-        for (between, wanted) in
-            [(["A", "C"], l.crank()), (["B", "D"], l.follower()), (["C", "D"], l.coupler()), (["A", "B"], l.ground())]
-        {
+        for (between, wanted) in [
+            (["A", "C"], l.crank()),
+            (["B", "D"], l.follower()),
+            (["C", "D"], l.coupler()),
+            (["A", "B"], l.ground()),
+        ] {
             assert!(of(between).fixed && (of(between).closest.value - wanted).abs() <= slack);
         }
     }
@@ -236,8 +240,12 @@ fn the_fewest_layers_are_those_of_every_stacking_tried_by_brute_force() {
     let mut seen = std::collections::BTreeMap::new();
     for (i, (l, sweep, build)) in swept(44, 150).enumerate() {
         let found = layering(&sweep, build).expect("it closes");
-        let near = found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));
-        if near.chain(found.pins.iter().map(|p| p.closest)).any(|c| c.value.abs() < 2.0 * MARGIN * l.longest_link()) {
+        let near =
+            found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));
+        if near
+            .chain(found.pins.iter().map(|p| p.closest))
+            .any(|c| c.value.abs() < 2.0 * MARGIN * l.longest_link())
+        {
             continue;
         }
         let count = found.stack.as_ref().map(|stack| stack.layers.len());
@@ -272,7 +280,10 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
     // A coupler that reaches over it lies above everything, on a crank pin that goes round outside.
     let l = drag(Complex::new(15.0, -60.0));
     let found = stack(&l, &Sweep::of_linkage(&l).expect("joined"), slim).expect("there is one");
-    assert_eq!(found.layers, [[Link::Crank], [Link::Ground], [Link::Follower], [Link::Coupler]].map(Vec::from));
+    assert_eq!(
+        found.layers,
+        [[Link::Crank], [Link::Ground], [Link::Follower], [Link::Coupler]].map(Vec::from)
+    );
     assert_eq!(found.through, [(Pin::C, 1), (Pin::C, 2)]);
     // With plates so broad that this pin, never more than 30 from B, cannot pass, nothing works.
     let broad = Build { plate_radius: 24.0, pin_radius: 8.0 };
@@ -394,7 +405,11 @@ fn each_dimension_moves_the_path_as_much_as_when_it_is_changed_by_a_little() {
                 let Sensitivity { dimensions, .. } = &found;
                 let slack = 2e-3 * found.band.max(found.worst);
                 assert!((dimensions[k].rms - rms).abs() <= slack, "{crank:?} {:?} {rms}", dimensions[k]);
-                assert!((dimensions[k].worst - worst).abs() <= slack, "{crank:?} {:?} {worst}", dimensions[k]);
+                assert!(
+                    (dimensions[k].worst - worst).abs() <= slack,
+                    "{crank:?} {:?} {worst}",
+                    dimensions[k]
+                );
             }
         }
     }
