@@ -203,13 +203,13 @@ pub struct Build {
     #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
-    #[arg(long, value_name = "D", value_parser = positive)]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
     pub hole: Option<f64>,
     /// Material around a hole [default: as much as its diameter]
-    #[arg(long, value_name = "M", value_parser = positive)]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
     pub margin: Option<f64>,
     /// The standard deviation of every dimension [default: 0.1 mm, without a unit a thousandth of the longest link]
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = positive)]
     pub tolerance: Option<f64>,
 }
 
@@ -221,10 +221,10 @@ pub struct Snap {
     #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The stock: multiples of this, in the file's unit
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
     pub grid: Option<f64>,
     /// The stock: these lengths, separated by commas
-    #[arg(long, value_name = "L,..", value_delimiter = ',', value_parser = positive)]
+    #[arg(long, value_name = "L,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
     pub lengths: Option<Vec<f64>>,
     /// The stock: the lengths in this text file, one a line or separated by commas
     #[arg(long, value_name = "FILE")]

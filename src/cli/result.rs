@@ -73,7 +73,6 @@ impl Run {
     ///
     /// # Errors
     /// [`Ended::Bad`], told, where the result has none.
-    #[allow(dead_code)]
     pub fn one(&self) -> Result<Chosen<'_>, Ended> {
         self.chosen().into_iter().next().ok_or_else(|| {
             terminal::complain(&format!("{} has no candidate: the run found none", self.named));

@@ -132,7 +132,7 @@ fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
         let least = |of: &dyn Fn(&Joints) -> f64| {
             positions.iter().map(|(_, _, j)| of(j)).fold(f64::INFINITY, f64::min)
         };
-        let mut check = |what: &str, closest: &linkwright::practicality::Closest, sampled: f64| {
+        let check = |what: &str, closest: &linkwright::practicality::Closest, sampled: f64| {
             let slack = 1e-9 * size;
             let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + slack;
             assert!(closest.bound <= sampled + slack, "{i} {what}: {closest:?}, sampled {sampled}");
