@@ -37,8 +37,10 @@
 //! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
-//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, linkage_file, task, problem, record, analysis, suite |
 //! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | linkage, plates, record, report, analysis, linkage_file, name |
+//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, linkage_file, task, problem, record, analysis, suite, plates, practicality, snap |
+//! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
+//! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
@@ -56,6 +58,7 @@ pub mod linkage_file;
 pub mod name;
 pub mod plates;
 pub mod points_file;
+pub mod practicality;
 pub mod problem;
 pub mod problem_file;
 pub mod problem_template;
@@ -67,6 +70,7 @@ pub mod results_folder;
 pub mod run;
 pub mod schema;
 pub mod search;
+pub mod snap;
 pub mod solve;
 pub mod suite;
 pub mod svg_file;

@@ -4,6 +4,7 @@ use crate::analysis::PositionMethod;
 use crate::export::Format;
 use crate::report::compare::SortKey;
 use crate::schema::SchemaKind;
+use crate::snap::Length;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -42,6 +43,10 @@ pub enum Command {
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
     Cognates(Cognates),
+    /// What it takes to build a linkage: layers, least distances, sensitivity to each dimension
+    Build(Build),
+    /// Bring the lengths of a linkage to stock sizes and fit the rest again
+    Snap(Snap),
     /// Run problems whose answer is known from many seeds, beside what was published
     Suite(Suite),
     /// Write a linkage as a file to build from: drawings in millimetres, DXF, STL, OpenSCAD, lists
@@ -223,6 +228,53 @@ pub struct Cognates {
     pub svg: Option<PathBuf>,
 }
 
+/// Options of `build`.
+#[derive(Debug, Args)]
+pub struct Build {
+    /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
+    pub hole: Option<f64>,
+    /// Material around a hole [default: as much as its diameter]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
+    pub margin: Option<f64>,
+    /// The standard deviation of every dimension [default: 0.1 mm, without a unit a thousandth of the longest link]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = positive)]
+    pub tolerance: Option<f64>,
+}
+
+/// Options of `snap`.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("stock").required(true).args(["grid", "lengths", "pitches"]))]
+pub struct Snap {
+    /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// The stock: multiples of this, in the file's unit
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
+    pub grid: Option<f64>,
+    /// The stock: these lengths, separated by commas
+    #[arg(long, value_name = "L,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    pub lengths: Option<Vec<f64>>,
+    /// The stock: the lengths in this text file, one a line or separated by commas
+    #[arg(long, value_name = "FILE")]
+    pub pitches: Option<PathBuf>,
+    /// Which hole distances are snapped
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', default_value = "ground,a,b,c,d,e", value_parser = length)]
+    pub snap: Vec<Length>,
+    /// What stays exactly as it is: ground, a, b, c, d, e, A, B, ground_angle_deg
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = kept)]
+    pub keep: Vec<String>,
+    /// Put a dimension at a value of its own: ground, a, b, c, d, e, ground_angle_deg
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = dimension)]
+    pub set: Vec<(String, f64)>,
+    /// Where the result goes: a folder, or FILE.toml for the best linkage alone [default: results/NAME-snapped]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
 /// Options of `suite`.
 #[derive(Debug, Args)]
 pub struct Suite {
@@ -265,6 +317,36 @@ fn finite(text: &str) -> Result<f64, String> {
         Ok(number) if number.abs() <= crate::linkage::MAX_MAGNITUDE => Ok(number),
         Ok(_) => Err("a finite number below 1e12 in magnitude is needed".into()),
         Err(_) => Err("this is not a number".into()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number > 0.0 => Ok(number),
+        _ => Err("a number above 0 is needed".into()),
+    }
+}
+
+fn length(text: &str) -> Result<Length, String> {
+    Length::named(text.trim()).ok_or_else(|| "a hole distance is one of ground, a, b, c, d, e".into())
+}
+
+fn kept(text: &str) -> Result<String, String> {
+    let key = text.trim();
+    match Length::named(key).is_some() || ["A", "B", "ground_angle_deg"].contains(&key) {
+        true => Ok(key.into()),
+        false => Err("what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg".into()),
+    }
+}
+
+fn dimension(text: &str) -> Result<(String, f64), String> {
+    let (key, value) = key_value(text)?;
+    if Length::named(&key).is_some() {
+        return Ok((key, positive(&value)?));
+    }
+    match key.as_str() {
+        "ground_angle_deg" => Ok((key, finite(&value)?)),
+        _ => Err("what can be set is one of ground, a, b, c, d, e, ground_angle_deg".into()),
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod analyze;
 mod arguments;
+mod build;
 mod check;
 mod compare;
 mod export;
@@ -17,6 +18,7 @@ mod one_job;
 mod progress;
 mod report;
 mod result;
+mod snap;
 mod suite;
 mod synth;
 mod terminal;
@@ -80,6 +82,8 @@ fn dispatch(command: Command) -> Ended {
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
         Command::Report(options) => report::run(&options),
+        Command::Build(options) => build::run(&options),
+        Command::Snap(options) => snap::run(&options),
         Command::Suite(options) => suite::run(&options),
         Command::Export(options) => export::run(&options),
         Command::Schema { kind, markdown } => {

@@ -10,7 +10,7 @@
 
 use super::{PathTask, Timing};
 use crate::linkage::{
-    AssemblyMode, Circuit, Complex, FourBar, InputRange, Joints, Mobility,
+    AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility,
     mobility::wrapped,
     transmission::{TransmissionExtremes, angle_opposite},
 };
@@ -327,5 +327,21 @@ impl UsedMotion {
     /// Whether the input turns fully.
     pub fn input_turns_fully(&self) -> bool {
         self.mobility.input == InputRange::Full
+    }
+
+    /// The linkage, closed as at the first point.
+    pub fn linkage(&self) -> &FourBar {
+        &self.linkage
+    }
+
+    /// The arc on which the crank rocks, whose psi is then the parameter; `None` where the parameter is the crank
+    /// angle.
+    pub fn arc(&self) -> Option<InputArc> {
+        self.mobility.arc(self.circuit).filter(|_| self.rocks)
+    }
+
+    /// The parameter's range, low to high, at most a whole turn.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
     }
 }

@@ -8,6 +8,9 @@ mod loop_closure;
 mod mobility;
 mod motion;
 mod position;
+mod practicality;
+#[path = "../common/random.rs"]
+mod random;
 mod referee;
 #[path = "../reference/mod.rs"]
 mod reference;

@@ -15,5 +15,6 @@ mod reduced;
 mod requirements;
 mod resuming;
 mod search;
+mod snapping;
 mod suite;
 mod timed_search;

@@ -4,6 +4,7 @@ mod analysis_sheets;
 mod analyze;
 mod bad_input;
 mod batches;
+mod building;
 mod command_line;
 #[path = "../common/mod.rs"]
 mod common;

@@ -1,0 +1,278 @@
+//! What stands between a linkage and a workshop, as text: layers, distances, sensitivities.
+
+use super::grid::{Align, Colour, Grid, Ink};
+use super::text::{brief, significant, wrapped};
+use crate::plates::Link;
+use crate::practicality::clearance::PivotDistance;
+use crate::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
+use crate::practicality::sensitivity::{Crank, Dimension, Sensitivity};
+use crate::practicality::{Closest, Practicality};
+use crate::record::Unit;
+
+/// The width of the page.
+const COLUMNS: usize = 100;
+/// Significant digits of lengths and rates.
+const DIGITS: usize = 3;
+
+/// Everything, for a standard deviation `tolerance` of each dimension.
+pub fn practicality_text(
+    practicality: &Practicality,
+    unit: Option<Unit>,
+    tolerance: f64,
+    colour: Colour,
+) -> String {
+    let words = Words { unit, colour };
+    let mut out = words.head("Layers");
+    out.push_str(&words.made(practicality));
+    match &practicality.layering {
+        Some(layering) => out.push_str(&words.layers(layering)),
+        None => out.push_str(OPEN),
+    }
+    out.push_str(&words.head("Least distances of joints over the motion"));
+    match &practicality.distances {
+        Some(distances) => out.push_str(&words.distances(distances, 2.0 * practicality.build.pin_radius)),
+        None => out.push_str(OPEN),
+    }
+    out.push_str(&words.head("How much a wrong dimension moves the path"));
+    match &practicality.sensitivity {
+        Some(felt) => out.push_str(&words.sensitivity(felt, practicality.at_points, tolerance)),
+        None => out.push_str(
+            "  At every position looked at the linkage stands at a toggle: there are no derivatives.\n",
+        ),
+    }
+    out
+}
+
+const OPEN: &str = "  The loop is open somewhere in the motion: nothing can be said.\n";
+
+struct Words {
+    unit: Option<Unit>,
+    colour: Colour,
+}
+
+impl Words {
+    fn head(&self, text: &str) -> String {
+        format!("{}\n", self.colour.paint(Ink::Strong, text))
+    }
+
+    fn length(&self, value: f64) -> String {
+        let unit = self.unit.map_or(String::new(), |u| format!(" {}", u.label()));
+        format!("{}{unit}", brief(value, DIGITS))
+    }
+
+    fn made(&self, practicality: &Practicality) -> String {
+        let (radius, pin) = (practicality.build.plate_radius, practicality.build.pin_radius);
+        let motion = match practicality.sweep.full_turn {
+            true => "the full turn of the crank".to_owned(),
+            false => {
+                let of = |s: &crate::practicality::sweep::Stretch| {
+                    format!("{} to {}", degrees(s.from), degrees(s.to))
+                };
+                format!(
+                    "crank {}",
+                    practicality.sweep.stretches.iter().map(of).collect::<Vec<_>>().join(", ")
+                )
+            }
+        };
+        let text = format!(
+            "Holes {}, plates {} around them; over {motion}.",
+            self.length(2.0 * pin),
+            self.length(radius - pin)
+        );
+        wrapped("  ", "  ", &text, COLUMNS)
+    }
+
+    fn layers(&self, layering: &Layering) -> String {
+        let mut out = String::new();
+        let mut line = |text: &str| out.push_str(&wrapped("  ", "    ", text, COLUMNS));
+        let (_, crossed) = layering.obstacles();
+        match &layering.stack {
+            Some(stack) => {
+                line(&format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)));
+                for pair in &layering.free_pairs {
+                    line(&self.pair(pair));
+                }
+                for (pin, layer) in &stack.through {
+                    line(&self.through(layering, stack, *pin, *layer));
+                }
+            }
+            None => {
+                line(&self.colour.paint(
+                    Ink::Bad,
+                    "No stacking of the four plates works, each in one layer, the ground in one piece.",
+                ));
+                for pair in &layering.free_pairs {
+                    line(&self.pair(pair));
+                }
+                for p in &crossed {
+                    line(&self.crossing(p));
+                }
+                line(
+                    "What always works: the ground on both sides, in five layers: ground, crank, coupler, follower, \
+                     ground. The two halves are joined outside of where the links reach.",
+                );
+            }
+        }
+        line(
+            "Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) overlap at it and never share a layer.",
+        );
+        out
+    }
+
+    fn pair(&self, pair: &PlatePair) -> String {
+        let [one, other] = pair.plates.map(Link::name);
+        let Closest { value, .. } = pair.closest;
+        let at = at(&pair.closest);
+        let names = format!("{} and {other}", capitalised(one));
+        if clear(&pair.closest) {
+            format!("{names} can share a plane: never nearer than {} ({at}).", self.length(value))
+        } else if value < 0.0 {
+            format!("{names} cannot share a plane: they overlap by up to {} ({at}).", self.length(-value))
+        } else {
+            format!("{names} cannot share a plane: they all but touch ({at}).")
+        }
+    }
+
+    fn crossing(&self, p: &PinPlate) -> String {
+        let (pin, plate) = (p.pin.name(), p.plate.name());
+        format!(
+            "A pin {pin} that stood through the layer of the {plate} would cross it ({}).",
+            at(&p.closest)
+        )
+    }
+
+    fn through(
+        &self,
+        layering: &Layering,
+        stack: &Stack,
+        pin: crate::practicality::Pin,
+        layer: usize,
+    ) -> String {
+        let beside: Vec<String> = stack.layers[layer]
+            .iter()
+            .filter_map(|plate| layering.pins_plates.iter().find(|p| p.pin == pin && p.plate == *plate))
+            .map(|p| {
+                format!(
+                    "never nearer than {} to the {} ({})",
+                    self.length(p.closest.value),
+                    p.plate.name(),
+                    at(&p.closest)
+                )
+            })
+            .collect();
+        format!("Pin {} stands through layer {}: {}.", pin.name(), layer + 1, beside.join(", "))
+    }
+
+    fn distances(&self, distances: &[PivotDistance], hole: f64) -> String {
+        use Align::{Left, Right};
+        let mut grid = Grid::new(&[("joints", Left), ("least", Right), ("at crank", Right), ("", Left)]);
+        for d in distances.iter().filter(|d| !d.fixed) {
+            let [one, other] = d.between;
+            let pins = one != "P" && other != "P";
+            let (note, ink) = match d.closest.value < hole {
+                true if pins => ("a pin there crosses the other: not in one layer", Ink::Bad),
+                true => ("nearer than a hole: mind what is mounted at P", Ink::Bad),
+                false => ("", Ink::Plain),
+            };
+            grid.row(vec![
+                (format!("{one}-{other}"), Ink::Plain),
+                (significant(d.closest.value, DIGITS + 1), ink),
+                (degrees(d.closest.crank_angle), Ink::Plain),
+                (note.to_owned(), ink),
+            ]);
+        }
+        let mut out = grid.render(self.colour);
+        let held: Vec<String> = distances
+            .iter()
+            .filter(|d| d.fixed)
+            .map(|d| format!("{}-{} {}", d.between[0], d.between[1], brief(d.closest.value, DIGITS + 1)))
+            .collect();
+        out.push_str(&wrapped("  ", "  ", &format!("Held by a link: {}.", held.join(", ")), COLUMNS));
+        out
+    }
+
+    fn sensitivity(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
+        use Align::{Left, Right};
+        let mut heads = vec![("dimension", Left), ("rms", Right), ("most", Right)];
+        if at_points {
+            heads.push(("at point", Right));
+        }
+        let mut grid = Grid::new(&heads);
+        let worst = felt.worst_dimension().name;
+        let row = |d: &Dimension, ink: Ink| {
+            let mut cells = vec![
+                (d.name.to_owned(), ink),
+                (significant(d.rms, DIGITS), ink),
+                (significant(d.worst, DIGITS), ink),
+            ];
+            if at_points {
+                cells.push((d.worst_at.to_string(), ink));
+            }
+            cells
+        };
+        for d in &felt.dimensions {
+            grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
+        }
+        grid.row(row(&felt.ground, Ink::Faint));
+        let mut out = wrapped(
+            "  ",
+            "  ",
+            &format!("Shift of the path for an error of 1 in each dimension alone, {}.", settles(felt.crank)),
+            COLUMNS,
+        );
+        out.push_str(&grid.render(self.colour));
+        let most = if at_points { format!(" at point {}", felt.worst_at) } else { String::new() };
+        let mut text = format!(
+            "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
+             each other) the path is off by {} rms, {} where it is most{most} (1 sigma).",
+            self.length(tolerance),
+            self.length(tolerance * felt.band),
+            self.length(tolerance * felt.worst)
+        );
+        if felt.dimensions.iter().any(|d| d.name == "coupler_x") {
+            text.push_str(" P lies nearly on the line C-D, where d and e hardly say where: coupler_x and coupler_y are P along and across it.");
+        }
+        if !felt.at_toggles.is_empty() {
+            text.push_str(&format!(
+                " {} positions at a toggle have no derivative and are left out.",
+                felt.at_toggles.len()
+            ));
+        }
+        out.push_str(&wrapped("  ", "  ", &text, COLUMNS));
+        out
+    }
+}
+
+/// What the crank does meanwhile.
+fn settles(crank: Crank) -> &'static str {
+    match crank {
+        Crank::Settles => "across the path (along it, a point is only passed earlier or later)",
+        Crank::OffsetIsSet => "with the crank's common offset set anew so that the points move least",
+        Crank::Stays => "at the same crank angles",
+        Crank::TurnsWithGround => {
+            "at the same crank angles from the ground line, which turns with the pivots"
+        }
+    }
+}
+
+fn in_layers(stack: &Stack) -> String {
+    let layer = |(i, plates): (usize, &Vec<Link>)| {
+        format!("{} {}", i + 1, plates.iter().map(|plate| plate.name()).collect::<Vec<_>>().join(" and "))
+    };
+    stack.layers.iter().enumerate().map(layer).collect::<Vec<_>>().join("; ")
+}
+
+fn at(closest: &Closest) -> String {
+    format!("crank at {}", degrees(closest.crank_angle))
+}
+
+/// An angle in [0, 360) degrees, to a tenth.
+fn degrees(angle: f64) -> String {
+    let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
+    format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}

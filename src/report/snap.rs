@@ -1,0 +1,155 @@
+//! What snapping cost, as text: before and after, and the next best.
+
+use super::grid::{Align, Colour, Grid, Ink};
+use super::text::{brief, exact, grouped, significant, wrapped};
+use crate::record::{Candidate, Unit};
+use crate::snap::{Length, Request, Snapped};
+
+/// The width of the page.
+const COLUMNS: usize = 100;
+/// Significant digits of lengths and errors.
+const DIGITS: usize = 6;
+
+/// The table of one candidate before and after, the answers, and what the plain way would have cost.
+pub fn snap_text(
+    before: &Candidate,
+    request: &Request,
+    snapped: &Snapped,
+    unit: Option<Unit>,
+    colour: Colour,
+) -> String {
+    let Some(after) = snapped.candidates.first() else { return String::new() };
+    let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
+    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let text =
+        format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
+    let mut out = wrapped("  ", "  ", &text, COLUMNS);
+    out.push_str(&dimensions(before, after, snapped, request, colour));
+    out.push('\n');
+    out.push_str(&figures(before, snapped, colour));
+    let times = |c: &Candidate| c.error.rms / before.error.rms;
+    let cost = match times(after) {
+        times if before.error.rms > 0.0 && times < 1e3 => {
+            format!(
+                "The rms error goes from {} to {}{unit}: {} times.",
+                significant(before.error.rms, 4),
+                significant(after.error.rms, 4),
+                brief(times, 3)
+            )
+        }
+        _ => format!(
+            "The rms error goes from {} to {}{unit}.",
+            significant(before.error.rms, 4),
+            significant(after.error.rms, 4)
+        ),
+    };
+    let plain = match &snapped.nearest {
+        Some(c) if c.accepted == after.accepted => format!(
+            "Each length to its nearest stock size at once would give {}.",
+            significant(c.error.rms, 4)
+        ),
+        Some(_) => "Each length to its nearest stock size at once would not be acceptable.".to_owned(),
+        None => "Each length to its nearest stock size at once gives no linkage that reaches every point."
+            .to_owned(),
+    };
+    let fits = format!("{} combinations were fitted.", grouped(snapped.fits));
+    out.push_str(&wrapped("\n  ", "  ", &format!("{cost} {plain} {fits}"), COLUMNS));
+    if !after.accepted {
+        let unmet: Vec<&str> =
+            after.requirements.iter().filter(|r| !r.met).map(|r| r.name.as_str()).collect();
+        let text = format!("Not accepted, none of them: {} not met.", unmet.join(", "));
+        out.push_str(&colour.paint(Ink::Bad, &wrapped("  ", "  ", &text, COLUMNS)));
+    }
+    out
+}
+
+fn plain(text: String) -> (String, Ink) {
+    (text, Ink::Plain)
+}
+
+fn dimensions(
+    before: &Candidate,
+    after: &Candidate,
+    snapped: &Snapped,
+    request: &Request,
+    colour: Colour,
+) -> String {
+    use Align::{Left, Right};
+    let mut grid =
+        Grid::new(&[("", Left), ("before", Right), ("after", Right), ("change", Right), ("", Left)]);
+    let mut row = |name: &str, from: f64, to: f64, stock: bool, note: &str| {
+        let shown = if stock { exact(to) } else { significant(to, DIGITS) };
+        let change = to - from;
+        let change = if change.abs() <= 1e-12 * from.abs().max(to.abs()) { 0.0 } else { change };
+        let change = if change == 0.0 {
+            "0".to_owned()
+        } else {
+            format!("{}{}", if change > 0.0 { "+" } else { "" }, significant(change, 3))
+        };
+        let ink = if stock { Ink::Strong } else { Ink::Plain };
+        grid.row(vec![
+            plain(name.to_owned()),
+            plain(significant(from, DIGITS)),
+            (shown, ink),
+            plain(change),
+            (note.to_owned(), Ink::Faint),
+        ]);
+    };
+    let (from, to) = (&before.linkage, &after.linkage);
+    for length in Length::ALL {
+        let stock = snapped.lengths.contains(&length);
+        let fixed = request.fixed.get(length);
+        let note = if stock {
+            "stock"
+        } else if fixed.is_some() {
+            "as given"
+        } else {
+            ""
+        };
+        // The ground stands in the pivots, to rounding.
+        let value = if stock { rounded(length.of(to)) } else { length.of(to) };
+        row(length.key(), length.of(from), value, stock, note);
+    }
+    for (name, of) in [
+        ("Ax", (|l| l.crank_pivot().re) as fn(&crate::linkage::FourBar) -> f64),
+        ("Ay", |l| l.crank_pivot().im),
+        ("Bx", |l| l.follower_pivot().re),
+        ("By", |l| l.follower_pivot().im),
+        ("ground angle", |l| l.ground_angle().to_degrees()),
+    ] {
+        row(name, of(from), of(to), false, "");
+    }
+    grid.render(colour)
+}
+
+/// A stock length without the last digits that its place in two pivots has cost.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
+    use Align::{Left, Right};
+    let mut heads = vec![("", Left), ("rms", Right), ("max", Right), ("mu worst", Right), ("accepted", Left)];
+    heads.extend(snapped.lengths.iter().map(|length| (length.key(), Right)));
+    let mut grid = Grid::new(&heads);
+    let mut row = |name: String, c: &Candidate, stock: bool| {
+        let (word, ink) = if c.accepted { ("yes", Ink::Good) } else { ("no", Ink::Bad) };
+        let mut cells = vec![
+            plain(name),
+            plain(significant(c.error.rms, 4)),
+            plain(significant(c.error.max, 4)),
+            plain(format!("{}°", significant(c.transmission_deg.worst, 4))),
+            (word.to_owned(), ink),
+        ];
+        for length in &snapped.lengths {
+            let value = length.of(&c.linkage);
+            cells.push(plain(if stock { exact(rounded(value)) } else { significant(value, DIGITS) }));
+        }
+        grid.row(cells);
+    };
+    row("before".into(), before, false);
+    for c in &snapped.candidates {
+        row(format!("{}.", c.rank), c, true);
+    }
+    grid.render(colour)
+}

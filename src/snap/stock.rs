@@ -1,0 +1,143 @@
+//! Which lengths there are.
+
+/// A stock of lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stock {
+    /// Every multiple of a step.
+    Grid(f64),
+    /// These alone, ascending, each once.
+    List(Vec<f64>),
+}
+
+/// What is no stock of lengths.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StockError {
+    /// A step or length that is not positive and finite.
+    #[error("{0} is no stock length: a positive number below 1e12 is needed")]
+    NotPositive(f64),
+    /// No length at all.
+    #[error("there is no length in the list: give at least one")]
+    Empty,
+    /// Text that is no number.
+    #[error(
+        "line {line}: `{text}` is not a number; write one length a line or several separated by commas or spaces, comments after #"
+    )]
+    NotANumber {
+        /// Counted from 1.
+        line: usize,
+        /// What stands there.
+        text: String,
+    },
+}
+
+fn checked(value: f64) -> Result<f64, StockError> {
+    if value > 0.0 && value < crate::linkage::MAX_MAGNITUDE {
+        Ok(value)
+    } else {
+        Err(StockError::NotPositive(value))
+    }
+}
+
+impl Stock {
+    /// Every multiple of `step`.
+    ///
+    /// # Errors
+    /// A step that is not positive and finite.
+    pub fn grid(step: f64) -> Result<Self, StockError> {
+        checked(step).map(Stock::Grid)
+    }
+
+    /// These lengths, in any order.
+    ///
+    /// # Errors
+    /// No length, or one that is not positive and finite.
+    pub fn list(lengths: &[f64]) -> Result<Self, StockError> {
+        let mut list = lengths.iter().map(|l| checked(*l)).collect::<Result<Vec<_>, _>>()?;
+        list.sort_by(f64::total_cmp);
+        list.dedup();
+        if list.is_empty() { Err(StockError::Empty) } else { Ok(Stock::List(list)) }
+    }
+
+    /// The lengths in a text: separated by white space, commas or semicolons; what follows # is left out.
+    ///
+    /// # Errors
+    /// As [`Stock::list`], and text that is no number.
+    pub fn parse(text: &str) -> Result<Self, StockError> {
+        let mut lengths = Vec::new();
+        for (i, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+            let content = line.split('#').next().unwrap_or_default();
+            for word in content.split(|c: char| c.is_whitespace() || c == ',' || c == ';') {
+                if !word.is_empty() {
+                    let number = word.parse::<f64>().ok().filter(|n| n.is_finite());
+                    lengths.push(
+                        number.ok_or_else(|| StockError::NotANumber { line: i + 1, text: word.into() })?,
+                    );
+                }
+            }
+        }
+        Stock::list(&lengths)
+    }
+
+    /// The `count` stock lengths nearest to `value` in [low, high], nearest first (of two as near the shorter).
+    pub fn near(&self, value: f64, count: usize, low: f64, high: f64) -> Vec<f64> {
+        let inside = |l: &f64| *l >= low && *l <= high;
+        let mut lengths: Vec<f64> = match self {
+            Stock::List(list) => list.iter().copied().filter(inside).collect(),
+            Stock::Grid(step) => {
+                let wide = count as f64;
+                let middle = (value.max(low).min(high) / step).round();
+                let first = (middle - wide).max(1.0);
+                (0..=2 * count + 1).map(|i| on_grid(*step, first + i as f64)).filter(inside).collect()
+            }
+        };
+        lengths.sort_by(|x, y| (x - value).abs().total_cmp(&(y - value).abs()).then(x.total_cmp(y)));
+        lengths.truncate(count);
+        lengths
+    }
+
+    /// In words: `multiples of 5`, `12 lengths`.
+    pub fn words(&self) -> String {
+        match self {
+            Stock::Grid(step) => format!("multiples of {step}"),
+            Stock::List(list) => match list.len() {
+                1 => format!("the one length {}", list[0]),
+                n if n <= 6 => list.iter().map(|l| l.to_string()).collect::<Vec<_>>().join(", "),
+                n => format!("{n} lengths from {} to {}", list[0], list[n - 1]),
+            },
+        }
+    }
+}
+
+/// `count` steps as it is written in decimal: 3 steps of 0.1 are 0.3.
+fn on_grid(step: f64, count: f64) -> f64 {
+    let written = format!("{step}");
+    let decimals = written.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    format!("{:.decimals$}", step * count).parse().unwrap_or(step * count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_lengths_come_first_and_keep_to_their_limits() {
+        let grid = Stock::grid(0.1).expect("a step");
+        assert_eq!(grid.near(0.3, 3, 0.0, 10.0), [0.3, 0.2, 0.4]);
+        assert_eq!(grid.near(0.02, 2, 0.0, 10.0), [0.1, 0.2]);
+        assert_eq!(grid.near(7.0, 3, 0.0, 0.55), [0.5, 0.4, 0.3]);
+        let list = Stock::list(&[40.0, 10.0, 25.0, 25.0]).expect("lengths");
+        assert_eq!(list.near(26.0, 2, 0.0, 100.0), [25.0, 40.0]);
+        assert_eq!(list.near(26.0, 9, 30.0, 100.0), [40.0]);
+    }
+
+    #[test]
+    fn a_list_is_read_from_text_and_what_is_no_length_is_named() {
+        let text = "12.7, 25.4  # inches\n\n38.1;50.8\n";
+        assert_eq!(Stock::parse(text), Ok(Stock::List(vec![12.7, 25.4, 38.1, 50.8])));
+        let wrong = StockError::NotANumber { line: 2, text: "x".into() };
+        assert_eq!(Stock::parse("1\n2 x"), Err(wrong));
+        assert_eq!(Stock::parse("# nothing"), Err(StockError::Empty));
+        assert_eq!(Stock::parse("1 -3"), Err(StockError::NotPositive(-3.0)));
+        assert_eq!(Stock::grid(0.0), Err(StockError::NotPositive(0.0)));
+    }
+}

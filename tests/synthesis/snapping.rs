@@ -1,0 +1,182 @@
+//! Lengths snapped to a stock: exact, judged under the problem as it was, and no worse than trying everything.
+
+use crate::common::{bytes, literature, run_on};
+use linkwright::linkage::{AssemblyMode, Complex, FourBar};
+use linkwright::problem::Problem;
+use linkwright::problem::spec::ProblemSpec;
+use linkwright::record::{Candidate, Record};
+use linkwright::search::Budget;
+use linkwright::search::rank::compare;
+use linkwright::snap::{Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap};
+use linkwright::verify::verify;
+use std::sync::OnceLock;
+use std::sync::atomic::AtomicBool;
+
+static NEVER: AtomicBool = AtomicBool::new(false);
+
+fn budget() -> Budget<'static> {
+    Budget::new(&NEVER, None)
+}
+
+/// A run of a problem with a prescribed timing and fixed pivots on the x axis, and one of free timing.
+fn timed() -> &'static Record {
+    static RECORD: OnceLock<Record> = OnceLock::new();
+    RECORD.get_or_init(|| run_on(2, literature("e5", &[("solve.evaluations", "20000")])))
+}
+
+fn free() -> &'static Record {
+    static RECORD: OnceLock<Record> = OnceLock::new();
+    RECORD.get_or_init(|| run_on(2, literature("e5-free", &[("solve.evaluations", "20000")])))
+}
+
+fn spec(record: &Record) -> ProblemSpec {
+    record.problem.resolved.clone()
+}
+
+fn request(step: f64, lengths: &[Length]) -> Request {
+    let stock = Stock::grid(step).expect("a step");
+    Request { stock, lengths: lengths.to_vec(), fixed: Fixed::default(), wanted: 4 }
+}
+
+fn snapped(record: &Record, request: &Request) -> (Problem, Candidate, Snapped) {
+    let problem = Problem::new(spec(record)).expect("a problem");
+    let candidate = record.candidates[0].clone();
+    let found = snap(&problem, &candidate, request, &budget()).expect("an answer");
+    (problem, candidate, found)
+}
+
+#[test]
+fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
+    for (from, step) in [(timed(), 0.05), (free(), 0.1)] {
+        let request = request(step, &Length::ALL);
+        let (problem, before, found) = snapped(from, &request);
+        assert!(before.accepted && found.candidates[0].accepted);
+        for candidate in &found.candidates {
+            for length in &found.lengths {
+                let value = length.of(&candidate.linkage);
+                let count = (value / step).round();
+                assert!((value - step * count).abs() <= 8.0 * f64::EPSILON * value, "{length:?} {value}");
+                assert!(count >= 1.0);
+            }
+        }
+        assert_eq!(found.lengths.len(), 6);
+        let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
+        assert_eq!(verify(&told).expect("a problem"), []);
+        // What was done to the lengths one after another is never worse than all of them at once.
+        let nearest = found.nearest.as_ref().expect("it closes");
+        assert!(compare(&problem, &found.candidates[0], nearest).is_le());
+        assert!(found.candidates[0].error.rms < 0.7 * nearest.error.rms, "{}", nearest.error.rms);
+        assert!(found.candidates.windows(2).all(|pair| compare(&problem, &pair[0], &pair[1]).is_le()));
+    }
+}
+
+#[test]
+fn no_combination_of_three_lengths_around_it_is_better_than_what_is_found() {
+    for (from, step) in [(timed(), 0.2), (free(), 0.25)] {
+        for lengths in [[Length::A, Length::B, Length::C], [Length::Ground, Length::A, Length::D]] {
+            let request = request(step, &lengths);
+            let (problem, before, found) = snapped(from, &request);
+            let best = &found.candidates[0];
+            let near = |length: Length| -> Vec<f64> {
+                let middle = (length.of(&before.linkage) / step).round();
+                (-3..=3).map(|k| (middle + f64::from(k)) * step).filter(|v| *v > 0.5 * step).collect()
+            };
+            let mut tried = 0;
+            for one in near(lengths[0]) {
+                for two in near(lengths[1]) {
+                    for three in near(lengths[2]) {
+                        let fixed = Fixed::default()
+                            .with(lengths[0], one)
+                            .with(lengths[1], two)
+                            .with(lengths[2], three);
+                        let Some(other) = refit(&problem, &before, &fixed, 400, &budget()).0 else {
+                            continue;
+                        };
+                        tried += 1;
+                        let better = other.accepted && other.error.rms < best.error.rms * (1.0 - 1e-3);
+                        assert!(
+                            !better,
+                            "{lengths:?}: {} of {fixed:?} for {}",
+                            other.error.rms, best.error.rms
+                        );
+                    }
+                }
+            }
+            assert!(tried > 100, "{tried}");
+        }
+    }
+}
+
+#[test]
+fn the_same_lengths_come_out_whatever_the_threads() {
+    let request = request(0.1, &Length::ALL);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let (problem, _, found) = pool.install(|| snapped(timed(), &request));
+        bytes(&record(&problem, "snapped", None, None, &request, &found).expect("a record"))
+    };
+    assert_eq!(on(1), on(3));
+}
+
+fn crank_rocker() -> FourBar {
+    FourBar::with_coupler_offset(
+        [Complex::new(3.0, -2.0), Complex::new(83.0, -2.0)],
+        [20.0, 70.0, 50.0],
+        Complex::new(35.0, 30.0),
+        AssemblyMode::Plus,
+    )
+    .expect("a linkage")
+}
+
+#[test]
+fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
+    let linkage = crank_rocker();
+    let (problem, candidate) = own_curve(&linkage).expect("it closes");
+    assert!(candidate.accepted && candidate.error.rms < 1e-12);
+    let keys = [Length::Ground, Length::A, Length::B, Length::C];
+    let found = snap(&problem, &candidate, &request(10.0, &keys), &budget()).expect("an answer");
+    for length in keys {
+        assert!((length.of(&found.candidates[0].linkage) - length.of(&linkage)).abs() < 1e-12);
+    }
+    assert!(found.candidates[0].error.rms < 1e-9 * problem.task().size());
+}
+
+#[test]
+fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
+    let linkage = crank_rocker();
+    let (problem, candidate) = own_curve(&linkage).expect("it closes");
+    let mut wish = request(7.0, &Length::ALL);
+    wish.fixed = Fixed::default().with(Length::A, 20.0).with(Length::C, 51.5);
+    wish.fixed.crank_pivot = Some([3.0, -2.0]);
+    wish.fixed.follower_pivot = Some([83.0, -2.0]);
+    let found = snap(&problem, &candidate, &wish, &budget()).expect("an answer");
+    let best = &found.candidates[0].linkage;
+    assert_eq!((best.crank(), best.follower()), (20.0, 51.5));
+    assert_eq!(best.natural_coordinates().crank_pivot, [3.0, -2.0]);
+    assert_eq!(best.natural_coordinates().follower_pivot, [83.0, -2.0]);
+    // The pivots hold the ground: it is not snapped.
+    let mut snapped = found.lengths.clone();
+    snapped.sort();
+    assert_eq!(snapped, [Length::B, Length::D, Length::E]);
+
+    // With B held, the ground is brought to its length by A.
+    let mut wish = request(7.0, &[Length::Ground]);
+    wish.fixed.follower_pivot = Some([83.0, -2.0]);
+    let found = snap(&problem, &candidate, &wish, &budget()).expect("an answer");
+    let best = &found.candidates[0].linkage;
+    assert_eq!(best.natural_coordinates().follower_pivot, [83.0, -2.0]);
+    assert!(
+        (best.ground() - 77.0).abs() < 1e-12 || (best.ground() - 84.0).abs() < 1e-12,
+        "{}",
+        best.ground()
+    );
+
+    let mut wish = request(7.0, &[Length::A]);
+    wish.fixed = Fixed::default().with(Length::A, 20.0);
+    assert_eq!(snap(&problem, &candidate, &wish, &budget()), Err(SnapError::NothingToSnap));
+    let mut limited = problem.spec().clone();
+    limited.design.a = Some(linkwright::problem::spec::Limits(18.0, 20.5));
+    let limited = Problem::new(limited).expect("a problem");
+    let refused = snap(&limited, &candidate, &request(7.0, &[Length::A]), &budget());
+    assert!(matches!(refused, Err(SnapError::NoStock { key: "a", .. })), "{refused:?}");
+}
