@@ -227,7 +227,8 @@ impl Spender<'_> {
         for _ in 0..REASSIGNED {
             let Reassigned { better, positions } = reassigned(problem, &end);
             self.round.positions += positions;
-            self.round.evaluations += positions / problem.task().len() as u64;
+            // As many evaluations as its positions are worth, within the allowance.
+            self.round.evaluations += (positions / problem.task().len() as u64).min(self.left());
             let Some(start) = better else { break };
             match self.fit_on_one_circuit(problem, start, effort) {
                 Some((again, start)) if again < merit => (merit, end) = (again, start),
