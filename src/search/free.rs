@@ -4,7 +4,9 @@
 //! A *round* takes `SCREEN` drawn starts, or matches of the atlas where the target has points enough, or starts near
 //! known ends and along the differences between them; it fits the `SHORT` most promising for a few steps, the
 //! best `MIDDLE` of those on, and finishes those that can still matter.
-//! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them. Rounds run
+//! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them; now and then all
+//! points are explored, which shows what groups blur. The points of their ends are brought to their best places on the
+//! curve ([`super::reassign`]) and fitted again for as long as that gains. Rounds run
 //! side by side in batches of `BATCH` and are read in their order: the number of threads changes nothing but
 //! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
 //!

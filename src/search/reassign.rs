@@ -28,7 +28,7 @@ const PINS: usize = 3;
 /// Targets of more points are left as they are.
 const MOST: usize = 400;
 /// A choice that gains less than this part is none.
-const GAIN: f64 = 1e-6;
+const GAIN: f64 = 1e-3;
 
 /// A better choice of places on the same linkage.
 #[derive(Clone, Debug)]
@@ -244,5 +244,128 @@ impl Target<'_> {
             positions[j - 1] = places[at].position;
         }
         (sum, positions)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linkage::{CouplerSide, NaturalCoordinates};
+    use crate::problem::Setting;
+    use crate::problem::design_space::Shape;
+    use crate::problem::spec::{
+        Limits, OnePolicy, OrderPolicy, PathSpec, ProblemSpec, RequireSpec, TaskSpec,
+    };
+    use crate::solve::streams::{below, stream, uniform};
+
+    fn random_places(count: usize, random: &mut crate::solve::streams::Stream) -> Vec<Place> {
+        let one = Complex::new(1.0, 0.0);
+        (0..count)
+            .map(|m| Place {
+                parameter: m as f64,
+                point: Complex::new(uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)),
+                position: [one * m as f64, one],
+            })
+            .collect()
+    }
+
+    /// The least sum over all rising sequences of places, one after another.
+    fn by_trying_all(target: &Target<'_>, places: &[Place], from: usize, point: usize) -> f64 {
+        if point == target.points.len() {
+            return 0.0;
+        }
+        (from..places.len())
+            .map(|m| {
+                let square = target.weights[point] * (places[m].point - target.points[point]).norm_sqr();
+                square + by_trying_all(target, places, m, point + 1)
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn the_choice_is_the_best_of_all_in_order() {
+        let mut random = stream(11, 0);
+        for _ in 0..300 {
+            let places = random_places(1 + below(&mut random, 7), &mut random);
+            let n = 1 + below(&mut random, 5);
+            let points: Vec<Complex> = random_places(n, &mut random).iter().map(|p| p.point).collect();
+            let weights: Vec<f64> = (0..n).map(|_| uniform(&mut random, 0.1, 3.0)).collect();
+            let target = Target { points: &points, weights: &weights };
+            let (sum, positions) = target.along(&places, None);
+            assert!((sum - by_trying_all(&target, &places, 0, 0)).abs() < 1e-12);
+            let at: Vec<usize> = positions.iter().map(|[e, _]| e.re as usize).collect();
+            assert!(at.is_sorted());
+            let again: f64 = (0..n).map(|j| weights[j] * (places[at[j]].point - points[j]).norm_sqr()).sum();
+            assert!((sum - again).abs() < 1e-12);
+            // With the first point at the first place.
+            let (pinned, positions) = target.along(&places, Some(0));
+            assert_eq!(positions[0][0].re, 0.0);
+            let first = weights[0] * (places[0].point - points[0]).norm_sqr();
+            assert!((pinned - first - by_trying_all(&target, &places, 0, 1)).abs() < 1e-12);
+        }
+    }
+
+    /// Points of a linkage's curve, and a start on it with its points at other places.
+    fn displaced(links: [f64; 4], order: bool, closed: bool) -> (Problem, Start, f64) {
+        let [ground, crank, coupler, follower] = links;
+        let linkage = FourBar::new(NaturalCoordinates {
+            crank_pivot: [0.0, 0.0],
+            follower_pivot: [ground, 0.0],
+            crank,
+            coupler,
+            follower,
+            crank_side: 0.6 * coupler,
+            follower_side: 0.7 * coupler,
+            assembly: AssemblyMode::Plus,
+            side: CouplerSide::Plus,
+        })
+        .expect("a linkage");
+        let mobility = linkage.mobility();
+        let begin = match mobility.input {
+            crate::linkage::InputRange::One(arc) | crate::linkage::InputRange::Two([arc, _]) => arc.middle,
+            _ => 0.3,
+        };
+        let circuit = mobility.branch(begin, AssemblyMode::Plus).circuit;
+        let track =
+            Track { linkage: linkage.clone(), arc: mobility.arc(circuit), assembly: AssemblyMode::Plus };
+        let n = 40;
+        let span = if closed { TAU } else { 4.0 };
+        let own: Vec<Place> =
+            (0..n).filter_map(|j| track.place(0.2 + span * f64::from(j) / f64::from(n))).collect();
+        let points: Vec<[f64; 2]> = own.iter().map(|p| [p.point.re, p.point.im]).collect();
+        let order = if order { "required" } else { "any" };
+        let text = format!(
+            "format = 1\n[task.path]\npoints = {points:?}\nclosed = {closed}\n[require]\norder = \"{order}\"\nbranch = \"any\"\n"
+        );
+        let spec = crate::problem_file::parse("it.toml", &text, None, &[]).expect("a problem").spec;
+        let problem = Problem::new(spec).expect("a problem");
+        let setting =
+            Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };
+        let design = problem.space(setting.side).design(&Shape::from(&linkage), 0.0);
+        // All of them crowd together in the first fifth of their way.
+        let positions = (0..n)
+            .filter_map(|j| track.place(0.2 + 0.2 * span * f64::from(j) / f64::from(n)))
+            .map(|place| place.position)
+            .collect();
+        let size = problem.task().size();
+        (problem, Start { design, setting, positions }, size)
+    }
+
+    #[test]
+    fn points_find_their_own_stretch_of_every_kind_of_curve() {
+        // Crank-rocker, double-crank, rocker-crank, triple-rocker.
+        for links in [[4.0, 1.5, 3.5, 3.2], [1.0, 2.0, 1.8, 2.2], [4.0, 3.2, 3.5, 1.5], [3.0, 2.0, 2.1, 2.4]]
+        {
+            for (order, closed) in [(true, true), (true, false), (false, true)] {
+                let (problem, start, size) = displaced(links, order, closed);
+                let better = reassigned(&problem, &start).better.expect("they are not at their places");
+                let fit = TorusFit::new(&problem, start.setting);
+                use crate::solve::levenberg_marquardt::BlockLeastSquares;
+                let cost = fit.cost(&better.design, &better.positions).expect("a cost");
+                // Samples are about a hundredth of the curve apart.
+                assert!(cost < 40.0 * (0.02 * size).powi(2), "{links:?} {order:?} {closed}: {cost}");
+                assert!(reassigned(&problem, &better).better.is_none(), "nothing is left to gain");
+            }
+        }
     }
 }
