@@ -73,7 +73,7 @@ fn found(exact: &ExactRecord) -> String {
         }
         Completeness::Incomplete => {
             format!(
-                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost."
+                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost or ended together."
             )
         }
         Completeness::Cancelled => {
