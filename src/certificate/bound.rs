@@ -278,7 +278,7 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
             let by_phi = ranges.gamma_phi(p_high, near_f[j].max(NEAR)) + p_high * steep;
             own = [2.0 * steep * h[0], by_phi * h[1], h[2], h[3]];
         }
-        rest += u_error[j] * (1.0 + rest);
+        rest += u_error[j] * (2.0 + rest);
         rest_y += size_y[j] * rest;
         rest_tau += size_tau * rest;
         for k in 0..4 {

@@ -12,6 +12,9 @@ use std::time::Instant;
 /// The gap that is asked for unless another is given.
 pub const DEFAULT_GAP: f64 = 1e-4;
 
+/// A little less than the wanted gap is searched for, so that the gap from the rounded bound is not above it.
+const WITHIN: f64 = 1.0 - 1e-9;
+
 /// What is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
@@ -108,7 +111,7 @@ impl Subject {
         for class in Class::ALL {
             for &direction in problem.directions() {
                 let question = Question::new(class, direction, &points, &timing.crank_deg, cap)?;
-                searches.push((class, direction, Search::new(question, best * (1.0 - gap))));
+                searches.push((class, direction, Search::new(question, best * (1.0 - gap * WITHIN))));
             }
         }
         Ok(Subject { searches, best, cap, points: points.len() })
