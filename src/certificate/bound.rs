@@ -169,7 +169,8 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
         near_f[j] = m.f.mid;
         u[j] = [m.u[0].mid, m.u[1].mid];
         u_error[j] = m.u[0].rad + m.u[1].rad;
-        if !(u_error[j] < 1e-3) {
+        let known = u_error[j] < 1e-3;
+        if !known {
             // Nothing is known but that it is a unit vector.
             u[j] = [1.0, 0.0];
             u_error[j] = 0.0;

@@ -136,8 +136,8 @@ pub fn outside(cell: &Cell) -> bool {
     } else {
         0.0
     };
-    // 3.1416 is above pi.
-    d > cell.high[2] || d > 3.1416 - cell.low[2]
+    let above_pi = std::f64::consts::PI + 1e-5;
+    d > cell.high[2] || d > above_pi - cell.low[2]
 }
 
 /// Whether |sin g sin d| < p cos d |cos g| on the whole box: b > c there, and the cognate has b < c.
