@@ -25,6 +25,7 @@
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`exact`] | every linkage through nine precision points | linkage, task, solve (random streams) |
+//! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage can do better | task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
@@ -33,7 +34,7 @@
 //! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
 //! | [`plates`] | the links as plates with holes: outlines, distances between them | linkage |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
-//! | [`mod@verify`] | is a record true? everything recomputed | assess, problem, record, run |
+//! | [`mod@verify`] | is a record true? everything recomputed | assess, certificate, problem, record, run |
 //! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
@@ -46,6 +47,7 @@
 
 pub mod analysis;
 pub mod assess;
+pub mod certificate;
 pub mod checkpoint;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -8,10 +8,12 @@ use crate::problem::spec::{Method, ProblemSpec, TransmissionOver};
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
 
+mod certificate;
 mod exact;
 mod extras;
 mod limits;
 
+pub use certificate::{Certificate, CertificatePart};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use limits::BeyondLimits;
@@ -55,6 +57,9 @@ pub struct Record {
     /// with the settings of this run and ended with an accepted candidate.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub relaxations: Vec<Relaxation>,
+    /// What is proved about the best candidate, where `certify` was run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
 }
 
 /// Name and version of the program.

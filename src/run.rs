@@ -116,6 +116,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         candidates: outcome.candidates,
         conflict: explained.conflict,
         relaxations: explained.relaxations,
+        certificate: None,
         exact: outcome.exact,
     };
     Ok(Finished { record, search_s, beside_s })

@@ -11,8 +11,11 @@ use crate::search::loosen::Demand;
 use crate::search::rank::{compare, exact_objective, exact_sum_sq};
 use crate::task::{AngleOffset, Timing};
 
+mod certificate;
 mod exact;
 mod extras;
+
+pub use certificate::verify_certificate;
 
 /// Figures may differ by this part of themselves ..
 pub const RELATIVE: f64 = 1e-9;

@@ -37,6 +37,8 @@ pub enum Command {
     Compare(Compare),
     /// Recompute every figure and verdict of a result
     Verify(Verify),
+    /// Prove that no linkage can be better than a result by more than a gap (prescribed timing)
+    Certify(Certify),
     /// Write a result as a page to look at, print and mail: one HTML file
     Report(Report),
     /// Positions, velocities, accelerations and mobility of a linkage file
@@ -163,6 +165,26 @@ pub struct Verify {
     /// A result's folder or record.json
     #[arg(required = true, value_name = "RESULT")]
     pub results: Vec<PathBuf>,
+    /// Work out the certificates again, box by box: as long as `certify` took
+    #[arg(long)]
+    pub certificate: bool,
+}
+
+/// Options of `certify`.
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// A result's folder
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// How far below the best candidate the proved bound may be, relative
+    #[arg(long, value_name = "G", default_value_t = crate::certificate::job::DEFAULT_GAP, allow_negative_numbers = true, value_parser = gap)]
+    pub gap: f64,
+    /// certify.time_limit_s=S: end after S seconds with what is proved by then [default: 300]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = certify_key)]
+    pub set: Vec<(String, f64)>,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
 }
 
 /// Options of `report`.
@@ -324,6 +346,24 @@ fn positive(text: &str) -> Result<f64, String> {
     match finite(text)? {
         number if number > 0.0 => Ok(number),
         _ => Err("a number above 0 is needed".into()),
+    }
+}
+
+fn gap(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        number if number < 1.0 => Ok(number),
+        _ => Err("a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent".into()),
+    }
+}
+
+fn certify_key(text: &str) -> Result<(String, f64), String> {
+    let (key, value) = key_value(text)?;
+    match key.as_str() {
+        "certify.time_limit_s" => match positive(&value)? {
+            seconds if seconds <= 1e6 => Ok((key, seconds)),
+            _ => Err("at most 1e6 seconds".into()),
+        },
+        _ => Err("what can be set is certify.time_limit_s".into()),
     }
 }
 

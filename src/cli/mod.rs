@@ -6,6 +6,7 @@
 mod analyze;
 mod arguments;
 mod build;
+mod certify;
 mod check;
 mod compare;
 mod export;
@@ -81,6 +82,7 @@ fn dispatch(command: Command) -> Ended {
         Command::Verify(options) => verify::run(&options),
         Command::Analyze(options) => analyze::run(&options),
         Command::Cognates(options) => analyze::cognates(&options),
+        Command::Certify(options) => certify::run(&options),
         Command::Report(options) => report::run(&options),
         Command::Build(options) => build::run(&options),
         Command::Snap(options) => snap::run(&options),

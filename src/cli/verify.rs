@@ -21,13 +21,32 @@ pub fn run(options: &Verify) -> Ended {
             }
             Err(ended) => return ended,
         };
-        match crate::verify::verify(&record) {
+        let mut verified = crate::verify::verify(&record);
+        if let (Ok(mismatches), true) = (&mut verified, options.certificate) {
+            if record.certificate.is_none() {
+                terminal::complain(&format!("{shown}: the record has no certificate; run certify first"));
+                return Ended::Refused;
+            }
+            match crate::verify::verify_certificate(&record) {
+                Ok(more) => mismatches.extend(more),
+                Err(e) => {
+                    terminal::complain(&format!("{shown}: {e}"));
+                    return Ended::Refused;
+                }
+            }
+        }
+        match verified {
             Ok(mismatches) if mismatches.is_empty() => {
                 let n = record.candidates.len();
                 let word = if n == 1 { "candidate" } else { "candidates" };
                 terminal::answer(&format!(
                     "{shown}: true. Every figure and verdict of {n} {word} was recomputed and agrees.\n"
                 ));
+                if options.certificate {
+                    terminal::answer(
+                        "  The certificate was worked out again: the same boxes, the same bound.\n",
+                    );
+                }
             }
             Ok(mismatches) => {
                 ended = Ended::Bad;

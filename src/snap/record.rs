@@ -60,6 +60,7 @@ pub fn record(
         candidates,
         conflict: None,
         relaxations: Vec::new(),
+        certificate: None,
     })
 }
 

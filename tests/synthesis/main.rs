@@ -1,6 +1,7 @@
 //! Searches: what they find, what a requirement costs, what they say about it.
 
 mod answers;
+mod certificate;
 #[path = "../common/mod.rs"]
 mod common;
 mod conflicts;

@@ -5,6 +5,7 @@ mod analyze;
 mod bad_input;
 mod batches;
 mod building;
+mod certifying;
 mod command_line;
 #[path = "../common/mod.rs"]
 mod common;

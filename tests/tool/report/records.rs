@@ -148,6 +148,7 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         candidates: Vec::new(),
         conflict: None,
         relaxations: Vec::new(),
+        certificate: None,
         exact: None,
     }
 }

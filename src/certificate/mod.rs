@@ -1,0 +1,23 @@
+//! Proved best: a certified lower bound of the sum of squares for prescribed timing with a free offset.
+//!
+//! ```text
+//! minimise over A, K, Z and x = (p, phi_0, g, d):   sum_j |T_j - A - K e_j - Z u_j(x)|^2
+//! ```
+//!
+//! A, K and Z are linear and solved inside; the linkages whose input turns fully live in a compact box of four numbers
+//! ([`chart`]); [`mod@bound`] bounds a box from below in arithmetic with enclosed rounding ([`ball`]); [`search`] halves
+//! boxes until each is decided. docs/certificate.md has the proofs.
+
+pub mod ball;
+pub mod bound;
+pub mod chart;
+pub mod job;
+pub mod search;
+pub mod target;
+
+pub use ball::Ball;
+pub use bound::{Bound, Cell, bound};
+pub use chart::{Class, Point, Ratios};
+pub use job::{NoCertificate, Progress, Request, certify, recheck};
+pub use search::{Leaf, Outcome, Question, Search};
+pub use target::{Target, TargetError};

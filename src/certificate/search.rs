@@ -1,0 +1,301 @@
+//! Best-first branch and bound over the chart.
+//!
+//! Boxes wait in the order of their bounds. A batch of the lowest is taken, each is halved across the axis that costs
+//! its bound most, and the halves are bounded on all cores; what is decided is a leaf, what is not waits again. The
+//! lowest bound that waits is at any time a bound of everything. Batches are of one size whatever the number of
+//! threads, and their results are taken in order: the same boxes, the same digits.
+
+use super::bound::{Bound, Cell, bound};
+use super::chart::Class;
+use super::target::{Target, TargetError};
+use rayon::prelude::*;
+use sha2::{Digest, Sha256};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Boxes of a batch.
+const BATCH: usize = 2048;
+/// The most boxes that wait: about a gigabyte.
+const MAX_WAITING: usize = 20_000_000;
+/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
+const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
+
+/// One class and one direction of the crank, ready to be bounded.
+#[derive(Clone, Debug)]
+pub struct Question {
+    class: Class,
+    whole: Target,
+    /// All points but one.
+    fewer: Vec<Target>,
+    turns: Vec<f64>,
+    /// No linkage with a larger |Z| is asked about.
+    cap: f64,
+}
+
+/// Why a box needs no further look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Leaf {
+    /// No linkage is there: |d| > min(g, pi - g).
+    Outside,
+    /// Its linkages have cognates in the other half.
+    Cognate,
+    /// Its bound reaches what was asked for.
+    Bounded,
+}
+
+/// What a box is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    /// Decided.
+    Leaf(Leaf),
+    /// Not decided: its bound.
+    Open(Bound),
+}
+
+impl Question {
+    /// A class and a direction (+1 or -1) for points with increments of the crank in degrees.
+    ///
+    /// # Errors
+    /// [`TargetError`].
+    pub fn new(
+        class: Class,
+        direction: f64,
+        points: &[[f64; 2]],
+        turns_deg: &[f64],
+        cap: f64,
+    ) -> Result<Self, TargetError> {
+        if points.len() < 5 {
+            return Err(TargetError::Points { points: points.len() });
+        }
+        let whole = Target::new(points, turns_deg, direction)?;
+        let fewer = (0..points.len())
+            .map(|j| {
+                let (mut points, mut turns) = (points.to_vec(), turns_deg.to_vec());
+                points.remove(j);
+                turns.remove(j);
+                Target::new(&points, &turns, direction)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let turns = turns_deg.iter().map(|deg| direction.signum() * deg.to_radians()).collect();
+        Ok(Question { class, whole, fewer, turns, cap })
+    }
+
+    /// The whole target.
+    pub fn target(&self) -> &Target {
+        &self.whole
+    }
+
+    /// The class.
+    pub fn class(&self) -> Class {
+        self.class
+    }
+
+    /// The whole chart.
+    pub fn root() -> Cell {
+        ROOT
+    }
+
+    /// Decides a box, or bounds it.
+    pub fn look(&self, cell: &Cell, wanted: f64) -> Outcome {
+        if outside(cell) {
+            return Outcome::Leaf(Leaf::Outside);
+        }
+        if in_cognate_half(cell) {
+            return Outcome::Leaf(Leaf::Cognate);
+        }
+        let mut best = bound(&self.whole, self.class, cell, self.cap, wanted);
+        if best.sum_sq < wanted && cell.high[0] > 0.5 {
+            // The crank pin may be near B at one point: that point is left out.
+            if let Some(j) = self.near(cell) {
+                let other = bound(&self.fewer[j], self.class, cell, self.cap, wanted);
+                if other.sum_sq > best.sum_sq {
+                    best.sum_sq = other.sum_sq;
+                }
+                best.weight = other.weight;
+            }
+        }
+        if best.sum_sq >= wanted { Outcome::Leaf(Leaf::Bounded) } else { Outcome::Open(best) }
+    }
+
+    /// The point whose crank pin comes nearest to B, where it comes near in comparison with the box.
+    fn near(&self, cell: &Cell) -> Option<usize> {
+        let (c, h) = cell.centre();
+        let f = |turn: f64| ((c[1] + turn).cos() - c[0]).hypot((c[1] + turn).sin());
+        let all = self.turns.iter().map(|&turn| f(turn)).enumerate();
+        let (j, f) = all.min_by(|x, y| x.1.total_cmp(&y.1))?;
+        (f < 4.0 * (h[0] + h[1])).then_some(j)
+    }
+}
+
+/// Whether no point of the box has |d| <= min(g, pi - g).
+pub fn outside(cell: &Cell) -> bool {
+    let d = if cell.low[3] > 0.0 {
+        cell.low[3]
+    } else if cell.high[3] < 0.0 {
+        -cell.high[3]
+    } else {
+        0.0
+    };
+    let above_pi = std::f64::consts::PI + 1e-5;
+    d > cell.high[2] || d > above_pi - cell.low[2]
+}
+
+/// Whether |sin g sin d| < p cos d |cos g| on the whole box: b > c there, and the cognate has b < c.
+pub fn in_cognate_half(cell: &Cell) -> bool {
+    let (c, h) = cell.centre();
+    let least = |x: f64, h: f64| (x.abs() - h).max(0.0);
+    let sin = (c[2].sin().abs() + h[2]) * (c[3].sin().abs() + h[3]);
+    let cos = least(c[2].cos(), h[2]) * least(c[3].cos(), h[3]);
+    c[3].abs() + h[3] < 1.57 && sin + 1e-12 < cell.low[0] * cos
+}
+
+/// A box that waits.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    sum_sq: f64,
+    number: u64,
+    axis: u8,
+    cell: [f32; 8],
+}
+
+impl Waiting {
+    fn new(cell: &Cell, bound: &Bound, parent: f64, number: u64) -> Self {
+        let mut packed = [0.0; 8];
+        for k in 0..4 {
+            packed[k] = cell.low[k] as f32;
+            packed[4 + k] = cell.high[k] as f32;
+        }
+        let axis = (0..4).max_by(|&i, &j| bound.weight[i].total_cmp(&bound.weight[j])).unwrap_or(0);
+        Waiting { sum_sq: bound.sum_sq.max(parent), number, axis: axis as u8, cell: packed }
+    }
+
+    fn cell(&self) -> Cell {
+        let end = |k: usize| f64::from(self.cell[k]);
+        Cell { low: [end(0), end(1), end(2), end(3)], high: [end(4), end(5), end(6), end(7)] }
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+impl Eq for Waiting {}
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Waiting {
+    /// The lowest bound first, then the oldest.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.sum_sq.total_cmp(&self.sum_sq).then(other.number.cmp(&self.number))
+    }
+}
+
+/// A search that can be stopped and asked at any time.
+#[derive(Clone, Debug)]
+pub struct Search {
+    question: Question,
+    wanted: f64,
+    heap: BinaryHeap<Waiting>,
+    boxes: u64,
+    decided: f64,
+    leaves: Sha256,
+}
+
+impl Search {
+    /// To find out whether every sum of squares is at least `wanted`.
+    pub fn new(question: Question, wanted: f64) -> Self {
+        let none = Bound { sum_sq: 0.0, weight: [1.0, 2.0, 1.5, 1.2] };
+        let heap = BinaryHeap::from([Waiting::new(&ROOT, &none, 0.0, 0)]);
+        Search { question, wanted, heap, boxes: 0, decided: 0.0, leaves: Sha256::new() }
+    }
+
+    /// At most the sum of squares of every linkage of the question: what is certified by now.
+    pub fn lower_bound(&self) -> f64 {
+        self.heap.peek().map_or(self.wanted, |lowest| lowest.sum_sq.min(self.wanted))
+    }
+
+    /// Whether everything is decided.
+    pub fn closed(&self) -> bool {
+        self.heap.is_empty()
+    }
+
+    /// How many boxes were looked at.
+    pub fn boxes(&self) -> u64 {
+        self.boxes
+    }
+
+    /// How many wait.
+    pub fn waiting(&self) -> usize {
+        self.heap.len()
+    }
+
+    /// The share of the chart that is decided.
+    pub fn decided(&self) -> f64 {
+        self.decided
+    }
+
+    /// Whether no more boxes can wait: the search ends with what is certified.
+    pub fn full(&self) -> bool {
+        self.heap.len() > MAX_WAITING
+    }
+
+    /// SHA-256 of the leaves so far, in the order in which they were decided: eight ends as little-endian single
+    /// floats (lower, then upper) and a byte for the rule.
+    pub fn leaves_sha256(&self) -> [u8; 32] {
+        self.leaves.clone().finalize().into()
+    }
+
+    /// Whether some box that waits contains the point.
+    pub fn waits_at(&self, point: [f64; 4]) -> bool {
+        let holds = |cell: &Cell| (0..4).all(|k| (cell.low[k]..=cell.high[k]).contains(&point[k]));
+        self.heap.iter().any(|waiting| holds(&waiting.cell()))
+    }
+
+    /// Looks at one batch of boxes.
+    pub fn step(&mut self) {
+        let mut batch = Vec::with_capacity(BATCH);
+        while batch.len() < BATCH {
+            let Some(lowest) = self.heap.pop() else { break };
+            batch.push(lowest);
+        }
+        let look = |parent: &Waiting| {
+            let halves = parent.cell().split(usize::from(parent.axis));
+            // Halves meet in a number that the stored box has too.
+            halves.map(|half| {
+                let half = packed(&half);
+                (half, self.question.look(&half, self.wanted))
+            })
+        };
+        let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
+        for (parent, halves) in batch.iter().zip(looked) {
+            for (cell, outcome) in halves {
+                self.boxes += 1;
+                match outcome {
+                    Outcome::Leaf(rule) => {
+                        self.decided += share(&cell);
+                        for end in cell.low.iter().chain(&cell.high) {
+                            self.leaves.update((*end as f32).to_le_bytes());
+                        }
+                        self.leaves.update([rule as u8]);
+                    }
+                    Outcome::Open(bound) => {
+                        self.heap.push(Waiting::new(&cell, &bound, parent.sum_sq, self.boxes));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A box with its ends rounded to what is stored: both halves round their common end alike.
+fn packed(cell: &Cell) -> Cell {
+    let single = |x: f64| f64::from(x as f32);
+    Cell { low: cell.low.map(single), high: cell.high.map(single) }
+}
+
+fn share(cell: &Cell) -> f64 {
+    (0..4).map(|k| (cell.high[k] - cell.low[k]) / (ROOT.high[k] - ROOT.low[k])).product()
+}

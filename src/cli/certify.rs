@@ -1,0 +1,111 @@
+//! `certify`: a bound below which no linkage can be.
+
+use super::arguments::Certify;
+use super::result::{self, Which};
+use super::{Ended, interrupt, synth, terminal};
+use crate::certificate::{Progress, Request, certify};
+use crate::diagnostic::escaped;
+use crate::record::Certificate;
+use crate::results_folder::ResultsFolder;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+/// Progress lines come this often.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+/// The file with a run's times.
+const TIMING: &str = "timing.json";
+
+/// Runs the command.
+pub fn run(options: &Certify) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn refuse(text: &str) -> Ended {
+    terminal::complain(text);
+    Ended::Refused
+}
+
+fn inner(options: &Certify) -> Result<Ended, Ended> {
+    let begun = Instant::now();
+    let shown = escaped(&options.result.display().to_string());
+    let run = result::read_run_of(&options.result, "certify")?;
+    if run.which != Which::All {
+        return Err(refuse(&format!("{shown}: a result is certified as a whole; give {} alone", run.named)));
+    }
+    if !options.result.is_dir() {
+        return Err(refuse(&format!("{shown}: certify writes into the result's folder; give the folder")));
+    }
+    let mut record = run.record;
+    // Taken before the work, so that a place that cannot be written to is told at once.
+    let mut folder = ResultsFolder::take(&options.result).map_err(|e| refuse(&e.to_string()))?;
+    let limit = options.set.iter().map(|(_, seconds)| *seconds).next_back().unwrap_or(DEFAULT_LIMIT_S);
+    let deadline = begun + Duration::from_secs_f64(limit);
+    let cancel = interrupt::watch("keeping what is proved by now");
+    let mut last = Instant::now();
+    let mut tell = |progress: &Progress| {
+        if !options.quiet && last.elapsed() >= LINE_EVERY {
+            last = Instant::now();
+            terminal::tell(&format!(
+                "{:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {:.6e} (gap {:.4} %)",
+                begun.elapsed().as_secs_f64(),
+                progress.boxes,
+                100.0 * progress.decided,
+                progress.lower_bound,
+                100.0 * progress.gap,
+            ));
+        }
+    };
+    let request = Request { gap: options.gap };
+    let certificate = certify(&record, &request, cancel, Some(deadline), &mut tell)
+        .map_err(|e| refuse(&format!("{shown}: {e}")))?;
+    let text = text(&certificate);
+    let closed = certificate.closed;
+    record.certificate = Some(certificate);
+    let files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+    folder.replace(&files).map_err(|e| refuse(&e.to_string()))?;
+    terminal::answer(&text);
+    Ok(match closed {
+        true => Ended::Good,
+        false if cancel.load(Ordering::SeqCst) => Ended::Interrupted,
+        false => Ended::Bad,
+    })
+}
+
+/// The time limit unless another is set, seconds.
+const DEFAULT_LIMIT_S: f64 = 300.0;
+
+/// The files of the result with the certificate; the times of its search stay.
+fn files(
+    place: &Path,
+    record: &crate::record::Record,
+    begun: Instant,
+) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let total_s = begun.elapsed().as_secs_f64();
+    let threads = rayon::current_num_threads();
+    let timing = synth::Timing { search_s: total_s, beside_s: 0.0, total_s, threads };
+    let mut files = synth::files(record, &timing)?;
+    if let Ok(kept) = std::fs::read(place.join(TIMING)) {
+        for (_, bytes) in files.iter_mut().filter(|(name, _)| name == TIMING) {
+            bytes.clone_from(&kept);
+        }
+    }
+    Ok(files)
+}
+
+/// What a person reads.
+fn text(certificate: &Certificate) -> String {
+    let mut text = format!("{}\n\n", certificate.statement);
+    let state = if certificate.closed { "closed" } else { "not closed: the time was over" };
+    text.push_str(&format!("  gap {:.4} %, {state}; {} boxes\n", 100.0 * certificate.gap, certificate.boxes));
+    for part in &certificate.parts {
+        let way = if part.direction > 0 { "with" } else { "against" };
+        text.push_str(&format!(
+            "  {:<12} {way:<7} the increments: no sum below {:.9e}, {} boxes\n",
+            part.linkage_type, part.lower_bound, part.boxes
+        ));
+    }
+    text.push_str(&format!("  Covered: {}.\n", certificate.covered.join("; ")));
+    text.push_str(&format!("  Not covered: {}.\n", certificate.not_covered.join("; ")));
+    text
+}

@@ -1,0 +1,46 @@
+//! What is proved about a result: no linkage of the covered kind can have a lower sum of squares.
+
+use serde::{Deserialize, Serialize};
+
+/// A lower bound of the sum of squares with what it covers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Certificate {
+    /// What is proved, in one sentence.
+    pub statement: String,
+    /// No covered linkage has a sum of squares below it.
+    pub lower_bound: f64,
+    /// 1 - lower bound/best candidate, at least 0.
+    pub gap: f64,
+    /// Whether the wanted gap was reached everywhere.
+    pub closed: bool,
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// What the bound holds for.
+    pub covered: Vec<String>,
+    /// What it says nothing about.
+    pub not_covered: Vec<String>,
+    /// SHA-256 of the parts' digests.
+    pub leaves_sha256: String,
+    /// The gap that was asked for.
+    pub wanted_gap: f64,
+    /// Each class in each direction.
+    pub parts: Vec<CertificatePart>,
+}
+
+/// One class in one direction of the crank.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertificatePart {
+    /// crank-rocker or double-crank.
+    #[serde(rename = "type")]
+    pub linkage_type: String,
+    /// 1: the crank turns with the prescribed increments; -1: against them.
+    pub direction: i8,
+    /// The part's bound.
+    pub lower_bound: f64,
+    /// Whether it was reached everywhere.
+    pub closed: bool,
+    /// Boxes looked at.
+    pub boxes: u64,
+    /// SHA-256 of the leaves, in order.
+    pub leaves_sha256: String,
+}

@@ -1,0 +1,93 @@
+//! `certify` and `verify --certificate` as a person meets them.
+
+use crate::common::root;
+use assert_cmd::Command;
+use linkwright::record::Record;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn linkwright(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::cargo_bin("linkwright")
+        .expect("it is built")
+        .current_dir(folder)
+        .env("NO_COLOR", "1")
+        .args(arguments)
+        .output()
+        .expect("it runs");
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    (output.status.code().expect("it ends by itself"), text(output.stdout), text(output.stderr))
+}
+
+fn problem(name: &str) -> String {
+    root().join(format!("problems/literature/{name}.toml")).display().to_string()
+}
+
+fn record(folder: &Path) -> Record {
+    let text = fs::read_to_string(folder.join("record.json")).expect("there is a record");
+    serde_json::from_str(&text).expect("it is a record")
+}
+
+#[test]
+fn a_run_that_is_stopped_early_leaves_a_valid_bound_that_verify_works_out_again() {
+    let folder = TempDir::new().expect("a folder");
+    let result = folder.path().join("r");
+    assert_eq!(linkwright(folder.path(), &["synth", &problem("k18"), "--out", "r", "--quiet"]).0, 0);
+    let before = record(&result);
+    let times = fs::read(result.join("timing.json")).expect("times");
+    let (code, stdout, stderr) =
+        linkwright(folder.path(), &["certify", "r", "--set", "certify.time_limit_s=1", "--quiet"]);
+    assert_eq!(code, 1, "{stdout}{stderr}");
+    assert!(stdout.contains("not closed") && stdout.contains("No four-bar linkage"), "{stdout}");
+    let mut after = record(&result);
+    let certificate = after.certificate.clone().expect("a certificate");
+    assert!(!certificate.closed && certificate.boxes > 0 && certificate.parts.len() == 4);
+    assert!(certificate.lower_bound >= 0.0 && certificate.lower_bound < before.candidates[0].error.sum_sq);
+    assert!(
+        (certificate.gap + certificate.lower_bound / before.candidates[0].error.sum_sq - 1.0).abs() < 1e-12
+    );
+    // Nothing else has changed.
+    after.certificate = None;
+    assert_eq!(before, after);
+    assert_eq!(times, fs::read(result.join("timing.json")).expect("times"));
+    let (code, stdout, stderr) = linkwright(folder.path(), &["verify", "r", "--certificate"]);
+    assert_eq!(code, 0, "{stdout}{stderr}");
+    assert!(stdout.contains("worked out again"), "{stdout}");
+    // A bound that was raised by hand is found out.
+    let path = result.join("record.json");
+    after.certificate = Some(certificate);
+    if let Some(certificate) = &mut after.certificate {
+        certificate.lower_bound = 0.009;
+        certificate.closed = true;
+    }
+    fs::write(&path, serde_json::to_string_pretty(&after).expect("JSON")).expect("it is written");
+    let (code, stdout, _) = linkwright(folder.path(), &["verify", "r", "--certificate"]);
+    assert_eq!(code, 1);
+    assert!(stdout.contains("certificate.lower_bound") && stdout.contains("certificate.closed"), "{stdout}");
+}
+
+#[test]
+fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
+    let folder = TempDir::new().expect("a folder");
+    let points = "x,y\n0,0\n1,0.2\n2,0\n2.1,1\n1,1.3\n0,1\n";
+    fs::write(folder.path().join("free.csv"), points).expect("written");
+    linkwright(folder.path(), &["synth", "free.csv", "--out", "free", "--quiet"]);
+    let before = fs::read(folder.path().join("free/record.json")).expect("a record");
+    let (code, _, stderr) = linkwright(folder.path(), &["certify", "free"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("free timing"), "{stderr}");
+    assert_eq!(before, fs::read(folder.path().join("free/record.json")).expect("a record"));
+    let (code, _, stderr) = linkwright(folder.path(), &["verify", "free", "--certificate"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("no certificate"), "{stderr}");
+    for (arguments, words) in [
+        (["certify", "free", "--gap", "1.5"], "between 0 and 1"),
+        (["certify", "free", "--gap", "-1"], "above 0"),
+        (["certify", "free", "--set", "certify.time_limit_s=0"], "above 0"),
+        (["certify", "free", "--set", "certify.threads=2"], "certify.time_limit_s"),
+    ] {
+        let (code, _, stderr) = linkwright(folder.path(), &arguments);
+        assert_eq!(code, 2, "{arguments:?}");
+        assert!(stderr.contains(words), "{arguments:?}: {stderr}");
+    }
+}
