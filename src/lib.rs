@@ -27,6 +27,7 @@
 //! | [`exact`] | every linkage through nine precision points | linkage, task, solve (random streams) |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
+//! | [`live`] | answers that follow a target under the hand: warm starts, same referee | problem, record, search |
 //! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
@@ -55,6 +56,7 @@ pub mod export;
 mod input_text;
 pub mod linkage;
 pub mod linkage_file;
+pub mod live;
 pub mod name;
 pub mod plates;
 pub mod points_file;
