@@ -5,13 +5,14 @@
 //! [referee](crate::task::referee) as every other answer, and is ranked by the same rules. Nothing here reads a clock:
 //! the same moves give the same candidates.
 
+use crate::assess::assess;
 use crate::problem::Problem;
 use crate::record::Candidate;
 use crate::search::multistart::{judged, polish};
 use crate::search::nearest::nearest_positions;
-use crate::search::Budget;
 use crate::search::rank::{compare, distinct, sort};
 use crate::search::warm::start_at;
+use crate::search::{Budget, plan};
 
 /// The most candidates that follow the hand.
 pub const FOLLOWING: usize = 5;
@@ -73,6 +74,23 @@ impl Session {
     }
 }
 
+/// Evaluations of a first look.
+const FIRST_LOOK: u64 = 3000;
+
+/// A first look at a problem: the search that every run begins with, with a small budget and without tolerances,
+/// whose polish takes long. What it finds is judged by the whole problem. Of a problem that cannot be searched
+/// nothing is found.
+pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
+    let mut spec = problem.spec().clone();
+    spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
+    spec.task.path.tolerance = None;
+    let Ok(easier) = Problem::new(spec) else { return Vec::new() };
+    let Ok(outcome) = plan::search(&easier, budget, &|_| {}) else { return Vec::new() };
+    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
+    let found = outcome.candidates.iter().filter_map(judged).collect();
+    distinct(problem, found, FOLLOWING)
+}
+
 /// A candidate brought to a problem: placed, fitted, judged.
 fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Option<Candidate> {
     let placed = placed(problem, candidate)?;
@@ -109,7 +127,8 @@ mod tests {
                 [3.0 * angle.cos() + off, 2.0 * angle.sin() + 0.3 * (2.0 * angle).cos()]
             })
             .collect();
-        let text = format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = true\n[solve]\nseed = 3\n");
+        let text =
+            format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = true\n[solve]\nseed = 3\n");
         Problem::new(parse("egg", &text, None, &[]).expect("a problem").spec).expect("a task")
     }
 
@@ -142,6 +161,20 @@ mod tests {
         let afresh = searched(&moved);
         let followed = session.candidates()[0].error.sum_sq;
         assert!(followed <= 1.5 * afresh[0].error.sum_sq, "{followed} beside {}", afresh[0].error.sum_sq);
+    }
+
+    #[test]
+    fn a_first_look_finds_something_and_judges_it_by_the_whole_problem() {
+        let cancel = AtomicBool::new(false);
+        let mut spec = egg(24, 0, 0.0).spec().clone();
+        spec.task.path.tolerance = Some(vec![1e-9; 24]);
+        let problem = Problem::new(spec).expect("a task");
+        let found = first_look(&problem, &Budget::new(&cancel, None));
+        assert!(!found.is_empty() && found.iter().all(|c| !c.accepted));
+        assert!(found[0].requirements.iter().any(|r| r.name == "tolerance" && !r.met));
+        assert!(found[0].error.rms_over_size < 0.05);
+        cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(first_look(&problem, &Budget::new(&cancel, None)).len() <= found.len());
     }
 
     #[test]
