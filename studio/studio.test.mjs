@@ -133,7 +133,8 @@ test("draw, drag, pin, save, reload, restart", async () => {
   const record = JSON.parse(readFileSync(join(work, "out/record.json"), "utf8"));
   const best = record.candidates[0].error.rms;
   const shown = Number((await page.locator("#strip .figures").first().textContent()).match(/rms ([\d.]+)/)[1]);
-  assert.ok(shown <= best * 1.001 + 5e-4, `the page shows ${shown}, synth finds ${best}`);
+  // Three digits are shown.
+  assert.ok(shown <= best * 1.006, `the page shows ${shown}, synth finds ${best}`);
   if (shots) await page.screenshot({ path: join(shots, "drawn.png") });
   // A reload keeps everything, and so does a studio that is started again.
   await page.reload();
