@@ -53,6 +53,9 @@ pub enum Command {
     Suite(Suite),
     /// Write a linkage as a file to build from: drawings in millimetres, DXF, STL, OpenSCAD, lists
     Export(Export),
+    /// Open a local page: draw a path, drag its points, watch the best linkages follow
+    #[cfg(feature = "studio")]
+    Studio(Studio),
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
         /// problem or linkage
@@ -315,6 +318,21 @@ pub struct Suite {
     /// Write results/literature.md and results/literature.json too (all problems, no FILTER)
     #[arg(long, conflicts_with = "filter")]
     pub write: bool,
+}
+
+/// Options of `studio`.
+#[cfg(feature = "studio")]
+#[derive(Debug, Args)]
+pub struct Studio {
+    /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
+    #[arg(value_name = "PROBLEM")]
+    pub problem: Option<PathBuf>,
+    /// The port on 127.0.0.1 [default: 8017, or a free one where that is taken]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub port: Option<u16>,
+    /// Open no browser: print the address alone
+    #[arg(long)]
+    pub no_open: bool,
 }
 
 /// Options of `export`.

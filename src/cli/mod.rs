@@ -20,6 +20,8 @@ mod progress;
 mod report;
 mod result;
 mod snap;
+#[cfg(feature = "studio")]
+mod studio;
 mod suite;
 mod synth;
 mod terminal;
@@ -88,6 +90,8 @@ fn dispatch(command: Command) -> Ended {
         Command::Snap(options) => snap::run(&options),
         Command::Suite(options) => suite::run(&options),
         Command::Export(options) => export::run(&options),
+        #[cfg(feature = "studio")]
+        Command::Studio(options) => studio::run(&options),
         Command::Schema { kind, markdown } => {
             terminal::answer(&match markdown {
                 true => crate::schema::reference(kind),

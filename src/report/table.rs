@@ -235,7 +235,7 @@ fn ending(record: &Record) -> String {
 }
 
 /// Method, seed, cost, why it ended, on one line.
-pub(super) fn ending_sentences(record: &Record) -> String {
+pub fn ending_sentences(record: &Record) -> String {
     let reason = if record.method.used == ["continuation"] && record.termination.reproducible {
         "every solution path was followed to its end"
     } else {

@@ -26,5 +26,7 @@ mod report_page;
 mod rooms;
 mod seeds_document;
 mod shipped_problems;
+#[cfg(feature = "studio")]
+mod studio;
 mod svg_in;
 mod text_in;

@@ -27,6 +27,8 @@ pub(super) mod page;
 mod requirements;
 mod table;
 
+pub use motion::{Drive, DriveKind};
+
 /// The player's modules, each after those that it imports.
 pub(super) const PLAYER: [&str; 7] = [
     include_str!("player/kinematics.mjs"),

@@ -4,9 +4,9 @@ use crate::linkage::{AssemblyMode, FourBar, InputRange};
 use serde::Serialize;
 
 /// What the player's one parameter q, degrees, stands for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum DriveKind {
+pub enum DriveKind {
     /// q is the crank angle; it turns fully on one assembly.
     Turn,
     /// q is the crank angle; it rocks within the range, on one assembly.
@@ -18,20 +18,21 @@ pub(super) enum DriveKind {
 }
 
 /// The motion that a page plays: the circuit of the first point, and of it the branch used or all of it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Drive {
-    pub(super) kind: DriveKind,
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, schemars::JsonSchema)]
+pub struct Drive {
+    /// What the parameter stands for.
+    pub kind: DriveKind,
     /// The middle of the crank's range, degrees in (-180, 180].
-    pub(super) middle_deg: f64,
+    pub middle_deg: f64,
     /// Half of the crank's range; 180 where it turns fully.
-    pub(super) half_width_deg: f64,
+    pub half_width_deg: f64,
     /// The assembly; where toggles are passed, that of the first point.
-    pub(super) t1: i64,
+    pub t1: i64,
 }
 
 impl Drive {
     /// The drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
-    pub(super) fn new(linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
+    pub fn new(linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
         let mobility = linkage.mobility();
         let positions: Vec<(f64, AssemblyMode)> = crank_deg
             .iter()

@@ -1,0 +1,178 @@
+//! Who may ask: programs that name this host, pages that come from it, browsers that were let in with the token.
+
+use axum::body::Body;
+use axum::extract::{Request, State};
+use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
+use axum::http::{Method, StatusCode};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use std::fmt::Write;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Requests a second that are answered in the long run.
+const RATE: f64 = 100.0;
+/// Requests that are answered at once after a pause.
+const BURST: f64 = 300.0;
+/// The longest time that a request may take, its body included.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// The largest body and the largest message, bytes.
+pub(super) const MOST_BYTES: usize = 256 * 1024;
+
+/// What lets a browser in.
+pub(super) struct Guard {
+    port: u16,
+    /// The token of the address that is printed; taken by the first who brings it.
+    token: Mutex<Option<String>>,
+    /// What the cookie holds.
+    secret: String,
+    bucket: Mutex<(f64, Instant)>,
+}
+
+/// 256 random bits as hexadecimal digits.
+fn random() -> Result<String, getrandom::Error> {
+    let mut bytes = [0u8; 32];
+    getrandom::fill(&mut bytes)?;
+    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
+}
+
+/// Whether two secrets are equal, in a time that does not tell where they differ.
+fn same(one: &str, other: &str) -> bool {
+    one.len() == other.len() && one.bytes().zip(other.bytes()).fold(0, |apart, (x, y)| apart | (x ^ y)) == 0
+}
+
+impl Guard {
+    pub(super) fn new(port: u16) -> Result<Self, getrandom::Error> {
+        Ok(Guard {
+            port,
+            token: Mutex::new(Some(random()?)),
+            secret: random()?,
+            bucket: Mutex::new((BURST, Instant::now())),
+        })
+    }
+
+    /// The token that has not been used yet.
+    pub(super) fn token(&self) -> Option<String> {
+        self.token.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Takes the token: true once.
+    pub(super) fn admits(&self, token: &str) -> bool {
+        let mut kept = self.token.lock().unwrap_or_else(PoisonError::into_inner);
+        let right = kept.as_deref().is_some_and(|kept| same(kept, token));
+        if right {
+            *kept = None;
+        }
+        right
+    }
+
+    /// The cookie that says that the token was brought. Cookies know no ports, so the name does.
+    pub(super) fn cookie(&self) -> String {
+        format!("{}={}; HttpOnly; SameSite=Strict; Path=/", self.cookie_name(), self.secret)
+    }
+
+    fn cookie_name(&self) -> String {
+        format!("linkwright-studio-{}", self.port)
+    }
+
+    /// Whether a request brings the cookie.
+    pub(super) fn knows(&self, headers: &HeaderMap) -> bool {
+        let name = self.cookie_name();
+        headers
+            .get_all(header::COOKIE)
+            .iter()
+            .filter_map(|value| value.to_str().ok())
+            .flat_map(|value| value.split(';'))
+            .filter_map(|pair| pair.trim().split_once('='))
+            .any(|(key, value)| key == name && same(value, &self.secret))
+    }
+
+    /// Whether the request names this host: a page of another name that points here has another.
+    fn is_for_us(&self, headers: &HeaderMap) -> bool {
+        let mut hosts = headers.get_all(header::HOST).iter();
+        let host = hosts.next().and_then(|host| host.to_str().ok());
+        hosts.next().is_none()
+            && host.is_some_and(|host| {
+                host == format!("127.0.0.1:{}", self.port)
+                    || host.eq_ignore_ascii_case(&format!("localhost:{}", self.port))
+            })
+    }
+
+    /// Whether the request comes from our page; `needed`: whether it must say so.
+    fn is_from_us(&self, headers: &HeaderMap, needed: bool) -> bool {
+        let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
+        match (text(header::ORIGIN), text(header::HOST)) {
+            (None, _) => !needed,
+            (Some(origin), Some(host)) => origin.eq_ignore_ascii_case(&format!("http://{host}")),
+            (Some(_), None) => false,
+        }
+    }
+
+    /// Whether there is room for one more request now.
+    fn has_room(&self) -> bool {
+        let mut bucket = self.bucket.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = Instant::now();
+        let filled = bucket.0 + RATE * now.duration_since(bucket.1).as_secs_f64();
+        *bucket = (filled.min(BURST), now);
+        let room = bucket.0 >= 1.0;
+        if room {
+            bucket.0 -= 1.0;
+        }
+        room
+    }
+
+    /// Why a request is refused before anything is done for it.
+    fn refusal(&self, request: &Request) -> Option<(StatusCode, &'static str)> {
+        let headers = request.headers();
+        let upgrade = request.uri().path() == super::server::LIVE;
+        if !self.is_for_us(headers) {
+            Some((StatusCode::MISDIRECTED_REQUEST, "the studio answers to 127.0.0.1 alone\n"))
+        } else if !self.is_from_us(headers, upgrade || request.method() != Method::GET) {
+            Some((StatusCode::FORBIDDEN, "only the studio's own page may ask\n"))
+        } else if announced(headers) > MOST_BYTES as u64 {
+            Some((StatusCode::PAYLOAD_TOO_LARGE, "this is more than the studio reads\n"))
+        } else if !self.has_room() {
+            Some((StatusCode::TOO_MANY_REQUESTS, "too many requests: wait a second\n"))
+        } else {
+            None
+        }
+    }
+}
+
+/// How long the body says it is; what says nothing clear is limited as it is read.
+fn announced(headers: &HeaderMap) -> u64 {
+    let length = headers.get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok());
+    length.and_then(|text| text.parse().ok()).unwrap_or(0)
+}
+
+/// What every answer says of itself.
+fn with_headers(mut response: Response<Body>) -> Response<Body> {
+    let policy = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
+                  base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    for (name, value) in [
+        ("content-security-policy", policy),
+        ("cache-control", "no-store"),
+        ("x-content-type-options", "nosniff"),
+        ("referrer-policy", "no-referrer"),
+        ("cross-origin-opener-policy", "same-origin"),
+        ("cross-origin-resource-policy", "same-origin"),
+    ] {
+        response.headers_mut().insert(HeaderName::from_static(name), HeaderValue::from_static(value));
+    }
+    response
+}
+
+/// Stands before every route.
+pub(super) async fn guarded(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response<Body> {
+    if let Some(refusal) = guard.refusal(&request) {
+        return with_headers(refusal.into_response());
+    }
+    let answer = tokio::time::timeout(PATIENCE, next.run(request)).await;
+    let late = || (StatusCode::REQUEST_TIMEOUT, "this took too long\n").into_response();
+    with_headers(answer.unwrap_or_else(|_| late()))
+}

@@ -1,0 +1,21 @@
+//! A local page that answers while a target is drawn.
+//!
+//! ```text
+//! messages.rs     what a tab says and what it is answered, as JSON
+//! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
+//! server.rs       routes, the page, the WebSocket
+//! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
+//! connection.rs   how many connections there may be, and for how long a silent one stays
+//! page/           the page, its style and its script: built from studio/
+//! ```
+//!
+//! The studio listens on 127.0.0.1 alone and reads no file: targets come as points. It does no mathematics: what
+//! follows the hand is [`live`](crate::live), what is searched is [`run`](mod@crate::run), as on the command line.
+
+mod connection;
+mod guard;
+pub mod messages;
+mod server;
+mod tab;
+
+pub use server::{Studio, StudioError};

@@ -1,0 +1,50 @@
+// The WebSocket: the latest edit goes out at most once a frame, a lost connection is tried again.
+
+import type { Answer, Ask } from "./messages";
+
+export class Connection {
+  private socket: WebSocket | null = null;
+  private waiting: Ask | null = null;
+  private last: Ask | null = null;
+  private lost = 0;
+
+  constructor(private hear: (answer: Answer) => void, private state: (open: boolean, tries: number) => void) {
+    this.open();
+  }
+
+  private open() {
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    socket.addEventListener("open", () => {
+      this.socket = socket;
+      this.lost = 0;
+      this.state(true, 0);
+      if (this.last) this.send({ ...this.last, moving: false });
+    });
+    socket.addEventListener("message", (event) => this.hear(JSON.parse(event.data) as Answer));
+    socket.addEventListener("close", () => {
+      this.socket = null;
+      this.lost += 1;
+      this.state(false, this.lost);
+      setTimeout(() => this.open(), Math.min(500 * this.lost, 5000));
+    });
+  }
+
+  send(ask: Ask) {
+    const first = this.waiting === null;
+    // A target that was begun anew stays so until it has gone out.
+    this.waiting = this.waiting?.fresh ? { ...ask, fresh: true } : ask;
+    if (first) requestAnimationFrame(() => this.flush());
+  }
+
+  private flush() {
+    const ask = this.waiting;
+    if (!ask) return;
+    this.last = ask;
+    if (this.socket && this.socket.bufferedAmount > 200_000) {
+      requestAnimationFrame(() => this.flush());
+      return;
+    }
+    this.waiting = null;
+    this.socket?.send(JSON.stringify(ask));
+  }
+}

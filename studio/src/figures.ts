@@ -1,0 +1,86 @@
+// Linkages as pictures: on the board and in the strip.
+
+import { Cycle } from "../../src/report/html/player/cycle.mjs";
+import { pathThrough, px, setAll, shape } from "../../src/report/html/player/svg.mjs";
+import type { Point, Shown } from "./messages";
+
+export type Toward = (p: Point) => Point;
+
+/** A linkage made ready to move. */
+export class Moving {
+  readonly cycle: Cycle;
+  readonly curve: (Point | null)[];
+
+  constructor(readonly shown: Shown, points: Point[]) {
+    const mechanism = { key: "", name: "", ...shown };
+    // Between a moved target and its answer the two may differ in length.
+    this.cycle = new Cycle(mechanism as never, { points: points.slice(0, shown.crank_deg.length) });
+    this.curve = this.cycle.circuit().map((joints: { P: Point } | null) => joints && joints.P);
+  }
+
+  /** q at a part (0 to 1) of the motion: round and round, or to and fro over what the points use. */
+  at(part: number): number {
+    const { cycle } = this;
+    if (cycle.cyclic) return ((((cycle.sense * part * 360 + cycle.start) % 360) + 360) % 360);
+    const used = cycle.used;
+    const [low, high] = used && used[1] - used[0] > 0.5 ? used : cycle.range;
+    return low + (high - low) * (0.5 - 0.5 * Math.cos(2 * Math.PI * part));
+  }
+
+  box(): number[] {
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    const { A, B } = this.shown.linkage;
+    const joints = this.cycle.circuit().flatMap((j: { C: Point; D: Point; P: Point } | null) => (j ? [j.C, j.D, j.P] : []));
+    for (const [x, y] of [A, B, ...joints]) {
+      box[0] = Math.min(box[0], x);
+      box[1] = Math.min(box[1], y);
+      box[2] = Math.max(box[2], x);
+      box[3] = Math.max(box[3], y);
+    }
+    return box;
+  }
+}
+
+/** The parts of a linkage in a drawing. */
+export class Figure {
+  readonly group = shape("g", { class: "figure" });
+  private curve = shape("path", { class: "curve" });
+  private ground = shape("path", { class: "ground" });
+  private coupler = shape("path", { class: "coupler" });
+  private edges = shape("path", { class: "bar-edge" });
+  private bars = shape("path", { class: "bar" });
+  private pins = Array.from({ length: 4 }, () => shape("circle", { class: "pin" }));
+  private point = shape("circle", { class: "tracer" });
+  private moving: Moving | null = null;
+  private toward: Toward = (p) => p;
+
+  constructor(scale = 1) {
+    this.pins.forEach((pin, i) => setAll(pin, { r: (i < 2 ? 5.4 : 4.4) * scale }));
+    setAll(this.point, { r: 5 * scale });
+    this.group.append(this.ground, this.curve, this.coupler, this.edges, this.bars, ...this.pins, this.point);
+  }
+
+  show(moving: Moving | null, toward: Toward) {
+    this.moving = moving;
+    this.toward = toward;
+    this.group.classList.toggle("absent", !moving);
+    if (!moving) return;
+    const { A, B } = moving.shown.linkage;
+    setAll(this.curve, { d: pathThrough(moving.curve.map((p) => p && toward(p))) });
+    setAll(this.ground, { d: pathThrough([toward(A), toward(B)]) });
+  }
+
+  pose(part: number) {
+    const { moving, toward } = this;
+    const joints = moving?.cycle.at(moving.at(part));
+    if (!moving || !joints) return;
+    const { A, B } = moving.shown.linkage;
+    const [a, b, c, d, p] = [A, B, joints.C, joints.D, joints.P].map((one) => toward(one as Point));
+    const bars = pathThrough([a, c]) + pathThrough([b, d]) + pathThrough([c, d]);
+    setAll(this.coupler, { d: `${pathThrough([c, d, p])}Z` });
+    setAll(this.edges, { d: bars });
+    setAll(this.bars, { d: bars });
+    [a, b, c, d].forEach(([x, y], i) => setAll(this.pins[i], { cx: px(x), cy: px(y) }));
+    setAll(this.point, { cx: px(p[0]), cy: px(p[1]) });
+  }
+}
