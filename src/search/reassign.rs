@@ -253,9 +253,6 @@ mod tests {
     use crate::linkage::{CouplerSide, NaturalCoordinates};
     use crate::problem::Setting;
     use crate::problem::design_space::Shape;
-    use crate::problem::spec::{
-        Limits, OnePolicy, OrderPolicy, PathSpec, ProblemSpec, RequireSpec, TaskSpec,
-    };
     use crate::solve::streams::{below, stream, uniform};
 
     fn random_places(count: usize, random: &mut crate::solve::streams::Stream) -> Vec<Place> {
@@ -326,8 +323,7 @@ mod tests {
             _ => 0.3,
         };
         let circuit = mobility.branch(begin, AssemblyMode::Plus).circuit;
-        let track =
-            Track { linkage: linkage.clone(), arc: mobility.arc(circuit), assembly: AssemblyMode::Plus };
+        let track = Track { linkage, arc: mobility.arc(circuit), assembly: AssemblyMode::Plus };
         let n = 40;
         let span = if closed { TAU } else { 4.0 };
         let own: Vec<Place> =
