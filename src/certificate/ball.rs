@@ -2,7 +2,7 @@
 //!
 //! A [`Ball`] (m, r) stands for every real x with |x - m| <= r. Each operation encloses its exact result: the new
 //! radius holds what the radii of its arguments do to it, plus 2^-52 of the new middle, twice what rounding to
-//! nearest can do, plus [`TINY`] against underflow; and it is enlarged by [`UP`] for its own few roundings. No
+//! nearest can do, plus `TINY` against underflow; and it is enlarged by `UP` for its own few roundings. No
 //! rounding mode is set. What cannot be enclosed has an infinite radius or is NaN, and certifies nothing.
 
 use std::ops::{Add, Mul, Neg, Sub};

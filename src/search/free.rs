@@ -6,7 +6,7 @@
 //! best `MIDDLE` of those on, and finishes those that can still matter.
 //! Dense targets are explored in groups of points ([`super::coarse`]) and finished on all of them; now and then all
 //! points are explored, which shows what groups blur. The points of their ends are brought to their best places on the
-//! curve ([`super::reassign`]) and fitted again for as long as that gains. Rounds run
+//! curve (`reassign`) and fitted again for as long as that gains. Rounds run
 //! side by side in batches of `BATCH` and are read in their order: the number of threads changes nothing but
 //! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
 //!
