@@ -79,8 +79,10 @@ const DENSE_BATCHES: u64 = 2;
 const PATIENT_BATCHES: u64 = 60;
 /// Errors of neighbouring points that are more alike than this are not noise.
 const ALIKE: f64 = 0.3;
-/// Of so many batches on a dense target of at most so many points one, in their middle, explores it on all of them.
+/// Of so many batches on a dense target of at most so many points one explores it on all of them: the second, and where
+/// the errors are noise the fourth.
 const WHOLE_EVERY: u64 = 8;
+const WHOLE_IN_NOISE: u64 = 3;
 const WHOLE_MOST: usize = 200;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
@@ -106,6 +108,12 @@ struct Stage<'a> {
     finished: Vec<(f64, f64)>,
     /// Rounds so far.
     index: u64,
+}
+
+/// Whether the errors of the best acceptable end are noise.
+fn is_noise(problem: &Problem, ends: &[End]) -> bool {
+    let best = ends.iter().filter_map(|end| end.verdict.as_ref()?.as_ref()).find(|c| promising(problem, c));
+    best.is_some_and(|best| likeness(problem, best) < ALIKE)
 }
 
 /// How alike the errors of neighbouring points are: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near 1 for a
@@ -297,7 +305,8 @@ pub(super) fn search(
         let left = limit.saturating_sub(local.evaluations.objective);
         // What grouping blurs is looked for on all points, now and then.
         let grouped_few = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
-        let on_all = grouped_few && count.batch % WHOLE_EVERY == WHOLE_EVERY / 2 - 1;
+        let turn = if is_noise(problem, &ends) { WHOLE_IN_NOISE } else { 1 };
+        let on_all = grouped_few && count.batch % WHOLE_EVERY == turn;
         if stages.len() == 1 && on_all {
             stages.push(stage(None, &whole));
         }
@@ -346,7 +355,7 @@ pub(super) fn search(
                 best_merits.iter().filter(|merit| (**merit - error).abs() <= near).count()
             };
             let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
-            let is_noise = coarse.is_some() && likeness(problem, best) < ALIKE;
+            let is_noise = coarse.is_some() && is_noise(problem, &ends);
             let believed = within(SAME_OPTIMUM) >= hits.same
                 || within(NEARLY) >= hits.near
                 || (is_noise && within(IN_NOISE) >= NOISE_HITS);
