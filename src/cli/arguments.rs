@@ -102,7 +102,7 @@ pub struct Synth {
     #[arg(long)]
     pub resume: bool,
     /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
     pub checkpoint_every: Duration,
     /// Nine precision points: print every real linkage through them, not the best ones alone
     #[arg(long)]

@@ -15,6 +15,7 @@ mod corpora;
 mod documents;
 mod exports;
 mod faults;
+mod long_runs;
 mod player_golden;
 mod problem_file_document;
 #[path = "../common/random.rs"]
