@@ -1,5 +1,6 @@
 //! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
 
+use crate::certificate;
 use crate::search::Progress;
 use crate::suite::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -163,6 +164,11 @@ impl Shown {
         }
     }
 
+    /// Whether nothing is to be shown.
+    pub fn is_silent(&self) -> bool {
+        self.silent
+    }
+
     /// Takes a word from the search.
     pub fn update(&self, progress: &Progress) {
         let before = *self.before.get_or_init(|| progress.evaluations);
@@ -192,6 +198,42 @@ impl Shown {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Shows in plain lines how far a certificate is.
+pub struct Proving {
+    name: String,
+    start: Instant,
+    last: Instant,
+    silent: bool,
+}
+
+impl Proving {
+    /// Progress of the certificate of a problem.
+    pub fn new(name: &str, silent: bool) -> Self {
+        let now = Instant::now();
+        Proving { name: crate::report::text::clean(name), start: now, last: now, silent }
+    }
+
+    /// Takes a word from it.
+    pub fn update(&mut self, progress: &certificate::Progress) {
+        if !self.silent && self.last.elapsed() >= LINE_EVERY {
+            self.last = Instant::now();
+            super::terminal::tell(&proved(&self.name, self.start.elapsed(), progress));
+        }
+    }
+}
+
+/// What is proved by now.
+fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
+    format!(
+        "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {:.6e} (gap {:.4} %)",
+        elapsed.as_secs_f64(),
+        progress.boxes,
+        100.0 * progress.decided,
+        progress.lower_bound,
+        100.0 * progress.gap,
+    )
 }
 
 /// What is said of a search: its best answer, its rate, the time that its budget leaves it at most.
@@ -271,6 +313,16 @@ mod tests {
         assert!(text.ends_with("evaluations, 0/s, nothing acceptable yet"), "{text}");
         let text = line(&at(1_000_001, None, false), 0, 1);
         assert!(text.contains("at most 0 s left"), "{text}");
+    }
+
+    #[test]
+    fn a_certificate_says_what_is_proved_by_now() {
+        let progress = certificate::Progress { boxes: 1200, decided: 0.25, lower_bound: 0.009, gap: 0.05 };
+        assert_eq!(
+            proved("leg", Duration::from_secs(10), &progress),
+            "leg: certificate, 10 s: 1200 boxes, 25.000 % of the linkages decided, no sum below 9.000000e-3 (gap \
+             5.0000 %)"
+        );
     }
 
     #[test]

@@ -8,6 +8,7 @@ use super::{Ended, interrupt, terminal};
 use crate::linkage_file;
 use crate::record::{Reason, Record};
 use crate::report::batch_csv::batch_csv;
+use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
@@ -182,7 +183,9 @@ impl Printed {
 
 fn ended_of(outcome: &Outcome) -> Ended {
     match outcome {
-        Outcome::Done(done) if done.record.termination.reason == Reason::Cancelled => Ended::Interrupted,
+        Outcome::Done(done) if done.interrupted || done.record.termination.reason == Reason::Cancelled => {
+            Ended::Interrupted
+        }
         Outcome::Done(done) if done.record.candidates.iter().any(|c| c.accepted) => Ended::Good,
         Outcome::Done(_) => Ended::Bad,
         Outcome::Refused(_) => Ended::Refused,
@@ -279,9 +282,10 @@ fn numbered(name: &str, n: &str) -> String {
 }
 
 /// What is printed for one problem.
-fn page(Done { record, folder, seconds }: &Done, brief: bool, all: bool) -> String {
+fn page(Done { record, folder, seconds, .. }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
+    text.push_str(&certificate_text(record, terminal::colour()));
     if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));

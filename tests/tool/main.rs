@@ -18,6 +18,7 @@ mod faults;
 mod long_runs;
 mod player_golden;
 mod problem_file_document;
+mod proving;
 #[path = "../common/random.rs"]
 mod random;
 #[path = "../reference/mod.rs"]

@@ -1,8 +1,9 @@
 //! The page's sections in their order.
 
 use super::page::escaped;
-use super::{candidate, data, exact, table};
+use super::{candidate, data, exact, proof, table};
 use crate::record::{Candidate, Record};
+use crate::report::certificate as certificate_words;
 use crate::report::text::{clean, significant};
 use crate::report::{price, table as text_table, words};
 
@@ -16,6 +17,7 @@ pub(super) fn body(record: &Record, drawings: &[&str]) -> String {
     }
     out.push_str(&table::candidates(record));
     out.push_str(&candidate::articles(record, drawings));
+    out.push_str(&proof::proof(record));
     out.push_str(&exact::exact(record));
     if !record.candidates.is_empty() {
         out.push_str(POINTS);
@@ -62,6 +64,9 @@ fn header(record: &Record) -> String {
     }
     out.push_str(&paragraph("facts", &capital(&text_table::facts(record))));
     out.push_str(&paragraph("lead", &verdict(record)));
+    if let Some(certificate) = &record.certificate {
+        out.push_str(&paragraph("lead good", &format!("{}.", certificate_words::headline(certificate))));
+    }
     if let Some((shown, all)) = data::thinned(record) {
         let text = format!(
             "The drawing and the charts show {shown} of the {all} points; all figures are of all points."

@@ -7,6 +7,7 @@
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
 //! exact.rs        every linkage through nine points
+//! proof.rs        what is proved, and how often the best answer came back
 //! player/*.mjs    position solver, drawing, charts, transport: they know nothing of this page
 //! report.mjs, report.css    the page around the player
 //! ```
@@ -24,6 +25,7 @@ mod exact;
 mod mobility;
 mod motion;
 pub(super) mod page;
+mod proof;
 mod requirements;
 mod table;
 
