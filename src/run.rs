@@ -65,15 +65,13 @@ pub struct Finished {
     pub beside_s: f64,
 }
 
-/// Runs a job on the current rayon thread pool.
+/// Runs a job on the current rayon thread pool; a certificate that its problem asks for is left to [`prove`].
 ///
 /// # Errors
 /// [`RunError`] when the job makes no search; a search that finds nothing is a record with no accepted
 /// candidate, not an error.
 pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
-    let mut finished = run_kept(job, context, None)?;
-    prove(&mut finished.record, context.cancel, &mut |_| {});
-    Ok(finished)
+    run_kept(job, context, None)
 }
 
 /// Works out the certificate that a record's problem asks for, within its time limit, and puts it into the record; or
@@ -92,8 +90,8 @@ pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(
     }
 }
 
-/// As [`run`] without the certificate ([`prove`]), with a keeper of where its search stands: the search begins where
-/// the keeper says, and ends in the same record as one from the beginning.
+/// As [`run`], with a keeper of where its search stands: the search begins where the keeper says, and ends in the
+/// same record as one from the beginning.
 ///
 /// # Errors
 /// As [`run`].

@@ -312,6 +312,9 @@ pub struct Suite {
     /// Seeds 1 to N for each problem
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
+    /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
+    #[arg(long)]
+    pub certify: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,

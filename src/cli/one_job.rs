@@ -6,6 +6,7 @@ use super::{synth, terminal};
 use crate::certificate;
 use crate::checkpoint::{Checkpoint, Writer};
 use crate::record::{Reason, Record};
+use crate::report::html::Extent;
 use crate::results_folder::{
     CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
 };
@@ -42,8 +43,8 @@ pub struct Written {
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs a job on the current thread pool and writes its result; [`put_in_place`] ends it. The time that is written
-/// counts from `begun`.
+/// Runs a job on the current thread pool and writes its result, with a page of this extent; [`put_in_place`] ends it.
+/// The time that is written counts from `begun`.
 ///
 /// # Errors
 /// What a person has to know; nothing is half written.
@@ -51,7 +52,7 @@ pub fn run(
     job: &Job,
     place: &Path,
     options: &Synth,
-    shown: &Shown,
+    (shown, extent): (&Shown, Extent),
     cancel: &AtomicBool,
     begun: Instant,
 ) -> Result<Ran, String> {
@@ -106,7 +107,7 @@ pub fn run(
     }
     let total_s = begun.elapsed().as_secs_f64();
     let timing = synth::Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
-    let files = synth::files(&record, &timing)?;
+    let files = synth::files_of(&record, &timing, extent)?;
     folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
     let seconds = Some((search_s, beside_s));
     let done = Done { record, folder: place.to_path_buf(), seconds, interrupted };

@@ -2,7 +2,7 @@
 
 use super::grid::{Colour, Ink};
 use super::table::COLUMNS;
-use super::text::{brief, clean, grouped, significant, wrapped};
+use super::text::{brief, clean, clean_sentence, grouped, significant, wrapped};
 use crate::record::{Certificate, Record, Repeats};
 
 /// From this gap down a best answer is called a proved optimum.
@@ -29,9 +29,14 @@ pub fn certificate_text(record: &Record, colour: Colour) -> String {
     }
 }
 
+/// How often the best answer came back, for a terminal.
+pub fn repeats_text(repeats: &Repeats) -> String {
+    repeats_sentences(repeats).iter().map(|sentence| wrapped("  ", "  ", sentence, COLUMNS)).collect()
+}
+
 /// Why there is none, as a sentence.
 pub(super) fn reason(why: &str) -> String {
-    let why = clean(why);
+    let why = clean_sentence(why);
     let mut letters = why.chars();
     let capital = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
     format!("{}.", capital.trim_end_matches('.'))
@@ -68,7 +73,7 @@ pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
         let told: Vec<String> = entries.iter().take(TOLD).map(|entry| clean(entry)).collect();
         told.join("; ")
     };
-    let mut sentences = vec![clean(&certificate.statement)];
+    let mut sentences = vec![clean_sentence(&certificate.statement)];
     let looked = grouped(certificate.boxes);
     sentences.push(if certificate.closed {
         format!("Every box of the {looked} looked at is decided.")

@@ -3,8 +3,10 @@
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
 use linkwright::linkage::AssemblyMode;
+use linkwright::practicality::{Build, Practicality, millimetre};
+use linkwright::problem::Problem;
 use linkwright::record::*;
-use linkwright::report::html::{is_report, report_html};
+use linkwright::report::html::{Extent, is_report, report_html, report_with_drawings};
 use linkwright::task::Defect;
 use std::fs;
 use std::path::Path;
@@ -346,6 +348,48 @@ fn a_proof_is_told_with_what_it_covers_and_how_often_the_best_came_back() {
     let page = report_html(&record, 0);
     assert!(page.contains("<p>No certificate is available for free timing.</p>") && !page.contains("Proved"));
     assert!(!report_html(&k18(), 0).contains("id=\"proof\""));
+}
+
+#[test]
+fn what_it_takes_to_build_the_best_and_the_buildable_one_is_told() {
+    let record = five();
+    let page = report_html(&record, 0);
+    let section =
+        page.split("id=\"build\"").nth(1).expect("a section").split("</section>").next().expect("its end");
+    for said in [
+        "To build it",
+        "<h3>Candidate 1</h3>",
+        "<h3>The buildable answer</h3>",
+        "over the full turn of the crank.",
+        "layers, from below: ",
+        "can share a plane",
+        "Held by a link: A-C 0.3127",
+        "<th scope=\"row\">B-P</th>",
+        "The worst dimension is ",
+        "What an error of each dimension does",
+        "linkwright build RESULT",
+    ] {
+        assert!(section.contains(said), "{said}: {section}");
+    }
+    // The figures are those of `build`.
+    let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+    let best = &record.candidates[0];
+    let hole = Build::usual_hole(&best.linkage, record.problem.unit.map(millimetre));
+    let found = Practicality::of_candidate(&problem, best, Build::new(hole, hole)).expect("it can be joined");
+    let felt = found.sensitivity.expect("it has derivatives");
+    assert!(section.contains(&format!("The worst dimension is {}.", felt.worst_dimension().name)));
+    let distances = found.distances.expect("it closes");
+    let nearest = distances.iter().find(|d| !d.fixed).expect("one that changes");
+    assert!(section.contains(&linkwright::report::text::significant(nearest.closest.value, 4)));
+    // One job of many leaves it to `report`.
+    let brief = report_with_drawings(&record, 0, &[], Extent::Brief);
+    assert!(
+        brief.contains("linkwright report RESULT writes this page anew") && !brief.contains("from below")
+    );
+    let mut nothing = record;
+    nothing.candidates.clear();
+    nothing.buildable = None;
+    assert!(!report_html(&nothing, 0).contains("id=\"build\""));
 }
 
 #[test]
