@@ -36,19 +36,18 @@ fn a_search_that_asks_for_a_certificate_ends_with_one_in_its_record_report_and_t
     arguments.extend(set);
     let (code, stdout, stderr) = linkwright(folder.path(), &arguments);
     assert_eq!((code, stderr.as_str()), (0, ""), "{stdout}");
-    assert!(stdout.contains("No four-bar linkage whose input turns fully"), "{stdout}");
     assert!(stdout.contains("Covered: ") && stdout.contains("Not covered: "), "{stdout}");
     let result = folder.path().join("r");
     let found = record(&result);
     let certificate = found.certificate.clone().expect("a certificate");
     assert_eq!((certificate.wanted_gap, found.no_certificate.as_ref()), (0.5, None));
+    let unbroken = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(unbroken.contains(&certificate.statement), "whole: {stdout}");
     assert!(certificate.boxes > 0 && certificate.lower_bound < found.candidates[0].error.sum_sq);
     let asked = found.problem.resolved.solve.certify.expect("it stands in the resolved problem");
     assert_eq!((asked.gap, asked.time_limit_s), (0.5, 1.0));
     let page = fs::read_to_string(result.join("report.html")).expect("a report");
-    assert!(
-        page.contains("Can it be better?") && page.contains("No four-bar linkage whose input turns fully")
-    );
+    assert!(page.contains("Can it be better?") && page.contains(&certificate.statement));
     let (code, stdout, stderr) = linkwright(folder.path(), &["verify", "r", "--certificate"]);
     assert_eq!(code, 0, "{stdout}{stderr}");
     // The search is the same as without: the certificate decides no candidate and no digest.
