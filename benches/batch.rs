@@ -82,7 +82,7 @@ fn batch(place: &Path) {
 
 /// A search that is measured lasts at least this long, and keeps its state at least so often.
 const LEAST_S: f64 = 4.0;
-const LEAST_KEPT: usize = 4;
+const LEAST_KEPT: usize = 3;
 
 /// A search that does not end by itself within its time limit, so that states are kept at their usual pace.
 fn checkpoints(place: &Path, problem: &str, method: &str) {
@@ -91,7 +91,7 @@ fn checkpoints(place: &Path, problem: &str, method: &str) {
         ("solve.method", method),
         ("solve.candidates", "40"),
         ("solve.evaluations", "1e8"),
-        ("solve.time_limit_s", "8"),
+        ("solve.time_limit_s", "12"),
     ];
     let set = set.map(|(key, value)| (key.to_owned(), value.to_owned()));
     let file = problem_file::load(&file, &set).expect("it is a problem");

@@ -65,8 +65,9 @@ fn header(record: &Record) -> String {
     }
     out.push_str(&paragraph("facts", &capital(&text_table::facts(record))));
     out.push_str(&paragraph("lead", &verdict(record)));
-    if let Some(certificate) = &record.certificate {
-        out.push_str(&paragraph("lead good", &format!("{}.", certificate_words::headline(certificate))));
+    if let Some(certificate) = record.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0) {
+        let class = if certificate.closed { "lead good" } else { "lead" };
+        out.push_str(&paragraph(class, &format!("{}.", certificate_words::headline(certificate))));
     }
     if let Some((shown, all)) = data::thinned(record) {
         let text = format!(

@@ -62,8 +62,8 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<String> 
     }
     if let Some(felt) = &found.sensitivity {
         let tolerance = usual_tolerance(&c.linkage, unit);
-        out.push_str(&paragraph("", &words.together(felt, found.at_points, tolerance)));
         out.push_str(&sensitivities(felt));
+        out.push_str(&paragraph("", &words.together(felt, found.at_points, tolerance)));
     }
     Some(out + &paragraph("notes", NOTES))
 }
