@@ -10,9 +10,9 @@
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
-use linkwright::checkpoint::Writer;
+use linkwright::checkpoint::{Checkpoint, Writer};
 use linkwright::problem_file;
-use linkwright::results_folder::replace_file;
+use linkwright::results_folder::{CHECKPOINT, replace_file};
 use linkwright::run::{Context, Job, run_kept};
 use linkwright::search::keeper::{Keeper, Pace, SearchState};
 use std::fs;
@@ -80,13 +80,18 @@ fn batch(place: &Path) {
     println!("{}", least.1);
 }
 
-fn checkpoints(place: &Path, method: &str) {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/literature/k18f.toml");
+/// A search that is measured lasts at least this long, and keeps its state at least so often.
+const LEAST_S: f64 = 4.0;
+const LEAST_KEPT: usize = 3;
+
+/// A search that does not end by itself within its time limit, so that states are kept at their usual pace.
+fn checkpoints(place: &Path, problem: &str, method: &str) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/literature").join(problem);
     let set = [
         ("solve.method", method),
         ("solve.candidates", "40"),
-        ("solve.evaluations", "1e7"),
-        ("solve.time_limit_s", "8"),
+        ("solve.evaluations", "1e8"),
+        ("solve.time_limit_s", "12"),
     ];
     let set = set.map(|(key, value)| (key.to_owned(), value.to_owned()));
     let file = problem_file::load(&file, &set).expect("it is a problem");
@@ -96,7 +101,7 @@ fn checkpoints(place: &Path, method: &str) {
     let sink = |state: &SearchState| {
         let begun = Instant::now();
         let bytes = writer.bytes(state).expect("it reads back");
-        replace_file(place, "checkpoint.json", &bytes).expect("there is room");
+        replace_file(place, CHECKPOINT, &bytes).expect("there is room");
         let mut spent = spent.lock().expect("no panic");
         *spent = (spent.0 + 1, spent.1 + begun.elapsed(), bytes.len());
     };
@@ -104,19 +109,26 @@ fn checkpoints(place: &Path, method: &str) {
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let finished = run_kept(&job, &context, Some(&keeper)).expect("it runs");
     let (count, spent, bytes) = *spent.lock().expect("no panic");
-    assert!(count > 0, "none was written");
+    let search_s = finished.search_s;
+    assert!(search_s >= LEAST_S, "{problem}, {method}: over after {search_s:.2} s, too short to be measured");
+    assert!(count >= LEAST_KEPT, "{problem}, {method}: {count} checkpoints in {search_s:.2} s");
+    let kept = Checkpoint::read(&place.join(CHECKPOINT), &job).expect("it is whole").expect("it is there");
+    assert_eq!(kept.leads_to(&job), None, "the search could go on from the last one");
     println!(
-        "{method}: {count} checkpoints (the last of {} kB) in {:.2} s of search: {:.2} % of it",
+        "{problem}, {method}: {count} checkpoints (the last of {} kB) in {search_s:.2} s of search: {:.2} % of it",
         bytes / 1000,
-        finished.search_s,
-        100.0 * spent.as_secs_f64() / finished.search_s
+        100.0 * spent.as_secs_f64() / search_s
     );
 }
 
 fn main() {
     let place = tempfile::tempdir().expect("a folder");
     batch(place.path());
-    for method in ["least-squares", "genetic", "differential-evolution"] {
-        checkpoints(place.path(), method);
+    for (problem, method) in [
+        ("shape-square.toml", "least-squares"),
+        ("k18f.toml", "genetic"),
+        ("k18f.toml", "differential-evolution"),
+    ] {
+        checkpoints(place.path(), problem, method);
     }
 }

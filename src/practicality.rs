@@ -19,8 +19,10 @@ pub mod sensitivity;
 pub mod sweep;
 
 mod subject;
+mod usual;
 
 pub use clearance::{Build, Pin};
 pub use closest::Closest;
 pub use subject::{Practicality, crank_of};
 pub use sweep::Sweep;
+pub use usual::{millimetre, usual_tolerance};

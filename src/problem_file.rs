@@ -3,6 +3,7 @@
 //! Three ways lead here and give the same diagnostics: a file, a text with `--set` overrides, a bare file of
 //! points. What stands under `[expect]` is read and checked and never reaches the specification.
 
+mod certify;
 mod design;
 mod overrides;
 mod path;
@@ -173,7 +174,11 @@ fn parse_at(
     design::check(&toml, &design)?;
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
     warnings.extend(design::against_requirements(&toml, &design, &require)?);
-    let solve = solve_of(&toml, raw.solve.0)?;
+    let asked = raw.solve.0.certify;
+    let mut solve = solve_of(&toml, raw.solve.0)?;
+    let certificate = certify::of(&toml, asked, raw.certify.map(|table| table.0), &path)?;
+    solve.certify = certificate.spec;
+    warnings.extend(certificate.warning);
     if solve.objective == Objective::MaxDeviation {
         warnings.extend(deviation_of(&toml, &path)?);
     }
@@ -330,6 +335,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
         candidates,
         evaluations,
         time_limit_s: raw.time_limit_s.map(|t| t.0),
+        certify: None,
         genetic: raw.genetic.0,
         differential_evolution: raw.differential_evolution.0,
     })

@@ -12,11 +12,13 @@ mod certificate;
 mod exact;
 mod extras;
 mod limits;
+mod repeats;
 
 pub use certificate::{Certificate, CertificatePart};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use limits::BeyondLimits;
+pub use repeats::Repeats;
 
 /// The format that this program writes and reads.
 pub const FORMAT: u32 = 1;
@@ -60,6 +62,12 @@ pub struct Record {
     /// What is proved about the best candidate, where `certify` was run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
+    /// Why there is none, where the problem asks for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_certificate: Option<String>,
+    /// How often the best answer came back from independent starts, where the search counted that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeats: Option<Repeats>,
 }
 
 /// Name and version of the program.

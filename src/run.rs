@@ -1,6 +1,7 @@
 //! One run: a problem in, a record out. This is where the rooms meet.
 
 use crate::assess::to_raw;
+use crate::certificate;
 use crate::problem::Problem;
 use crate::problem::precision::{Refusal, precision_points};
 use crate::problem::spec::{Method, ProblemSpec};
@@ -12,7 +13,7 @@ use crate::task::TaskError;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What is to be run.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,13 +65,29 @@ pub struct Finished {
     pub beside_s: f64,
 }
 
-/// Runs a job on the current rayon thread pool.
+/// Runs a job on the current rayon thread pool; a certificate that its problem asks for is left to [`prove`].
 ///
 /// # Errors
 /// [`RunError`] when the job makes no search; a search that finds nothing is a record with no accepted
 /// candidate, not an error.
 pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     run_kept(job, context, None)
+}
+
+/// Works out the certificate that a record's problem asks for, within its time limit, and puts it into the record; or
+/// why there is none. Nothing is done where none is asked for or the search was cancelled.
+pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(&certificate::Progress)) {
+    let Some(asked) = record.problem.resolved.solve.certify else { return };
+    if record.termination.reason == Reason::Cancelled {
+        return;
+    }
+    let limit = Duration::try_from_secs_f64(asked.time_limit_s).ok();
+    let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
+    let request = certificate::Request { gap: asked.gap };
+    match certificate::certify(record, &request, cancel, deadline, progress) {
+        Ok(certificate) => record.certificate = Some(certificate),
+        Err(why) => record.no_certificate = Some(why.to_string()),
+    }
 }
 
 /// As [`run`], with a keeper of where its search stands: the search begins where the keeper says, and ends in the
@@ -117,6 +134,8 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         conflict: explained.conflict,
         relaxations: explained.relaxations,
         certificate: None,
+        no_certificate: None,
+        repeats: outcome.repeats,
         exact: outcome.exact,
     };
     Ok(Finished { record, search_s, beside_s })

@@ -8,11 +8,11 @@
 pub mod statistics;
 
 use crate::problem::Problem;
-use crate::problem::spec::{MAX_EVALUATIONS, Method, ProblemSpec};
+use crate::problem::spec::{CertifySpec, MAX_EVALUATIONS, Method, ProblemSpec};
 use crate::problem_file::{ProblemFile, Published};
 use crate::published;
-use crate::record::{Reason, Tool};
-use crate::run::{Context, Job, RunError, run};
+use crate::record::{Certificate, Reason, Record, Tool};
+use crate::run::{Context, Job, RunError, prove, run};
 use crate::search::rank::exact_sum_sq;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
@@ -33,11 +33,13 @@ pub struct Options {
     pub population_seeds: u64,
     /// The command that makes the same suite again; kept with the figures.
     pub command: String,
+    /// How the best answer of each problem is certified, where that is asked for; on all threads.
+    pub certify: Option<CertifySpec>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { seeds: 10, population_seeds: 5, command: String::new() }
+        Options { seeds: 10, population_seeds: 5, command: String::new(), certify: None }
     }
 }
 
@@ -130,6 +132,12 @@ pub struct ProblemResult {
     /// The one of `published` with the least sum by our evaluation; of those that cannot be evaluated the least
     /// printed one.
     pub best_published: Option<PublishedResult>,
+    /// What is proved about the least accepted sum of `search`, where certificates are asked for and there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// Why there is none, where certificates are asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_certificate: Option<String>,
 }
 
 /// One method on one problem.
@@ -217,7 +225,8 @@ pub fn suite(
         ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| SuiteError::Thread(e.to_string()))?;
     let known: Vec<(&ProblemFile, f64)> =
         problems.iter().filter_map(|file| Some((file, file.expect.as_ref()?.best_known_sum_sq?))).collect();
-    let mut runner = Runner { pool, cancel, observer, done: 0, total: options.runs(known.len()) };
+    let total = options.runs(known.len());
+    let mut runner = Runner { pool, cancel, observer, done: 0, total, cut_short: false };
     let mut results = Vec::with_capacity(known.len());
     for (file, best_known) in known {
         let result = runner
@@ -236,7 +245,7 @@ pub fn suite(
         command: options.command.clone(),
         seeds: options.seeds,
         threads: 1,
-        complete: runner.done == runner.total,
+        complete: runner.done == runner.total && !runner.cut_short,
         problems: results,
     })
 }
@@ -248,6 +257,8 @@ struct Runner<'a> {
     observer: &'a StepObserver<'a>,
     done: u64,
     total: u64,
+    /// A certificate was cancelled.
+    cut_short: bool,
 }
 
 impl Runner<'_> {
@@ -265,7 +276,12 @@ impl Runner<'_> {
         let expect = file.expect.clone().unwrap_or_default();
         let bar =
             Bar { goal: expect.goal_sum_sq.unwrap_or(best_known), best_known, exact: exact_sum_sq(&problem) };
-        let search = self.method(file, file.spec.clone(), options.seeds, &bar)?;
+        let (search, best) = self.method(file, file.spec.clone(), options.seeds, &bar)?;
+        let (certificate, no_certificate) = match (options.certify, best) {
+            (Some(certify), Some(record)) => self.certificate(record, certify),
+            (Some(_), None) => (None, Some("there is no accepted answer".into())),
+            (None, _) => (None, None),
+        };
         let mut populations = Vec::with_capacity(POPULATIONS.len());
         for method in POPULATIONS {
             let Some(evaluations) = search.summary.median_evaluations.filter(|_| !self.cancelled()) else {
@@ -274,7 +290,7 @@ impl Runner<'_> {
             let mut spec = file.spec.clone();
             spec.solve.method = method;
             spec.solve.evaluations = evaluations.clamp(1, MAX_EVALUATIONS);
-            populations.push(self.method(file, spec, options.population_seeds(), &bar)?);
+            populations.push(self.method(file, spec, options.population_seeds(), &bar)?.0);
         }
         let smaller_than_best_known = smallest(std::iter::once(&search).chain(&populations), &bar);
         let published: Vec<PublishedResult> =
@@ -290,17 +306,39 @@ impl Runner<'_> {
             smaller_than_best_known,
             best_published: best_published(&published).cloned(),
             published,
+            certificate,
+            no_certificate,
         })
     }
 
+    /// What is proved about a run's answer; nothing where that is cancelled.
+    fn certificate(
+        &mut self,
+        mut record: Record,
+        certify: CertifySpec,
+    ) -> (Option<Certificate>, Option<String>) {
+        record.problem.resolved.solve.certify = Some(certify);
+        let (method, seed) = (record.problem.resolved.solve.method, record.seed);
+        let step =
+            Step { problem: &record.problem.name.clone(), method, seed, done: self.done, total: self.total };
+        prove(&mut record, self.cancel, &mut |_| (self.observer)(&step));
+        if self.cancelled() {
+            self.cut_short = true;
+            return (None, None);
+        }
+        (record.certificate, record.no_certificate)
+    }
+
+    /// The runs of a method, and the record of the least accepted sum.
     fn method(
         &mut self,
         file: &ProblemFile,
         mut spec: ProblemSpec,
         seeds: u64,
         bar: &Bar,
-    ) -> Result<MethodResult, RunError> {
+    ) -> Result<(MethodResult, Option<Record>), RunError> {
         spec.solve.candidates = 1;
+        let mut best: Option<(f64, Record)> = None;
         let (method, evaluations_at_most) = (spec.solve.method, spec.solve.evaluations);
         let mut job = Job { name: file.name.clone(), source: file.source.clone(), unit: file.unit, spec };
         let mut runs = Vec::new();
@@ -328,8 +366,13 @@ impl Runner<'_> {
                 reason: record.termination.reason,
             });
             self.done += 1;
+            let sum_sq = first.filter(|c| c.accepted).map(|c| c.error.sum_sq);
+            if let Some(sum_sq) = sum_sq.filter(|sum| best.as_ref().is_none_or(|(least, _)| sum < least)) {
+                best = Some((sum_sq, record));
+            }
         }
-        Ok(MethodResult { method, evaluations_at_most, summary: Summary::of(&runs, bar), runs })
+        let result = MethodResult { method, evaluations_at_most, summary: Summary::of(&runs, bar), runs };
+        Ok((result, best.map(|(_, record)| record)))
     }
 }
 

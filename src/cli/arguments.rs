@@ -102,7 +102,7 @@ pub struct Synth {
     #[arg(long)]
     pub resume: bool,
     /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
     pub checkpoint_every: Duration,
     /// Nine precision points: print every real linkage through them, not the best ones alone
     #[arg(long)]
@@ -312,6 +312,9 @@ pub struct Suite {
     /// Seeds 1 to N for each problem
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
+    /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
+    #[arg(long)]
+    pub certify: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,

@@ -5,34 +5,16 @@ use super::result::{self, Given};
 use super::{Ended, terminal};
 use crate::diagnostic::escaped;
 use crate::linkage::FourBar;
-use crate::practicality::{Build, Practicality};
+use crate::practicality::Practicality;
+pub use crate::practicality::{Build, millimetre, usual_tolerance};
 use crate::problem::Problem;
 use crate::record::Unit;
 use crate::report::practicality::practicality_text;
 use crate::report::text::clean;
 
-/// The default standard deviation of a dimension: millimetres, or a part of the longest link.
-const TOLERANCE_MM: f64 = 0.1;
-const TOLERANCE_SHARE: f64 = 1e-3;
-
 /// Runs the command.
 pub fn run(options: &Options) -> Ended {
     inner(options).unwrap_or_else(|ended| ended)
-}
-
-/// What a millimetre is in a unit.
-pub fn millimetre(unit: Unit) -> f64 {
-    match unit {
-        Unit::Mm => 1.0,
-        Unit::Cm => 0.1,
-        Unit::M => 1e-3,
-        Unit::In => 1.0 / 25.4,
-    }
-}
-
-/// The default standard deviation of a dimension.
-pub fn usual_tolerance(linkage: &FourBar, unit: Option<Unit>) -> f64 {
-    unit.map_or(TOLERANCE_SHARE * linkage.longest_link(), |unit| TOLERANCE_MM * millimetre(unit))
 }
 
 fn inner(options: &Options) -> Result<Ended, Ended> {

@@ -6,6 +6,7 @@ use super::{Ended, interrupt, synth, terminal};
 use crate::certificate::{Progress, Request, certify};
 use crate::diagnostic::escaped;
 use crate::record::Certificate;
+use crate::report::certificate::repeats_text;
 use crate::results_folder::ResultsFolder;
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -57,8 +58,12 @@ fn inner(options: &Certify) -> Result<Ended, Ended> {
         }
     };
     let request = Request { gap: options.gap };
-    let certificate = certify(&record, &request, cancel, Some(deadline), &mut tell)
-        .map_err(|e| refuse(&format!("{shown}: {e}")))?;
+    let certificate = certify(&record, &request, cancel, Some(deadline), &mut tell).map_err(|e| {
+        if let Some(repeats) = &record.repeats {
+            terminal::answer(&repeats_text(repeats));
+        }
+        refuse(&format!("{shown}: {e}"))
+    })?;
     let text = text(&certificate);
     let closed = certificate.closed;
     record.certificate = Some(certificate);

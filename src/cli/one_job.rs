@@ -1,14 +1,16 @@
 //! One job of `synth`, from its folder to its files: lock, resume, run, checkpoints on the way, result.
 
 use super::arguments::Synth;
-use super::progress::Shown;
+use super::progress::{Proving, Shown};
 use super::{synth, terminal};
+use crate::certificate;
 use crate::checkpoint::{Checkpoint, Writer};
 use crate::record::{Reason, Record};
+use crate::report::html::Extent;
 use crate::results_folder::{
     CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
 };
-use crate::run::{Context, Finished, Job, digest, run_kept};
+use crate::run::{Context, Finished, Job, digest, prove, run_kept};
 use crate::search::keeper::{Keeper, Pace, SearchState};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,6 +24,8 @@ pub struct Done {
     pub folder: PathBuf,
     /// Seconds of search and of what stands beside it; `None` where it was done before.
     pub seconds: Option<(f64, f64)>,
+    /// Whether its certificate was interrupted.
+    pub interrupted: bool,
 }
 
 /// A job that has been run.
@@ -39,8 +43,8 @@ pub struct Written {
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs a job on the current thread pool and writes its result; [`put_in_place`] ends it. The time that is written
-/// counts from `begun`.
+/// Runs a job on the current thread pool and writes its result, with a page of this extent; [`put_in_place`] ends it.
+/// The time that is written counts from `begun`.
 ///
 /// # Errors
 /// What a person has to know; nothing is half written.
@@ -48,7 +52,7 @@ pub fn run(
     job: &Job,
     place: &Path,
     options: &Synth,
-    shown: &Shown,
+    (shown, extent): (&Shown, Extent),
     cancel: &AtomicBool,
     begun: Instant,
 ) -> Result<Ran, String> {
@@ -57,7 +61,12 @@ pub fn run(
     if options.resume {
         if let Some(record) = done_before(job, place)? {
             folder.remove_checkpoint().map_err(|e| e.to_string())?;
-            return Ok(Ran::Before(Done { record, folder: place.to_path_buf(), seconds: None }));
+            return Ok(Ran::Before(Done {
+                record,
+                folder: place.to_path_buf(),
+                seconds: None,
+                interrupted: false,
+            }));
         }
         let path = place.join(CHECKPOINT);
         if let Some(checkpoint) = Checkpoint::read(&path, job).map_err(|e| e.to_string())? {
@@ -88,15 +97,20 @@ pub fn run(
     let observer = |progress: &_| shown.update(progress);
     let outcome = run_kept(job, &Context { cancel, observer: &observer }, Some(&keeper));
     shown.finish();
-    let Finished { record, search_s, beside_s } = outcome.map_err(|e| format!("{}: {e}", job.name))?;
+    let Finished { mut record, search_s, beside_s } = outcome.map_err(|e| format!("{}: {e}", job.name))?;
+    let mut proving = Proving::new(&job.name, shown.is_silent());
+    prove(&mut record, cancel, &mut |progress| proving.update(progress));
+    let interrupted =
+        cancel.load(Ordering::Relaxed) && record.certificate.as_ref().is_some_and(|c| !c.closed);
     if matches!(record.termination.reason, Reason::Cancelled | Reason::TimeLimit) {
         folder.keep_checkpoint();
     }
     let total_s = begun.elapsed().as_secs_f64();
     let timing = synth::Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
-    let files = synth::files(&record, &timing)?;
+    let files = synth::files_of(&record, &timing, extent)?;
     folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
-    let done = Done { record, folder: place.to_path_buf(), seconds: Some((search_s, beside_s)) };
+    let seconds = Some((search_s, beside_s));
+    let done = Done { record, folder: place.to_path_buf(), seconds, interrupted };
     Ok(Ran::Written(Written { done, folder, files }))
 }
 
@@ -134,5 +148,18 @@ fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, String> {
         Reason::EvaluationLimit | Reason::Stalled => now.evaluations <= then.evaluations,
         Reason::Converged | Reason::TargetReached => true,
     };
-    Ok(Some(record).filter(|_| same && over))
+    Ok(Some(record).filter(|record| same && over && is_proved(job, record)))
+}
+
+/// Whether nothing is left of what the job asks to have proved: the bound stands, as near as is asked for, or there can
+/// be none.
+fn is_proved(job: &Job, record: &Record) -> bool {
+    let Some(asked) = job.spec.solve.certify else { return true };
+    match &record.certificate {
+        Some(certificate) => certificate.closed && certificate.gap <= asked.gap,
+        None => {
+            let request = certificate::Request { gap: asked.gap };
+            certificate::certify(record, &request, &AtomicBool::new(true), None, &mut |_| {}).is_err()
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
 
+use crate::certificate;
 use crate::search::Progress;
 use crate::suite::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -163,42 +164,31 @@ impl Shown {
         }
     }
 
+    /// Whether nothing is to be shown.
+    pub fn is_silent(&self) -> bool {
+        self.silent
+    }
+
     /// Takes a word from the search.
     pub fn update(&self, progress: &Progress) {
         let before = *self.before.get_or_init(|| progress.evaluations);
         if self.silent || self.start.elapsed() < QUIET_FOR {
             return;
         }
-        let best = match progress.best_sum_sq {
-            Some(sum) if progress.accepted => format!("best {sum:.4e}"),
-            Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
-            None => "nothing acceptable yet".into(),
-        };
-        let rate = progress.evaluations.saturating_sub(before) as f64 / self.start.elapsed().as_secs_f64();
+        let words = Words::of(progress, before, self.start.elapsed());
         if let Some(bar) = &self.bar {
             if !self.drawn.swap(true, Ordering::Relaxed) {
                 bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
             }
-            let best = format!("{}/s, {best}", crate::report::text::grouped(rate as u64));
             bar.set_length(progress.budget);
             bar.set_position(progress.evaluations.min(progress.budget));
-            bar.set_message(best);
+            bar.set_message(words.beside_the_bar());
             return;
         }
         let Ok(mut last) = self.last_line.lock() else { return };
         if last.elapsed() >= LINE_EVERY {
             *last = Instant::now();
-            let left = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
-            let left =
-                if left.is_finite() { format!("at most {} left, ", duration(left)) } else { String::new() };
-            super::terminal::tell(&format!(
-                "{}: {} {} of {} evaluations, {}/s, {left}{best}",
-                crate::report::text::clean(&self.name),
-                progress.phase,
-                progress.evaluations,
-                progress.budget,
-                crate::report::text::grouped(rate as u64),
-            ));
+            super::terminal::tell(&words.line(&self.name, progress));
         }
     }
 
@@ -207,5 +197,144 @@ impl Shown {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+/// Shows in plain lines how far a certificate is.
+pub struct Proving {
+    name: String,
+    start: Instant,
+    last: Instant,
+    silent: bool,
+}
+
+impl Proving {
+    /// Progress of the certificate of a problem.
+    pub fn new(name: &str, silent: bool) -> Self {
+        let now = Instant::now();
+        Proving { name: crate::report::text::clean(name), start: now, last: now, silent }
+    }
+
+    /// Takes a word from it.
+    pub fn update(&mut self, progress: &certificate::Progress) {
+        if !self.silent && self.last.elapsed() >= LINE_EVERY {
+            self.last = Instant::now();
+            super::terminal::tell(&proved(&self.name, self.start.elapsed(), progress));
+        }
+    }
+}
+
+/// What is proved by now.
+fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
+    format!(
+        "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {:.6e} (gap {:.4} %)",
+        elapsed.as_secs_f64(),
+        progress.boxes,
+        100.0 * progress.decided,
+        progress.lower_bound,
+        100.0 * progress.gap,
+    )
+}
+
+/// What is said of a search: its best answer, its rate, the time that its budget leaves it at most.
+struct Words {
+    best: String,
+    rate: String,
+    left: Option<String>,
+}
+
+impl Words {
+    /// Of a search that has run for `elapsed` here, and had made `before` evaluations when it began.
+    fn of(progress: &Progress, before: u64, elapsed: Duration) -> Self {
+        let best = match progress.best_sum_sq {
+            Some(sum) if progress.accepted => format!("best {sum:.4e}"),
+            Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
+            None => "nothing acceptable yet".into(),
+        };
+        let rate = progress.evaluations.saturating_sub(before) as f64 / elapsed.as_secs_f64();
+        let left_s = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
+        let left = left_s.is_finite().then(|| duration(left_s));
+        Words { best, rate: format!("{}/s", crate::report::text::grouped(rate as u64)), left }
+    }
+
+    /// The bar itself shows the share and the time left.
+    fn beside_the_bar(&self) -> String {
+        format!("{}, {}", self.rate, self.best)
+    }
+
+    /// Where there is no bar.
+    fn line(&self, name: &str, progress: &Progress) -> String {
+        let left = self.left.as_ref().map_or(String::new(), |left| format!("at most {left} left, "));
+        let Progress { phase, evaluations, budget, .. } = progress;
+        let (name, Words { best, rate, .. }) = (crate::report::text::clean(name), self);
+        format!("{name}: {phase} {evaluations} of {budget} evaluations, {rate}, {left}{best}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(evaluations: u64, best_sum_sq: Option<f64>, accepted: bool) -> Progress {
+        Progress { phase: "least-squares", evaluations, budget: 1_000_000, best_sum_sq, accepted }
+    }
+
+    fn line(progress: &Progress, before: u64, seconds: u64) -> String {
+        Words::of(progress, before, Duration::from_secs(seconds)).line("leg", progress)
+    }
+
+    #[test]
+    fn a_line_says_the_best_the_rate_and_the_time_left() {
+        assert_eq!(
+            line(&at(200_000, Some(0.0123456), true), 0, 10),
+            "leg: least-squares 200000 of 1000000 evaluations, 20,000/s, at most 40 s left, best 1.2346e-2"
+        );
+        let words = Words::of(&at(200_000, Some(0.5), true), 0, Duration::from_secs(10));
+        assert_eq!(words.beside_the_bar(), "20,000/s, best 5.0000e-1");
+    }
+
+    #[test]
+    fn an_answer_that_is_not_acceptable_is_told_apart_from_one_that_is_and_from_none() {
+        let told = |best, accepted| Words::of(&at(10, best, accepted), 0, Duration::from_secs(1)).best;
+        assert_eq!(told(Some(2.0), true), "best 2.0000e0");
+        assert_eq!(told(Some(2.0), false), "best 2.0000e0 (not acceptable yet)");
+        assert_eq!(told(None, false), "nothing acceptable yet");
+    }
+
+    #[test]
+    fn the_rate_counts_what_was_done_here_and_not_what_a_checkpoint_brought() {
+        let text = line(&at(600_000, None, false), 500_000, 100);
+        assert!(text.contains("600000 of 1000000 evaluations, 1,000/s, at most 7 min left"), "{text}");
+    }
+
+    #[test]
+    fn nothing_is_foretold_before_anything_was_done_and_nothing_is_left_beyond_the_budget() {
+        let text = line(&at(500_000, None, false), 500_000, 3);
+        assert!(text.ends_with("evaluations, 0/s, nothing acceptable yet"), "{text}");
+        let text = line(&at(1_000_001, None, false), 0, 1);
+        assert!(text.contains("at most 0 s left"), "{text}");
+    }
+
+    #[test]
+    fn a_certificate_says_what_is_proved_by_now() {
+        let progress = certificate::Progress { boxes: 1200, decided: 0.25, lower_bound: 0.009, gap: 0.05 };
+        assert_eq!(
+            proved("leg", Duration::from_secs(10), &progress),
+            "leg: certificate, 10 s: 1200 boxes, 25.000 % of the linkages decided, no sum below 9.000000e-3 (gap \
+             5.0000 %)"
+        );
+    }
+
+    #[test]
+    fn a_name_cannot_move_the_cursor() {
+        let progress = at(10, None, false);
+        let text = Words::of(&progress, 0, Duration::from_secs(1)).line("\u{1b}[2Jleg", &progress);
+        assert!(!text.contains('\u{1b}'), "{text:?}");
+    }
+
+    #[test]
+    fn times_are_said_in_the_unit_one_would_use() {
+        let said = [0.2, 99.0, 100.0, 5999.0, 6000.0, 86_400.0].map(duration);
+        assert_eq!(said, ["0 s", "99 s", "2 min", "100 min", "1.7 h", "24.0 h"]);
     }
 }

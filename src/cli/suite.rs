@@ -4,6 +4,7 @@ use super::arguments::Suite as Asked;
 use super::progress::SuiteShown;
 use super::{Ended, interrupt, terminal};
 use crate::diagnostic::escaped;
+use crate::problem::spec::CertifySpec;
 use crate::problem_file::{self, ProblemFile};
 use crate::report::suite::{suite_markdown, suite_text};
 use crate::results_folder::replace_file;
@@ -26,7 +27,8 @@ pub fn run(asked: &Asked) -> Ended {
         Ok(place) => place,
         Err(e) => return refuse(&e),
     };
-    let options = Options { seeds: asked.seeds, command: command(asked), ..Options::default() };
+    let certify = asked.certify.then(CertifySpec::default);
+    let options = Options { seeds: asked.seeds, command: command(asked), certify, ..Options::default() };
     let cancel = interrupt::watch("showing the runs that are over");
     let shown = SuiteShown::new();
     let outcome = suite(&problems, &options, cancel, &|step: &Step<'_>| shown.update(step));
@@ -94,6 +96,9 @@ fn command(asked: &Asked) -> String {
         command.push_str(&format!(" --problems {}", quoted(&asked.problems.display().to_string())));
     }
     command.push_str(&format!(" --seeds {}", asked.seeds));
+    if asked.certify {
+        command.push_str(" --certify");
+    }
     if asked.write {
         command.push_str(" --write");
     }

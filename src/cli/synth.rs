@@ -8,7 +8,9 @@ use super::{Ended, interrupt, terminal};
 use crate::linkage_file;
 use crate::record::{Reason, Record};
 use crate::report::batch_csv::batch_csv;
+use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
+use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
@@ -94,7 +96,8 @@ pub fn run(options: &Synth) -> Ended {
                 Ok((job, place)) => {
                     let begun = if several { Instant::now() } else { start };
                     let shown = Shown::new(&job.name, options.quiet || side_by_side);
-                    let run = || one_job::run(job, place, options, &shown, cancel, begun);
+                    let extent = if side_by_side { Extent::Brief } else { Extent::Full };
+                    let run = || one_job::run(job, place, options, (&shown, extent), cancel, begun);
                     match catch_unwind(AssertUnwindSafe(|| pool.install(run))) {
                         Ok(Ok(Ran::Written(written))) => {
                             // While one thread waits for the disk the others search.
@@ -182,7 +185,9 @@ impl Printed {
 
 fn ended_of(outcome: &Outcome) -> Ended {
     match outcome {
-        Outcome::Done(done) if done.record.termination.reason == Reason::Cancelled => Ended::Interrupted,
+        Outcome::Done(done) if done.interrupted || done.record.termination.reason == Reason::Cancelled => {
+            Ended::Interrupted
+        }
         Outcome::Done(done) if done.record.candidates.iter().any(|c| c.accepted) => Ended::Good,
         Outcome::Done(_) => Ended::Bad,
         Outcome::Refused(_) => Ended::Refused,
@@ -233,6 +238,11 @@ pub struct Timing {
 
 /// Everything that a result's folder holds.
 pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
+    files_of(record, timing, Extent::Full)
+}
+
+/// The same with a page of this extent.
+pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, String> {
     let json = |text: Result<String, serde_json::Error>| {
         text.map(|t| (t + "\n").into_bytes())
             .map_err(|e| format!("the record cannot be written as JSON: {e}"))
@@ -265,7 +275,7 @@ pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>,
         files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
     }
     let drawn: Vec<&str> = drawings.iter().map(String::as_str).collect();
-    files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn).into_bytes()));
+    files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn, extent).into_bytes()));
     files
         .extend((1..).zip(drawings).map(|(n, drawing)| (format!("candidate-{n}.svg"), drawing.into_bytes())));
     Ok(files)
@@ -279,9 +289,10 @@ fn numbered(name: &str, n: &str) -> String {
 }
 
 /// What is printed for one problem.
-fn page(Done { record, folder, seconds }: &Done, brief: bool, all: bool) -> String {
+fn page(Done { record, folder, seconds, .. }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
+    text.push_str(&certificate_text(record, terminal::colour()));
     if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));

@@ -35,13 +35,14 @@ impl Practicality {
     /// Of a candidate: over the cycle or the motion used, as its transmission angle is judged; the path at its
     /// positions on the target.
     ///
-    /// `None` where it has no position for each of the problem's points.
+    /// `None` where it has no position for each of the problem's points, or a crank angle that is no number.
     pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
         let n = problem.task().len();
-        if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
+        let angles = &candidate.crank_deg;
+        if angles.len() != n || candidate.t1_at.len() != n || !angles.iter().all(|deg| deg.is_finite()) {
             return None;
         }
-        let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+        let radians: Vec<f64> = angles.iter().map(|deg| deg.to_radians()).collect();
         let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
         let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
         let sweep = Sweep::of_motion(&verdict.motion, cycle);

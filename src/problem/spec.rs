@@ -408,6 +408,9 @@ pub struct SolveSpec {
     /// Seconds of search at most; when it bites the record says that the run cannot be repeated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
+    /// What a certificate is worked out with after the search, where one is asked for. It decides no candidate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certify: Option<CertifySpec>,
     /// The genetic algorithm's parameters.
     pub genetic: GeneticParameters,
     /// Differential evolution's parameters.
@@ -432,11 +435,30 @@ impl Default for SolveSpec {
             candidates: 5,
             evaluations: 200_000,
             time_limit_s: None,
+            certify: None,
             genetic: GeneticParameters::default(),
             differential_evolution: DifferentialEvolutionParameters::default(),
         }
     }
 }
+
+/// How a certificate is worked out ([`crate::certificate`]).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CertifySpec {
+    /// The gap between the best candidate and the proved bound at which it ends, relative, in (0, 1).
+    pub gap: f64,
+    /// Seconds at most; what is proved by then stands.
+    pub time_limit_s: f64,
+}
+
+impl Default for CertifySpec {
+    fn default() -> Self {
+        CertifySpec { gap: 1e-4, time_limit_s: 300.0 }
+    }
+}
+
+/// The longest time for a certificate, seconds.
+pub const MAX_CERTIFY_S: f64 = 1e6;
 
 pub use crate::resampling::MAX_SMOOTHED;
 

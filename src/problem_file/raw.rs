@@ -38,6 +38,9 @@ pub(crate) struct RawProblem {
     /// How to search.
     #[serde(default)]
     pub solve: OnlyTable<RawSolve>,
+    /// How a certificate is worked out, where `solve.certify` asks for one.
+    #[serde(default)]
+    pub certify: Option<OnlyTable<RawCertify>>,
     /// What is known of the answer; no search reads it.
     pub expect: Option<OnlyTable<RawExpect>>,
 }
@@ -174,12 +177,26 @@ pub(crate) struct RawSolve {
     pub evaluations: Option<Count>,
     /// Seconds of search at most; a run that the clock ends cannot be repeated to the digit.
     pub time_limit_s: Option<Number>,
+    /// Whether a lower bound of the sum of squares is proved after the search (prescribed timing); where silent, false.
+    #[serde(default)]
+    pub certify: bool,
     /// The genetic algorithm's parameters.
     #[serde(default)]
     pub genetic: OnlyTable<GeneticParameters>,
     /// Differential evolution's parameters.
     #[serde(default, rename = "differential-evolution")]
     pub differential_evolution: OnlyTable<DifferentialEvolutionParameters>,
+}
+
+/// How a certificate is worked out.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Certify")]
+pub(crate) struct RawCertify {
+    /// How far below the best candidate the proved bound may be, relative, between 0 and 1; 1e-4 where silent.
+    pub gap: Option<Number>,
+    /// Seconds at most, up to 1e6; what is proved by then stands; 300 where silent.
+    pub time_limit_s: Option<Number>,
 }
 
 /// What is known of the answer.

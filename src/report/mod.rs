@@ -8,7 +8,7 @@
 //!
 //! | for | call |
 //! |---|---|
-//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`plot::terminal_plot`] |
+//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`certificate::certificate_text`], [`plot::terminal_plot`] |
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
 //! | a browser | [`html::report_html`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
@@ -22,6 +22,7 @@ pub mod analysis_text;
 pub mod batch_csv;
 mod beside;
 mod canvas;
+pub mod certificate;
 pub mod chain_sheet;
 pub mod chain_text;
 mod cognates_sheet;

@@ -23,9 +23,13 @@ pub fn practicality_text(
 ) -> String {
     let words = Words { unit, colour };
     let mut out = words.head("Layers");
-    out.push_str(&words.made(practicality));
+    out.push_str(&wrapped("  ", "  ", &words.made(practicality), COLUMNS));
     match &practicality.layering {
-        Some(layering) => out.push_str(&words.layers(layering)),
+        Some(layering) => {
+            for line in words.layers(layering) {
+                out.push_str(&wrapped("  ", "    ", &line, COLUMNS));
+            }
+        }
         None => out.push_str(OPEN),
     }
     out.push_str(&words.head("Least distances of joints over the motion"));
@@ -45,9 +49,10 @@ pub fn practicality_text(
 
 const OPEN: &str = "  The loop is open somewhere in the motion: nothing can be said.\n";
 
-struct Words {
-    unit: Option<Unit>,
-    colour: Colour,
+/// The sentences, with their lengths in a unit.
+pub(super) struct Words {
+    pub(super) unit: Option<Unit>,
+    pub(super) colour: Colour,
 }
 
 impl Words {
@@ -55,12 +60,13 @@ impl Words {
         format!("{}\n", self.colour.paint(Ink::Strong, text))
     }
 
-    fn length(&self, value: f64) -> String {
+    pub(super) fn length(&self, value: f64) -> String {
         let unit = self.unit.map_or(String::new(), |u| format!(" {}", u.label()));
         format!("{}{unit}", brief(value, DIGITS))
     }
 
-    fn made(&self, practicality: &Practicality) -> String {
+    /// How the links are made, and over which motion they were looked at.
+    pub(super) fn made(&self, practicality: &Practicality) -> String {
         let (radius, pin) = (practicality.build.plate_radius, practicality.build.pin_radius);
         let motion = match practicality.sweep.full_turn {
             true => "the full turn of the crank".to_owned(),
@@ -74,17 +80,17 @@ impl Words {
                 )
             }
         };
-        let text = format!(
+        format!(
             "Holes {}, plates {} around them; over {motion}.",
             self.length(2.0 * pin),
             self.length(radius - pin)
-        );
-        wrapped("  ", "  ", &text, COLUMNS)
+        )
     }
 
-    fn layers(&self, layering: &Layering) -> String {
-        let mut out = String::new();
-        let mut line = |text: &str| out.push_str(&wrapped("  ", "    ", text, COLUMNS));
+    /// The stacking and what stands in its way, a line each.
+    pub(super) fn layers(&self, layering: &Layering) -> Vec<String> {
+        let mut out = Vec::new();
+        let mut line = |text: &str| out.push(text.to_owned());
         let (_, crossed) = layering.obstacles();
         match &layering.stack {
             Some(stack) => {
@@ -168,12 +174,8 @@ impl Words {
         let mut grid = Grid::new(&[("joints", Left), ("least", Right), ("at crank", Right), ("", Left)]);
         for d in distances.iter().filter(|d| !d.fixed) {
             let [one, other] = d.between;
-            let pins = one != "P" && other != "P";
-            let (note, ink) = match d.closest.value < hole {
-                true if pins => ("a pin there crosses the other: not in one layer", Ink::Bad),
-                true => ("nearer than a hole: mind what is mounted at P", Ink::Bad),
-                false => ("", Ink::Plain),
-            };
+            let note = objection(d, hole);
+            let ink = if note.is_empty() { Ink::Plain } else { Ink::Bad };
             grid.row(vec![
                 (format!("{one}-{other}"), Ink::Plain),
                 (significant(d.closest.value, DIGITS + 1), ink),
@@ -182,12 +184,7 @@ impl Words {
             ]);
         }
         let mut out = grid.render(self.colour);
-        let held: Vec<String> = distances
-            .iter()
-            .filter(|d| d.fixed)
-            .map(|d| format!("{}-{} {}", d.between[0], d.between[1], brief(d.closest.value, DIGITS + 1)))
-            .collect();
-        out.push_str(&wrapped("  ", "  ", &format!("Held by a link: {}.", held.join(", ")), COLUMNS));
+        out.push_str(&wrapped("  ", "  ", &held(distances), COLUMNS));
         out
     }
 
@@ -214,13 +211,15 @@ impl Words {
             grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
         }
         grid.row(row(&felt.ground, Ink::Faint));
-        let mut out = wrapped(
-            "  ",
-            "  ",
-            &format!("Shift of the path for an error of 1 in each dimension alone, {}.", settles(felt.crank)),
-            COLUMNS,
-        );
+        let mut out = wrapped("  ", "  ", &shift(felt), COLUMNS);
         out.push_str(&grid.render(self.colour));
+        out.push_str(&wrapped("  ", "  ", &self.together(felt, at_points, tolerance), COLUMNS));
+        out
+    }
+
+    /// The worst dimension, and what all of them do together.
+    pub(super) fn together(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
+        let worst = felt.worst_dimension().name;
         let most = if at_points { format!(" at point {}", felt.worst_at) } else { String::new() };
         let mut text = format!(
             "The worst dimension is {worst}. With every dimension off by {} (1 sigma, the nine above independent of \
@@ -238,8 +237,32 @@ impl Words {
                 felt.at_toggles.len()
             ));
         }
-        out.push_str(&wrapped("  ", "  ", &text, COLUMNS));
-        out
+        text
+    }
+}
+
+/// What the table of sensitivities holds.
+pub(super) fn shift(felt: &Sensitivity) -> String {
+    format!("Shift of the path for an error of 1 in each dimension alone, {}.", settles(felt.crank))
+}
+
+/// The distances that a link keeps.
+pub(super) fn held(distances: &[PivotDistance]) -> String {
+    let held: Vec<String> = distances
+        .iter()
+        .filter(|d| d.fixed)
+        .map(|d| format!("{}-{} {}", d.between[0], d.between[1], brief(d.closest.value, DIGITS + 1)))
+        .collect();
+    format!("Held by a link: {}.", held.join(", "))
+}
+
+/// What is wrong with a distance that is below a hole; empty where nothing is.
+pub(super) fn objection(d: &PivotDistance, hole: f64) -> &'static str {
+    let pins = d.between.iter().all(|joint| *joint != "P");
+    match d.closest.value < hole {
+        true if pins => "a pin there crosses the other: not in one layer",
+        true => "nearer than a hole: mind what is mounted at P",
+        false => "",
     }
 }
 
@@ -267,7 +290,7 @@ fn at(closest: &Closest) -> String {
 }
 
 /// An angle in [0, 360) degrees, to a tenth.
-fn degrees(angle: f64) -> String {
+pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
     format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
 }

@@ -1,8 +1,9 @@
 //! A suite for the terminal and as Markdown: the same sheets, set twice.
 
+use super::certificate::percent_up;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
-use super::text::{brief, clean, grouped, shortened, significant, wrapped};
+use super::text::{brief, clean, clean_sentence, grouped, shortened, significant, wrapped};
 use crate::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
 /// Marks a problem with a sum that is smaller than the best known.
@@ -20,6 +21,8 @@ const WHAT: &str = "sum of sq: the least sum of squared distances at the crank a
     where one is set, within 1e-6 of it; evaluations: of the objective, median.";
 const TIMES: &str = "ms: the median and the worst time of a search, of one thread, from the checked problem \
     to ranked, refereed candidates; times depend on the machine, the other figures do not.";
+const PROVED: &str = "proved gap: no linkage of the kind that is told below has a sum of squares more than this below the \
+    least one found.";
 const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as printed (where that could be \
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
@@ -54,8 +57,13 @@ impl Sheet {
 
 /// Foreign text as Markdown on one line, nothing in it a mark.
 fn markdown(text: &str) -> String {
+    unmarked(&clean(text))
+}
+
+/// Clean text with nothing in it a mark.
+fn unmarked(text: &str) -> String {
     let mut out = String::new();
-    for c in clean(text).chars() {
+    for c in text.chars() {
         if matches!(c, '|' | '*' | '_' | '`' | '<' | '[' | '\\' | '#') {
             out.push('\\');
         }
@@ -74,6 +82,11 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
         out.push('\n');
         for what in [WHAT, TIMES, BESIDE] {
             out.push_str(&wrapped("  ", "    ", what, COLUMNS));
+        }
+        let proofs = proofs(suite);
+        let first = Some(PROVED.to_owned()).filter(|_| !proofs.is_empty());
+        for told in first.into_iter().chain(proofs) {
+            out.push_str(&wrapped("  ", "    ", &told, COLUMNS));
         }
     }
     let notes = notes(suite);
@@ -107,6 +120,13 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out.push('\n');
     out.push_str(&paragraph(WHAT));
     out.push_str(&paragraph(TIMES));
+    if is_certified(suite) {
+        out.push_str(&paragraph(PROVED));
+        for proof in proofs(suite) {
+            out.push_str(&wrapped("- ", "  ", &unmarked(&proof), COLUMNS + 10));
+        }
+        out.push('\n');
+    }
     let notes = notes(suite);
     for note in &notes {
         out.push_str(&wrapped("- ", "  ", &markdown(note), COLUMNS + 10));
@@ -127,14 +147,38 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out
 }
 
+/// Whether certificates were asked for.
+fn is_certified(suite: &Suite) -> bool {
+    suite.problems.iter().any(|p| p.certificate.is_some() || p.no_certificate.is_some())
+}
+
+/// A sentence for each certificate, and for each that cannot be had.
+fn proofs(suite: &Suite) -> Vec<String> {
+    let told = |problem: &ProblemResult| {
+        let name = clean(&problem.name);
+        match (&problem.certificate, &problem.no_certificate) {
+            (Some(proof), _) if proof.lower_bound > 0.0 => Some(format!(
+                "{name}: {}. {}",
+                if proof.closed { "proved" } else { "proved so far" },
+                clean_sentence(&proof.statement)
+            )),
+            (Some(_), _) => Some(format!("{name}: nothing is proved yet; the time was over.")),
+            (None, Some(why)) => Some(format!("{name}: {}.", clean_sentence(why))),
+            (None, None) => None,
+        }
+    };
+    suite.problems.iter().filter_map(told).collect()
+}
+
 fn answers(suite: &Suite) -> Sheet {
     use Align::{Left, Right};
     let row = |problem: &ProblemResult| {
         let summary = &problem.search.summary;
         let best = summary.best.as_ref();
+        let gap = problem.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
         let mark = if problem.smaller_than_best_known.is_some() { SMALLER } else { "" };
         let of = problem.search.runs.len();
-        vec![
+        let mut cells = vec![
             format!("{}{mark}", clean(&problem.name)),
             number(best.map(|best| best.sum_sq), 6),
             significant(problem.best_known_sum_sq, 6),
@@ -144,20 +188,26 @@ fn answers(suite: &Suite) -> Sheet {
             number(summary.median_search_s.map(|s| 1e3 * s), 3),
             number(summary.worst_search_s.map(|s| 1e3 * s), 3),
             summary.median_evaluations.map_or(NOTHING.into(), grouped),
-        ]
+        ];
+        if is_certified(suite) {
+            cells.push(gap.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap))));
+        }
+        cells
     };
+    const HEADS: [(&str, Align); 10] = [
+        ("problem", Left),
+        ("sum of sq", Right),
+        ("best known", Right),
+        ("median", Right),
+        ("to curve", Right),
+        ("hits", Right),
+        ("median ms", Right),
+        ("worst ms", Right),
+        ("evaluations", Right),
+        ("proved gap", Right),
+    ];
     Sheet {
-        heads: &[
-            ("problem", Left),
-            ("sum of sq", Right),
-            ("best known", Right),
-            ("median", Right),
-            ("to curve", Right),
-            ("hits", Right),
-            ("median ms", Right),
-            ("worst ms", Right),
-            ("evaluations", Right),
-        ],
+        heads: if is_certified(suite) { &HEADS } else { &HEADS[..HEADS.len() - 1] },
         rows: suite.problems.iter().map(row).collect(),
     }
 }

@@ -93,6 +93,8 @@ pub fn grouped(value: u64) -> String {
 
 /// The longest foreign text that is shown.
 pub const LONGEST_TEXT: usize = 200;
+/// The longest sentence that is shown whole.
+const LONGEST_SENTENCE: usize = 800;
 
 /// Foreign text on one line, without anything that commands a terminal or turns the reading direction:
 /// control characters become a space or nothing, runs of spaces one space, and what exceeds
@@ -102,9 +104,18 @@ pub const LONGEST_TEXT: usize = 200;
 /// assert_eq!(linkwright::report::text::clean("a\x1b[31mb\n c\u{202e}"), "a[31mb c");
 /// ```
 pub fn clean(text: &str) -> String {
+    clean_to(text, LONGEST_TEXT)
+}
+
+/// As [`clean`] for sentences, which may be longer.
+pub(super) fn clean_sentence(text: &str) -> String {
+    clean_to(text, LONGEST_SENTENCE)
+}
+
+fn clean_to(text: &str, longest: usize) -> String {
     let mut clean = String::new();
     // Far more than is shown: a name of a gigabyte costs no more than this.
-    for c in text.chars().take(16 * LONGEST_TEXT) {
+    for c in text.chars().take(16 * longest) {
         if c.is_whitespace() {
             if !clean.ends_with(' ') {
                 clean.push(' ');
@@ -113,7 +124,7 @@ pub fn clean(text: &str) -> String {
             clean.push(c);
         }
     }
-    shortened(clean.trim(), LONGEST_TEXT)
+    shortened(clean.trim(), longest)
 }
 
 /// Marks of reading direction, joiners, separators, tags and non-characters.

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use std::fmt::Write;
 
 /// The order of the tables at the top of a problem file; others follow by name.
-const ORDER: [&str; 5] = ["task", "design", "require", "solve", "expect"];
+const ORDER: [&str; 6] = ["task", "design", "require", "solve", "certify", "expect"];
 
 /// The reference of a kind of file as a page of Markdown: every table with its keys, what each may be, its default and
 /// its meaning.

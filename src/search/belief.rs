@@ -81,6 +81,11 @@ impl Belief {
         (self.hit, self.near) = (false, false);
     }
 
+    /// How many batches came to the best, and how many near it.
+    pub fn hits(&self) -> (usize, usize) {
+        (self.hits, self.near_hits)
+    }
+
     /// Whether the best is believed.
     pub fn is_firm(&self) -> bool {
         self.hits >= HITS || self.near_hits >= FLAT_HITS

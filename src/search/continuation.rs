@@ -81,6 +81,7 @@ impl Exact {
             reason: budget.stop_reason().unwrap_or(reason),
             evaluations: Evaluations::default(),
             exact: Some(self.record),
+            repeats: None,
         }
     }
 
@@ -98,6 +99,8 @@ impl Exact {
         outcome.reason = budget.stop_reason().unwrap_or(outcome.reason);
         outcome.used.insert(0, NAME.into());
         outcome.exact = Some(self.record);
+        // They are of approximate answers.
+        outcome.repeats = None;
         outcome
     }
 }

@@ -28,7 +28,7 @@ use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
-use super::{Budget, Observer, Progress};
+use super::{Budget, Observer, Progress, repeats};
 use crate::linkage::dot;
 use crate::problem::Problem;
 use crate::record::{Candidate, Evaluations, Reason};
@@ -271,6 +271,7 @@ pub(super) fn search(
         evaluations: Evaluations::default(),
         reason: Reason::EvaluationLimit,
         used: vec!["least-squares".into()],
+        repeats: None,
     };
     let mut ends: Vec<End> = Vec::new();
     let mut best_merits: Vec<f64> = Vec::new();
@@ -385,6 +386,9 @@ pub(super) fn search(
             break;
         }
     }
+    let judged = ends.iter().filter_map(|end| end.verdict.as_ref()?.as_ref());
+    let best = judged.filter(|c| promising(problem, c)).map(|c| searched(problem, c)).min_by(f64::total_cmp);
+    local.repeats = best.map(|best| repeats::counted(&best_merits, best, exact));
     local.found = ends.into_iter().filter_map(|end| end.verdict.flatten()).collect();
     local
 }

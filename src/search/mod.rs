@@ -24,12 +24,13 @@ pub mod population;
 pub mod rank;
 mod reassign;
 pub mod reduced;
+mod repeats;
 pub mod starts;
 pub mod timed;
 pub mod warm;
 pub mod warnings;
 
-use crate::record::{Candidate, Evaluations, ExactRecord, Reason};
+use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -97,4 +98,6 @@ pub struct SearchOutcome {
     pub evaluations: Evaluations,
     /// Every linkage through nine precision points, where they were asked for.
     pub exact: Option<ExactRecord>,
+    /// How often the best answer came back, where that was counted.
+    pub repeats: Option<Repeats>,
 }

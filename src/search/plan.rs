@@ -18,8 +18,8 @@ use super::{Budget, Observer, Progress, SearchOutcome};
 use super::{continuation, free, timed};
 use crate::assess::assess;
 use crate::problem::Problem;
-use crate::problem::spec::Method;
-use crate::record::{Candidate, Evaluations, Reason};
+use crate::problem::spec::{Method, Objective};
+use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use crate::solve::population::PopulationError;
 use crate::task::Timing;
 use rayon::prelude::*;
@@ -165,6 +165,7 @@ fn alone(
         reason: budget.stop_reason().unwrap_or(end.reason),
         evaluations: Evaluations { objective: end.evaluations, positions: end.positions },
         exact: None,
+        repeats: None,
     })
 }
 
@@ -178,6 +179,8 @@ pub(super) struct Local {
     pub(super) reason: Reason,
     /// What ran.
     pub(super) used: Vec<String>,
+    /// How often the best answer came back.
+    pub(super) repeats: Option<Repeats>,
 }
 
 impl Local {
@@ -198,6 +201,8 @@ impl Local {
             reason: self.reason,
             evaluations: self.evaluations,
             exact: None,
+            // The largest deviation is polished afterwards: its basins are others.
+            repeats: self.repeats.filter(|_| problem.spec().solve.objective == Objective::SumOfSquares),
         }
     }
 }
@@ -224,6 +229,7 @@ fn local_search(
         evaluations: timed.evaluations,
         reason: timed.reason,
         used: vec!["variable-projection".into()],
+        repeats: timed.repeats,
     };
     if timed.polished {
         local.used.push("least-squares".into());
@@ -239,6 +245,7 @@ fn local_search(
     local.evaluations.objective += more.evaluations.objective;
     local.evaluations.positions += more.evaluations.positions;
     local.reason = more.reason;
+    local.repeats = more.repeats;
     if !timed.polished {
         local.used.extend(more.used);
     }
@@ -260,7 +267,14 @@ pub struct RoundsState {
 
 impl RoundsState {
     fn ended(self, reason: Reason) -> Local {
-        Local { found: self.found, evaluations: self.evaluations, reason, used: vec!["least-squares".into()] }
+        let hits = self.hits as u64;
+        Local {
+            repeats: self.best.is_some().then(|| Repeats::new(self.batch * BATCH, hits, hits)),
+            found: self.found,
+            evaluations: self.evaluations,
+            reason,
+            used: vec!["least-squares".into()],
+        }
     }
 }
 
@@ -397,6 +411,7 @@ fn auto(
     local.evaluations.objective += end.evaluations;
     local.evaluations.positions += end.positions;
     local.found.extend(end.found);
+    local.repeats = None;
     let n = problem.task().len() as u64;
     let each = for_polish / end.starts.len().max(1) as u64;
     let worth_it = if each == 0 { Vec::new() } else { end.starts };

@@ -28,7 +28,7 @@ use crate::problem::design_space::{Design, DesignSpace};
 use crate::problem::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::problem::requirements::{Motion, Requirements, nearest_type};
 use crate::problem::{Problem, Setting};
-use crate::record::{Candidate, Evaluations, Reason};
+use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use crate::solve::compact_lm::{CompactOptions, solve};
 use crate::solve::streams::{Stream, below, stream, uniform};
 use crate::task::{AngleOffset, Timing};
@@ -78,6 +78,8 @@ pub struct TimedOutcome {
     pub reason: Reason,
     /// Whether the physical polish was needed.
     pub polished: bool,
+    /// How often the best answer came back.
+    pub repeats: Option<Repeats>,
 }
 
 /// An end of a fit, in physical parameters.
@@ -132,7 +134,15 @@ impl TimedState {
     }
 
     fn ended(self, reason: Reason) -> TimedOutcome {
-        TimedOutcome { found: self.found, evaluations: self.evaluations, reason, polished: self.polished }
+        let (hits, near) = self.belief.hits();
+        let repeats = || Repeats::new(self.wave * WAVE, hits as u64, near as u64);
+        TimedOutcome {
+            repeats: self.best.is_some().then(repeats),
+            found: self.found,
+            evaluations: self.evaluations,
+            reason,
+            polished: self.polished,
+        }
     }
 }
 

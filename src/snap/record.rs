@@ -61,6 +61,8 @@ pub fn record(
         conflict: None,
         relaxations: Vec::new(),
         certificate: None,
+        no_certificate: None,
+        repeats: None,
     })
 }
 

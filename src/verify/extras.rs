@@ -29,6 +29,10 @@ pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mi
     let first = record.candidates.first();
     let found = first.and_then(|best| family(problem, best));
     whole("family", words(record.family.as_ref()), words(found.as_ref()));
+    if let Some(repeats) = &record.repeats {
+        whole("repeats", format!("{repeats:?}"), format!("{:?}", repeats.recomputed()));
+        whole("repeats: counts that can be", "true".into(), repeats.is_possible().to_string());
+    }
     let Some(buildable) = &record.buildable else { return };
     let known = record.candidates.iter().find(|c| {
         (c.linkage, &c.crank_deg, &c.t1_at) == (buildable.linkage, &buildable.crank_deg, &buildable.t1_at)

@@ -13,6 +13,7 @@ mod properties;
 #[path = "../common/random.rs"]
 mod random;
 mod reduced;
+mod repeats;
 mod requirements;
 mod resuming;
 mod search;

@@ -4,7 +4,7 @@ use crate::common::{job, literature, parse, root};
 use assert_cmd::Command;
 use linkwright::linkage::AssemblyMode;
 use linkwright::problem::Problem;
-use linkwright::problem::spec::Method;
+use linkwright::problem::spec::{CertifySpec, Method};
 use linkwright::problem_file::{ProblemFile, Published};
 use linkwright::report::Colour;
 use linkwright::report::suite::{suite_markdown, suite_text};
@@ -118,6 +118,36 @@ fn a_suite_holds_what_each_run_by_itself_gives() {
     }
     let best = problem.best_published.as_ref().expect("four were published");
     assert!(best.source.starts_with("MUMSA") && best.printed_sum_sq.is_none());
+}
+
+#[test]
+fn a_suite_says_what_is_proved_and_what_cannot_be() {
+    let files = [literature("k18", &[]), literature("e5", &[])];
+    let certify = Some(CertifySpec { gap: 0.5, time_limit_s: 0.2 });
+    let options = Options { seeds: 1, certify, ..Options::default() };
+    let mut figures = suite(&files, &options, &AtomicBool::new(false), &|_| {}).expect("it runs");
+    assert!(figures.complete);
+    let [k18, e5] = figures.problems.as_mut_slice() else { panic!("two problems") };
+    let proof = k18.certificate.as_mut().expect("a certificate");
+    let least = k18.search.summary.best.as_ref().expect("an answer").sum_sq;
+    assert!(proof.boxes > 0 && proof.lower_bound <= least && proof.wanted_gap == 0.5);
+    assert!((proof.gap - (1.0 - proof.lower_bound / least)).abs() < 1e-12, "of the answer that is shown");
+    assert!(e5.certificate.is_none() && e5.no_certificate.as_ref().expect("a reason").contains("fixed line"));
+    // As it stands when the time is enough.
+    (proof.lower_bound, proof.gap, proof.closed) = (0.99992 * least, 8e-5, true);
+    let statement = proof.statement.clone();
+    let (text, page) = (suite_text(&figures, Colour::Never), suite_markdown(&figures));
+    for said in ["proved gap", "0.008 %", "k18: proved. ", "e5: no certificate is available yet"] {
+        assert!(text.contains(said) && page.contains(said), "{said}\n{text}\n{page}");
+    }
+    assert!(page.replace("\n  ", " ").contains(&statement), "{page}");
+    let json = serde_json::to_value(&figures).expect("JSON");
+    assert_eq!(json["problems"][0]["certificate"]["closed"], true);
+    let plain = timeless(self::figures(&files[1..], 1));
+    assert!(
+        !suite_text(&plain, Colour::Never).contains("proved") && !suite_markdown(&plain).contains("proved")
+    );
+    assert!(serde_json::to_value(&plain).expect("JSON")["problems"][0].get("no_certificate").is_none());
 }
 
 #[test]

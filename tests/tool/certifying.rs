@@ -73,8 +73,9 @@ fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
     fs::write(folder.path().join("free.csv"), points).expect("written");
     linkwright(folder.path(), &["synth", "free.csv", "--out", "free", "--quiet"]);
     let before = fs::read(folder.path().join("free/record.json")).expect("a record");
-    let (code, _, stderr) = linkwright(folder.path(), &["certify", "free"]);
+    let (code, stdout, stderr) = linkwright(folder.path(), &["certify", "free"]);
     assert_eq!(code, 2);
+    assert!(stdout.contains("independent starts") && stdout.contains("not a proof"), "{stdout}");
     assert!(stderr.contains("free timing"), "{stderr}");
     assert_eq!(before, fs::read(folder.path().join("free/record.json")).expect("a record"));
     let (code, _, stderr) = linkwright(folder.path(), &["verify", "free", "--certificate"]);

@@ -15,8 +15,10 @@ mod corpora;
 mod documents;
 mod exports;
 mod faults;
+mod long_runs;
 mod player_golden;
 mod problem_file_document;
+mod proving;
 #[path = "../common/random.rs"]
 mod random;
 #[path = "../reference/mod.rs"]

@@ -3,8 +3,10 @@
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
 use linkwright::linkage::AssemblyMode;
+use linkwright::practicality::{Build, Practicality, millimetre};
+use linkwright::problem::Problem;
 use linkwright::record::*;
-use linkwright::report::html::{is_report, report_html};
+use linkwright::report::html::{Extent, is_report, report_html, report_with_drawings};
 use linkwright::task::Defect;
 use std::fs;
 use std::path::Path;
@@ -37,6 +39,30 @@ fn quick_result(folder: &Path) {
     let said =
         linkwright(folder, &["synth", &problem, "--out", "r", "--quiet", "--set", "solve.evaluations=6000"]);
     assert!(said.code < 2, "{}", said.stderr);
+}
+
+/// A proof within 0.01 % of K18's optimum.
+fn certificate() -> Certificate {
+    let part = |linkage_type: &str, direction: i8| CertificatePart {
+        linkage_type: linkage_type.into(),
+        direction,
+        lower_bound: 0.009_028,
+        closed: true,
+        boxes: 1_200_000,
+        leaves_sha256: "ab".repeat(32),
+    };
+    Certificate {
+        statement: "No four-bar linkage has a sum of squared errors below 9.028e-3.".into(),
+        lower_bound: 0.009_028,
+        gap: 9.9e-5,
+        closed: true,
+        boxes: 4_800_000,
+        covered: vec!["crank-rockers and double-cranks".into(), "both assemblies".into()],
+        not_covered: vec!["linkages whose input rocks".into()],
+        leaves_sha256: "cd".repeat(32),
+        wanted_gap: 1e-4,
+        parts: vec![part("crank-rocker", 1), part("double-crank", -1)],
+    }
 }
 
 /// K18 with five candidates, warnings, cognates, costs and a buildable answer beside them.
@@ -76,6 +102,8 @@ fn five() -> Record {
             rms_without: Some(0.01),
         }];
     }
+    record.certificate = Some(certificate());
+    record.repeats = Some(Repeats::new(40, 6, 9).with_basins(34, 5));
     let mut buildable = record.candidates[1].clone();
     buildable.rank = 0;
     record.buildable = Some(buildable);
@@ -129,6 +157,13 @@ fn named(mut record: Record, text: &str) -> Record {
     record.method.used = vec![name()];
     record.family = record.family.map(|family| Family { text: name(), ..family });
     record.conflict = Some(Conflict { among: vec![name(), name()] });
+    record.no_certificate = Some(name());
+    if let Some(certificate) = &mut record.certificate {
+        certificate.statement = name();
+        certificate.covered = vec![name(), name()];
+        certificate.not_covered = vec![name()];
+        certificate.parts.iter_mut().for_each(|part| part.linkage_type = name());
+    }
     let change = Change { key: name(), from: TypedValue::Word(name()), to: TypedValue::Words(vec![name()]) };
     record.relaxations = vec![Relaxation { set: vec![change], sum_sq: 1.0, rms: 0.2 }];
     for candidate in record.candidates.iter_mut().chain(&mut record.buildable) {
@@ -280,6 +315,81 @@ fn no_text_of_a_record_becomes_markup_or_script() {
         assert!(!data.contains('<'), "{hostile}");
         data_of(&page);
     }
+}
+
+#[test]
+fn a_proof_is_told_with_what_it_covers_and_how_often_the_best_came_back() {
+    let mut record = five();
+    let page = report_html(&record, 0);
+    for said in [
+        "<p class=\"lead good\">Proved optimum within 0.0099 %.</p>",
+        "Can it be better?",
+        "below 9.028e-3",
+        "Covered: crank-rockers and double-cranks; both assemblies.",
+        "Not covered: linkages whose input rocks.",
+        "crank-rocker with the increments: no sum below 0.009028000000, 1,200,000 boxes",
+        "double-crank against the increments",
+        "from 6 of 40 independent starts (3 more",
+        "a better one has not been seen is 0.15",
+    ] {
+        assert!(page.contains(said), "{said}");
+    }
+    // Not to its end: what is proved is not called an optimum.
+    if let Some(certificate) = &mut record.certificate {
+        (certificate.closed, certificate.gap) = (false, 0.31);
+    }
+    let page = report_html(&record, 0);
+    assert!(
+        page.contains("Proved so far: the best sum is within 31 % of any linkage")
+            && !page.contains("Proved optimum")
+    );
+    record.certificate = None;
+    record.no_certificate = Some("no certificate is available for free timing".into());
+    let page = report_html(&record, 0);
+    assert!(page.contains("<p>No certificate is available for free timing.</p>") && !page.contains("Proved"));
+    assert!(!report_html(&k18(), 0).contains("id=\"proof\""));
+}
+
+#[test]
+fn what_it_takes_to_build_the_best_and_the_buildable_one_is_told() {
+    let record = five();
+    let page = report_html(&record, 0);
+    let section =
+        page.split("id=\"build\"").nth(1).expect("a section").split("</section>").next().expect("its end");
+    for said in [
+        "To build it",
+        "<h3>Candidate 1</h3>",
+        "<h3>The buildable answer</h3>",
+        "over the full turn of the crank.",
+        "layers, from below: ",
+        "can share a plane",
+        "Held by a link: A-C 0.3127",
+        "<th scope=\"row\">B-P</th>",
+        "The worst dimension is ",
+        "What an error of each dimension does",
+        "linkwright build RESULT",
+    ] {
+        assert!(section.contains(said), "{said}: {section}");
+    }
+    // The figures are those of `build`.
+    let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+    let best = &record.candidates[0];
+    let hole = Build::usual_hole(&best.linkage, record.problem.unit.map(millimetre));
+    let found = Practicality::of_candidate(&problem, best, Build::new(hole, hole)).expect("it can be joined");
+    let felt = found.sensitivity.expect("it has derivatives");
+    assert!(section.contains(&format!("The worst dimension is {}.", felt.worst_dimension().name)));
+    let distances = found.distances.expect("it closes");
+    let nearest = distances.iter().find(|d| !d.fixed).expect("one that changes");
+    assert!(section.contains(&linkwright::report::text::significant(nearest.closest.value, 4)));
+    // One job of many leaves it to `report`.
+    let brief = report_with_drawings(&record, 0, &[], Extent::Brief);
+    assert!(
+        brief.contains("linkwright report RESULT writes this page anew") && !brief.contains("from below")
+    );
+    let mut nothing = record;
+    nothing.candidates.clear();
+    nothing.buildable = None;
+    assert!(!report_html(&nothing, 0).contains("id=\"build\""));
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("record.rs", &["linkage", "task", "problem"]),
         ("record", &["linkage", "task", "problem"]),
         ("assess.rs", &["linkage", "task", "problem", "record"]),
-        ("run.rs", &["assess", "problem", "record", "search", "solve", "task"]),
+        ("run.rs", &["assess", "certificate", "problem", "record", "search", "solve", "task"]),
         ("live.rs", &["assess", "problem", "record", "search"]),
         ("checkpoint.rs", &["record", "run", "search"]),
         ("verify.rs", &["assess", "linkage", "problem", "record", "run", "search", "task"]),

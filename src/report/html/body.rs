@@ -1,13 +1,14 @@
 //! The page's sections in their order.
 
 use super::page::escaped;
-use super::{candidate, data, exact, table};
+use super::{Extent, candidate, data, exact, practicality, proof, table};
 use crate::record::{Candidate, Record};
+use crate::report::certificate as certificate_words;
 use crate::report::text::{clean, significant};
 use crate::report::{price, table as text_table, words};
 
 /// Everything that is seen. Each section is one line at the end.
-pub(super) fn body(record: &Record, drawings: &[&str]) -> String {
+pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent) -> String {
     let mut out = String::new();
     out.push_str(&header(record));
     out.push_str("<main>\n");
@@ -16,6 +17,8 @@ pub(super) fn body(record: &Record, drawings: &[&str]) -> String {
     }
     out.push_str(&table::candidates(record));
     out.push_str(&candidate::articles(record, drawings));
+    out.push_str(&practicality::practicality(record, extent));
+    out.push_str(&proof::proof(record));
     out.push_str(&exact::exact(record));
     if !record.candidates.is_empty() {
         out.push_str(POINTS);
@@ -62,6 +65,10 @@ fn header(record: &Record) -> String {
     }
     out.push_str(&paragraph("facts", &capital(&text_table::facts(record))));
     out.push_str(&paragraph("lead", &verdict(record)));
+    if let Some(certificate) = record.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0) {
+        let class = if certificate.closed { "lead good" } else { "lead" };
+        out.push_str(&paragraph(class, &format!("{}.", certificate_words::headline(certificate))));
+    }
     if let Some((shown, all)) = data::thinned(record) {
         let text = format!(
             "The drawing and the charts show {shown} of the {all} points; all figures are of all points."

@@ -6,7 +6,9 @@
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
+//! practicality.rs layers, clearances and sensitivities of what one would build
 //! exact.rs        every linkage through nine points
+//! proof.rs        what is proved, and how often the best answer came back
 //! player/*.mjs    position solver, drawing, charts, transport: they know nothing of this page
 //! report.mjs, report.css    the page around the player
 //! ```
@@ -24,6 +26,8 @@ mod exact;
 mod mobility;
 mod motion;
 pub(super) mod page;
+mod practicality;
+mod proof;
 mod requirements;
 mod table;
 
@@ -50,18 +54,28 @@ pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 pub fn report_html(record: &Record, first: usize) -> String {
     let drawn: Vec<String> =
         (0..candidate::drawn(record)).map(|i| super::svg::candidate_svg(record, i)).collect();
-    report_with_drawings(record, first, &drawn.iter().map(String::as_str).collect::<Vec<_>>())
+    let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
+    report_with_drawings(record, first, &drawn, Extent::Full)
+}
+
+/// What a page holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Everything.
+    Full,
+    /// Not what takes milliseconds to work out (layers, clearances): for one job of many.
+    Brief,
 }
 
 /// As [`report_html`] for a caller who has the candidates' drawings already:
 /// [`candidate_svg`](super::svg::candidate_svg) of each, in their order, is most of the work.
-pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str]) -> String {
+pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], extent: Extent) -> String {
     let mut modules = PLAYER.to_vec();
     modules.push(include_str!("report.mjs"));
     page::Page {
         title: &format!("{}: linkages", super::words::problem_name(record)),
         styles: &[PLAYER_STYLE, include_str!("report.css")],
-        body: &body::body(record, drawings),
+        body: &body::body(record, drawings, extent),
         data: &page::embedded(&data::Data::new(record, first)),
         modules: &modules,
     }

@@ -149,6 +149,8 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         conflict: None,
         relaxations: Vec::new(),
         certificate: None,
+        no_certificate: None,
+        repeats: None,
         exact: None,
     }
 }

@@ -1,0 +1,24 @@
+//! What is taken where nothing is said.
+
+use crate::linkage::FourBar;
+use crate::record::Unit;
+
+/// The default standard deviation of a dimension: millimetres, or a part of the longest link.
+const TOLERANCE_MM: f64 = 0.1;
+const TOLERANCE_SHARE: f64 = 1e-3;
+
+/// What a millimetre is in a unit.
+pub fn millimetre(unit: Unit) -> f64 {
+    match unit {
+        Unit::Mm => 1.0,
+        Unit::Cm => 0.1,
+        Unit::M => 1e-3,
+        Unit::In => 1.0 / 25.4,
+    }
+}
+
+/// The default standard deviation of a dimension: 0.1 mm, or where the unit is not known a thousandth of the longest
+/// link.
+pub fn usual_tolerance(linkage: &FourBar, unit: Option<Unit>) -> f64 {
+    unit.map_or(TOLERANCE_SHARE * linkage.longest_link(), |unit| TOLERANCE_MM * millimetre(unit))
+}

@@ -1,0 +1,169 @@
+//! What is proved about a result, and how often its best answer came back, in words.
+
+use super::grid::{Colour, Ink};
+use super::table::COLUMNS;
+use super::text::{brief, clean, clean_sentence, grouped, significant, wrapped};
+use crate::record::{Certificate, Record, Repeats};
+
+/// From this gap down a best answer is called a proved optimum.
+const NARROW: f64 = 1e-2;
+/// Entries of a list that are told.
+const TOLD: usize = 12;
+
+/// The certificate, or why there is none and what repeated hits say instead; empty where none was asked for.
+pub fn certificate_text(record: &Record, colour: Colour) -> String {
+    let head = |text: &str| format!("\n  {}\n", colour.paint(Ink::Strong, text));
+    let lines = |sentences: &[String]| -> String {
+        sentences.iter().map(|sentence| wrapped("    ", "    ", sentence, COLUMNS)).collect()
+    };
+    match (&record.certificate, &record.no_certificate) {
+        (Some(certificate), _) => head(&headline(certificate)) + &lines(&proof_sentences(certificate)),
+        (None, Some(why)) => {
+            let mut out = head("No certificate") + &lines(&[reason(why)]);
+            if let Some(repeats) = &record.repeats {
+                out.push_str(&lines(&repeats_sentences(repeats)));
+            }
+            out
+        }
+        (None, None) => String::new(),
+    }
+}
+
+/// How often the best answer came back, for a terminal.
+pub fn repeats_text(repeats: &Repeats) -> String {
+    repeats_sentences(repeats).iter().map(|sentence| wrapped("  ", "  ", sentence, COLUMNS)).collect()
+}
+
+/// Why there is none, as a sentence.
+pub(super) fn reason(why: &str) -> String {
+    let why = clean_sentence(why);
+    let mut letters = why.chars();
+    let capital = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
+    format!("{}.", capital.trim_end_matches('.'))
+}
+
+/// `Proved optimum within 0.01 %`, or how far a proof came.
+pub(super) fn headline(certificate: &Certificate) -> String {
+    let gap = percent_up(certificate.gap);
+    if certificate.closed && certificate.gap <= NARROW {
+        format!("Proved optimum within {gap} %")
+    } else if certificate.closed {
+        format!("Proved: the best sum is within {gap} % of any linkage's")
+    } else if certificate.lower_bound > 0.0 {
+        format!("Proved so far: the best sum is within {gap} % of any linkage's")
+    } else {
+        "Nothing is proved yet".to_owned()
+    }
+}
+
+/// In per cent with two digits, never less than it is.
+pub(super) fn percent_up(gap: f64) -> String {
+    let percent = 100.0 * gap;
+    if !(percent > 0.0 && percent.is_finite()) {
+        return brief(percent, 2);
+    }
+    let digit = 10.0_f64.powf(percent.log10().floor() - 1.0);
+    // A part that rounding leaves above a digit is no reason for another one.
+    brief((percent / digit - 1e-6).ceil() * digit, 2)
+}
+
+/// What is proved, what it covers, what not.
+pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
+    let list = |entries: &[String]| {
+        let told: Vec<String> = entries.iter().take(TOLD).map(|entry| clean(entry)).collect();
+        told.join("; ")
+    };
+    let mut sentences = vec![clean_sentence(&certificate.statement)];
+    let looked = grouped(certificate.boxes);
+    sentences.push(if certificate.closed {
+        format!("Every box of the {looked} looked at is decided.")
+    } else {
+        format!(
+            "It ended before the wanted gap of {} % was reached, after {looked} boxes; the bound holds all the same.",
+            percent_up(certificate.wanted_gap)
+        )
+    });
+    if !certificate.covered.is_empty() {
+        sentences.push(format!("Covered: {}.", list(&certificate.covered)));
+    }
+    if !certificate.not_covered.is_empty() {
+        sentences.push(format!("Not covered: {}.", list(&certificate.not_covered)));
+    }
+    sentences
+}
+
+/// How often the best answer came back and what that foretells, each figure with what it assumes.
+pub(super) fn repeats_sentences(repeats: &Repeats) -> Vec<String> {
+    let starts = grouped(repeats.starts);
+    let near = match repeats.near.checked_sub(repeats.hits) {
+        Some(more @ 1..) => format!(" ({} more came within a part in 1000)", grouped(more)),
+        _ => String::new(),
+    };
+    let mut sentences = vec![format!(
+        "The best answer came from {} of {starts} independent starts{near}.",
+        grouped(repeats.hits)
+    )];
+    if repeats.hits > 0 {
+        sentences.push(format!(
+            "A better one that starts come to as often would have stayed unseen with a probability of {} (one half for \
+             each hit).",
+            significant(repeats.as_likely, 2)
+        ));
+    }
+    if repeats.starts > 0 {
+        sentences.push(format!(
+            "A better one that {} % of the starts or more come to would have been seen with a probability of 95 %.",
+            percent_up(repeats.share_seen)
+        ));
+    }
+    if let (Some(followed), Some(basins), Some(unseen)) =
+        (repeats.followed, repeats.basins, repeats.unseen_better)
+    {
+        sentences.push(format!(
+            "The {} starts that were followed to an end came to {}: the probability that a better one has not been seen \
+             is {}, if nothing is known of how many there are and how often starts come to each (Boender and Rinnooy Kan \
+             1987).",
+            grouped(followed),
+            if basins == 1 { "the same one".to_owned() } else { format!("{} different ones", grouped(basins)) },
+            significant(unseen, 2)
+        ));
+    }
+    sentences.push("These are probabilities under assumptions, not a proof.".to_owned());
+    sentences
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_is_never_shown_smaller_than_it_is() {
+        for (gap, shown) in
+            [(1e-4, "0.01"), (9.99e-5, "0.01"), (1.01e-4, "0.011"), (0.5, "50"), (1.0, "100"), (0.0, "0")]
+        {
+            assert_eq!(percent_up(gap), shown, "{gap}");
+        }
+        for gap in [3.3e-5, 1.234e-3, 0.0987, 0.999] {
+            let shown: f64 = percent_up(gap).parse().expect("a number");
+            let percent = 100.0 * gap * (1.0 - 1e-6);
+            assert!(shown >= percent && shown < 1.101 * percent, "{gap}: {shown}");
+        }
+    }
+
+    #[test]
+    fn each_figure_of_repeated_hits_stands_with_what_it_assumes() {
+        let text = repeats_sentences(&Repeats::new(40, 6, 9).with_basins(34, 5)).join(" ");
+        for words in [
+            "from 6 of 40 independent starts (3 more came within",
+            "probability of 0.016 (one half",
+            "7.3 % of the starts or more",
+            "34 starts that were followed to an end came to 5 different ones",
+            "not been seen is 0.15, if nothing is known",
+            "not a proof",
+        ] {
+            assert!(text.contains(words), "{words}: {text}");
+        }
+        let few = repeats_sentences(&Repeats::new(4, 0, 0)).join(" ");
+        assert!(!few.contains("one half") && !few.contains("Boender"), "{few}");
+    }
+}

@@ -1,0 +1,57 @@
+//! How good an answer can be: the certificate, and how often the best answer came back.
+
+use super::body::{paragraph, section};
+use super::page::escaped;
+use crate::record::{Certificate, CertificatePart, Record};
+use crate::report::certificate::{headline, percent_up, proof_sentences, reason, repeats_sentences};
+use crate::report::text::{clean, grouped, significant};
+
+/// Classes of a certificate that are shown; it has at most four.
+const PARTS: usize = 8;
+
+/// The section; empty for a record that says nothing of it.
+pub(super) fn proof(record: &Record) -> String {
+    let mut inside = String::new();
+    match (&record.certificate, &record.no_certificate) {
+        (Some(certificate), _) => inside.push_str(&proved(certificate)),
+        (None, Some(why)) => inside.push_str(&paragraph("", &reason(why))),
+        (None, None) => {}
+    }
+    if let Some(repeats) = &record.repeats {
+        inside.push_str("<h3>How often it came back</h3>\n");
+        inside.push_str(&repeats_sentences(repeats).iter().map(|s| paragraph("", s)).collect::<String>());
+    }
+    if inside.is_empty() { inside } else { section("proof", "Can it be better?", &inside) }
+}
+
+fn proved(certificate: &Certificate) -> String {
+    let pairs = [
+        ("no sum of squares below", significant(certificate.lower_bound, 10)),
+        ("gap to the best found", format!("{} %", percent_up(certificate.gap))),
+        ("boxes looked at", grouped(certificate.boxes)),
+    ];
+    let pairs: String =
+        pairs.iter().map(|(key, value)| format!("<div><dt>{key}</dt><dd>{value}</dd></div>\n")).collect();
+    let class = if certificate.closed { "good" } else { "" };
+    let mut out = paragraph(class, &format!("{}.", headline(certificate)));
+    out.push_str(&format!("<dl class=\"figures\">\n{pairs}</dl>\n"));
+    out.push_str(&proof_sentences(certificate).iter().map(|s| paragraph("", s)).collect::<String>());
+    let items: String = certificate.parts.iter().take(PARTS).map(part).collect();
+    if !items.is_empty() {
+        out.push_str(&format!("<ul class=\"said-list\">\n{items}</ul>\n"));
+    }
+    let check = "linkwright verify RESULT --certificate works it out again, box by box.";
+    out + &paragraph("notes", check)
+}
+
+fn part(part: &CertificatePart) -> String {
+    let way = if part.direction < 0 { "against" } else { "with" };
+    let state = if part.closed { "" } else { ", not closed" };
+    let text = format!(
+        "{} {way} the increments: no sum below {}, {} boxes{state}",
+        clean(&part.linkage_type),
+        significant(part.lower_bound, 10),
+        grouped(part.boxes)
+    );
+    format!("<li>{}</li>\n", escaped(&text))
+}
