@@ -7,9 +7,9 @@
 
 use super::bound::{Bound, Cell, bound};
 use super::chart::Class;
+use super::leaves::{HALVED, Nodes, OPEN, ROOT};
 use super::target::{Target, TargetError};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -17,8 +17,8 @@ use std::collections::BinaryHeap;
 const BATCH: usize = 2048;
 /// The most boxes that wait: about a gigabyte.
 const MAX_WAITING: usize = 20_000_000;
-/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
-const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
+/// The most boxes of a tree: about a gigabyte.
+const MAX_BOXES: usize = 250_000_000;
 
 /// One class and one direction of the crank, ready to be bounded.
 #[derive(Clone, Debug)]
@@ -36,11 +36,11 @@ pub struct Question {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Leaf {
     /// No linkage is there: |d| > min(g, pi - g).
-    Outside,
+    Outside = 1,
     /// Its linkages have cognates in the other half.
-    Cognate,
+    Cognate = 2,
     /// Its bound reaches what was asked for.
-    Bounded,
+    Bounded = 3,
 }
 
 /// What a box is.
@@ -153,20 +153,23 @@ pub fn in_cognate_half(cell: &Cell) -> bool {
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     sum_sq: f64,
-    number: u64,
+    /// The order in which boxes were made.
+    number: u32,
+    /// Where it stands in the tree.
+    node: u32,
     axis: u8,
     cell: [f32; 8],
 }
 
 impl Waiting {
-    fn new(cell: &Cell, bound: &Bound, parent: f64, number: u64) -> Self {
+    fn new(cell: &Cell, bound: &Bound, parent: f64, number: u32) -> Self {
         let mut packed = [0.0; 8];
         for k in 0..4 {
             packed[k] = cell.low[k] as f32;
             packed[4 + k] = cell.high[k] as f32;
         }
         let axis = (0..4).max_by(|&i, &j| bound.weight[i].total_cmp(&bound.weight[j])).unwrap_or(0);
-        Waiting { sum_sq: bound.sum_sq.max(parent), number, axis: axis as u8, cell: packed }
+        Waiting { sum_sq: bound.sum_sq.max(parent), number, node: number, axis: axis as u8, cell: packed }
     }
 
     fn cell(&self) -> Cell {
@@ -199,9 +202,21 @@ pub struct Search {
     question: Question,
     wanted: f64,
     heap: BinaryHeap<Waiting>,
-    boxes: u64,
     decided: f64,
-    leaves: Sha256,
+    /// The boxes in the order in which they were made, two by two after the first: open, the rule of a leaf, or
+    /// [`halved`].
+    tree: Vec<u32>,
+}
+
+/// A box that is halved across an axis; the first of its halves is an odd number in the tree.
+fn halved(first: u32, axis: u8) -> u32 {
+    u32::from(HALVED) + (first / 2 * 4 + u32::from(axis))
+}
+
+/// The first half and the axis of a halved box.
+fn halves(node: u32) -> Option<(u32, u8)> {
+    let code = node.checked_sub(u32::from(HALVED))?;
+    Some((code / 4 * 2 + 1, (code % 4) as u8))
 }
 
 impl Search {
@@ -209,7 +224,7 @@ impl Search {
     pub fn new(question: Question, wanted: f64) -> Self {
         let none = Bound { sum_sq: 0.0, weight: [1.0, 2.0, 1.5, 1.2] };
         let heap = BinaryHeap::from([Waiting::new(&ROOT, &none, 0.0, 0)]);
-        Search { question, wanted, heap, boxes: 0, decided: 0.0, leaves: Sha256::new() }
+        Search { question, wanted, heap, decided: 0.0, tree: vec![u32::from(OPEN)] }
     }
 
     /// At most the sum of squares of every linkage of the question: what is certified by now.
@@ -224,7 +239,7 @@ impl Search {
 
     /// How many boxes were looked at.
     pub fn boxes(&self) -> u64 {
-        self.boxes
+        self.tree.len() as u64 - 1
     }
 
     /// How many wait.
@@ -239,13 +254,29 @@ impl Search {
 
     /// Whether no more boxes can wait: the search ends with what is certified.
     pub fn full(&self) -> bool {
-        self.heap.len() > MAX_WAITING
+        self.heap.len() > MAX_WAITING || self.tree.len() > MAX_BOXES
     }
 
-    /// SHA-256 of the leaves so far, in the order in which they were decided: eight ends as little-endian single
-    /// floats (lower, then upper) and a byte for the rule.
+    /// The tree so far, each box before its halves.
+    pub fn nodes(&self) -> Nodes {
+        let mut nodes = Nodes::default();
+        let mut next = vec![0_u32];
+        while let Some(at) = next.pop() {
+            let node = self.tree.get(at as usize).copied().unwrap_or_default();
+            match halves(node) {
+                Some((first, axis)) => {
+                    nodes.push(HALVED + axis);
+                    next.extend([first + 1, first]);
+                }
+                None => nodes.push(node as u8),
+            }
+        }
+        nodes
+    }
+
+    /// SHA-256 of the tree so far.
     pub fn leaves_sha256(&self) -> [u8; 32] {
-        self.leaves.clone().finalize().into()
+        self.nodes().sha256()
     }
 
     /// Whether some box that waits contains the point.
@@ -270,21 +301,20 @@ impl Search {
             })
         };
         let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
-        for (parent, halves) in batch.iter().zip(looked) {
-            for (cell, outcome) in halves {
-                self.boxes += 1;
-                match outcome {
+        for (parent, pair) in batch.iter().zip(looked) {
+            self.tree[parent.node as usize] = halved(self.tree.len() as u32, parent.axis);
+            for (cell, outcome) in pair {
+                let number = self.tree.len() as u32;
+                self.tree.push(match outcome {
                     Outcome::Leaf(rule) => {
                         self.decided += share(&cell);
-                        for end in cell.low.iter().chain(&cell.high) {
-                            self.leaves.update((*end as f32).to_le_bytes());
-                        }
-                        self.leaves.update([rule as u8]);
+                        rule as u32
                     }
                     Outcome::Open(bound) => {
-                        self.heap.push(Waiting::new(&cell, &bound, parent.sum_sq, self.boxes));
+                        self.heap.push(Waiting::new(&cell, &bound, parent.sum_sq, number));
+                        u32::from(OPEN)
                     }
-                }
+                });
             }
         }
     }

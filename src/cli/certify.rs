@@ -3,10 +3,10 @@
 use super::arguments::Certify;
 use super::result::{self, Which};
 use super::{Ended, interrupt, synth, terminal};
-use crate::certificate::{Progress, Request, certify};
+use crate::certificate::{Progress, Proof, Request};
 use crate::diagnostic::escaped;
 use crate::record::Certificate;
-use crate::results_folder::ResultsFolder;
+use crate::results_folder::{LEAVES, ResultsFolder};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -57,12 +57,20 @@ fn inner(options: &Certify) -> Result<Ended, Ended> {
         }
     };
     let request = Request { gap: options.gap };
-    let certificate = certify(&record, &request, cancel, Some(deadline), &mut tell)
-        .map_err(|e| refuse(&format!("{shown}: {e}")))?;
+    let mut proof = Proof::new(&record, &request).map_err(|e| refuse(&format!("{shown}: {e}")))?;
+    proof.run(cancel, Some(deadline), &mut tell);
+    let leaves = proof.leaves();
+    let certificate = proof.certificate_of(&leaves);
     let text = text(&certificate);
     let closed = certificate.closed;
     record.certificate = Some(certificate);
-    let files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+    let mut files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+    if options.leaves {
+        files.push((LEAVES.into(), leaves.to_bytes()));
+    }
+    if folder.has_checkpoint() {
+        folder.keep_checkpoint();
+    }
     folder.replace(&files).map_err(|e| refuse(&e.to_string()))?;
     terminal::answer(&text);
     Ok(match closed {

@@ -5,7 +5,7 @@ use linkwright::certificate::{Ball, Cell, Class, Outcome, Point, Question, Searc
 use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use linkwright::solve::streams::{Stream, stream, unit};
 
-const K18: [[f64; 2]; 18] = [
+pub const K18: [[f64; 2]; 18] = [
     [0.5, 1.1],
     [0.4, 1.1],
     [0.3, 1.1],
@@ -26,14 +26,14 @@ const K18: [[f64; 2]; 18] = [
     [0.6, 1.0],
 ];
 const NO_CAP: f64 = f64::MAX;
-const KINDS: [(Class, f64); 4] = [
+pub const KINDS: [(Class, f64); 4] = [
     (Class::CrankRocker, 1.0),
     (Class::CrankRocker, -1.0),
     (Class::DoubleCrank, 1.0),
     (Class::DoubleCrank, -1.0),
 ];
 
-fn turns() -> Vec<f64> {
+pub fn turns() -> Vec<f64> {
     (0..18).map(|i| 20.0 * f64::from(i)).collect()
 }
 
@@ -53,12 +53,12 @@ fn point(random: &mut Stream) -> Point {
     }
 }
 
-fn directions(point: &Point, class: Class, direction: f64, turns: &[f64]) -> Vec<[f64; 2]> {
+pub fn directions(point: &Point, class: Class, direction: f64, turns: &[f64]) -> Vec<[f64; 2]> {
     turns.iter().map(|deg| point.direction(class, direction * deg.to_radians())).collect()
 }
 
 /// Factor by which tests of many draws are shorter without optimisation.
-fn draws(release: usize) -> usize {
+pub fn draws(release: usize) -> usize {
     if cfg!(debug_assertions) { release / 10 } else { release }
 }
 
@@ -191,7 +191,7 @@ fn balls_hold_the_exact_results() {
 }
 
 /// A box of any size anywhere in the chart, often beside what is degenerate.
-fn cell(random: &mut Stream) -> Cell {
+pub fn cell(random: &mut Stream) -> Cell {
     let root = Question::root();
     let size = 10.0_f64.powf(-4.0 * unit(random));
     let mut cell = root;
@@ -220,7 +220,7 @@ fn within(cell: &Cell, at: [f64; 4]) -> Point {
     Point { p: x[0], phi: x[1], g: x[2], d: x[3] }
 }
 
-fn points_of(cell: &Cell, random: &mut Stream) -> Vec<Point> {
+pub fn points_of(cell: &Cell, random: &mut Stream) -> Vec<Point> {
     let corners = (0..16).map(|i| [0, 1, 2, 3].map(|k| f64::from(i >> k & 1))).collect::<Vec<_>>();
     let inner: Vec<[f64; 4]> = (0..12).map(|_| [0; 4].map(|_| unit(random))).collect();
     corners.iter().chain(&inner).map(|at| within(cell, *at)).collect()
@@ -277,7 +277,7 @@ fn the_cap_rule_excludes_no_linkage_within_the_cap() {
 }
 
 /// The least sum of squares with |Z| <= cap, from scratch: |T' - Z u'|^2 is a circle's paraboloid in Z.
-fn capped_sum(points: &[[f64; 2]], turns: &[f64], direction: f64, u: &[[f64; 2]], cap: f64) -> f64 {
+pub fn capped_sum(points: &[[f64; 2]], turns: &[f64], direction: f64, u: &[[f64; 2]], cap: f64) -> f64 {
     use nalgebra::{Complex, DMatrix, DVector};
     let complex = |v: &[f64; 2]| Complex::new(v[0], v[1]);
     let n = points.len();

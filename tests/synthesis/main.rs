@@ -2,6 +2,7 @@
 
 mod answers;
 mod certificate;
+mod certificate_leaves;
 #[path = "../common/mod.rs"]
 mod common;
 mod conflicts;
