@@ -82,6 +82,11 @@ impl Proof {
         }
     }
 
+    /// Whether more time would change nothing: the gap is reached, or no more boxes can be kept.
+    pub fn ended(&self) -> bool {
+        self.searches.iter().all(|(_, _, search)| search.closed() || search.full())
+    }
+
     /// The trees of all parts: a file for a checker, whose digest is in the certificate.
     pub fn leaves(&self) -> Leaves {
         let part = |(class, direction, search): &(Class, f64, Search)| LeavesPart {

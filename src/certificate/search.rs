@@ -178,6 +178,17 @@ impl Waiting {
     }
 }
 
+/// What a stopped search keeps of a box that waits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OpenBox {
+    /// The order in which boxes were made.
+    pub number: u32,
+    /// Its bound.
+    pub sum_sq: f64,
+    /// The axis to halve.
+    pub axis: u8,
+}
+
 impl PartialEq for Waiting {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
@@ -259,6 +270,11 @@ impl Search {
 
     /// The tree so far, each box before its halves.
     pub fn nodes(&self) -> Nodes {
+        self.walk(|_| ())
+    }
+
+    /// The tree so far, each box before its halves; `open` is told where each open box stands.
+    fn walk(&self, mut open: impl FnMut(u32)) -> Nodes {
         let mut nodes = Nodes::default();
         let mut next = vec![0_u32];
         while let Some(at) = next.pop() {
@@ -268,10 +284,75 @@ impl Search {
                     nodes.push(HALVED + axis);
                     next.extend([first + 1, first]);
                 }
-                None => nodes.push(node as u8),
+                None => {
+                    nodes.push(node as u8);
+                    if node == u32::from(OPEN) {
+                        open(at);
+                    }
+                }
             }
         }
         nodes
+    }
+
+    /// The tree so far, and what waits in the order of its open boxes.
+    pub(super) fn state(&self) -> (Nodes, Vec<OpenBox>) {
+        let mut by_node: Vec<&Waiting> = self.heap.iter().collect();
+        by_node.sort_unstable_by_key(|waiting| waiting.node);
+        let mut open = Vec::with_capacity(by_node.len());
+        let nodes = self.walk(|node| {
+            let found = by_node.binary_search_by_key(&node, |waiting| waiting.node);
+            if let Some(waiting) = found.ok().and_then(|at| by_node.get(at)) {
+                open.push(OpenBox { number: waiting.number, sum_sq: waiting.sum_sq, axis: waiting.axis });
+            }
+        });
+        (nodes, open)
+    }
+
+    /// The sum behind [`Search::decided`].
+    pub(super) fn decided_sum(&self) -> f64 {
+        self.decided
+    }
+
+    /// A search for the same as `like` that stands where [`Search::state`] says; `None` where no search stands so.
+    pub(super) fn restored(like: &Search, nodes: &Nodes, open: &[OpenBox], decided: f64) -> Option<Self> {
+        nodes.covers().ok()?;
+        let count = usize::try_from(nodes.len()).ok().filter(|count| *count <= MAX_BOXES + 2 * BATCH)?;
+        let mut numbers: Vec<u32> = open.iter().map(|waiting| waiting.number).collect();
+        numbers.sort_unstable();
+        let apart = numbers.windows(2).all(|pair| pair[0] < pair[1]);
+        let within = numbers.last().is_none_or(|last| (*last as usize) < count);
+        let sound = open.iter().all(|waiting| waiting.axis < 4 && waiting.sum_sq >= 0.0);
+        if !(apart && within && sound && (0.0..=1.1).contains(&decided)) {
+            return None;
+        }
+        let mut tree = Vec::with_capacity(count);
+        tree.push(u32::from(OPEN));
+        let mut next = vec![(0_u32, ROOT)];
+        let mut waiting = Vec::with_capacity(open.len());
+        let mut open = open.iter();
+        for code in nodes.codes() {
+            let (node, cell) = next.pop()?;
+            if let Some(axis) = code.checked_sub(HALVED) {
+                let first = tree.len() as u32;
+                tree[node as usize] = halved(first, axis);
+                tree.extend([u32::from(OPEN); 2]);
+                let [lower, upper] = cell.split(usize::from(axis)).map(|half| packed(&half));
+                next.extend([(first + 1, upper), (first, lower)]);
+            } else if code == OPEN {
+                let OpenBox { number, sum_sq, axis } = *open.next()?;
+                let mut cells = [0.0; 8];
+                for k in 0..4 {
+                    cells[k] = cell.low[k] as f32;
+                    cells[4 + k] = cell.high[k] as f32;
+                }
+                waiting.push(Waiting { sum_sq, number, node, axis, cell: cells });
+            } else {
+                tree[node as usize] = u32::from(code);
+            }
+        }
+        let heap = BinaryHeap::from(waiting);
+        Some(Search { question: like.question.clone(), wanted: like.wanted, heap, decided, tree })
     }
 
     /// SHA-256 of the tree so far.

@@ -188,6 +188,9 @@ pub struct Certify {
     /// certify.time_limit_s=S: end after S seconds with what is proved by then [default: 300]
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = certify_key)]
     pub set: Vec<(String, f64)>,
+    /// Go on from certificate.checkpoint where a run that was stopped left one
+    #[arg(long)]
+    pub resume: bool,
     /// Keep the decided boxes too, as certificate.leaves, for verify --leaves
     #[arg(long)]
     pub leaves: bool,

@@ -12,14 +12,14 @@ use linkwright::solve::streams::{stream, unit};
 use sha2::{Digest, Sha256};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-fn k18() -> Record {
+pub fn k18() -> Record {
     let idle = AtomicBool::new(false);
     let context = Context { cancel: &idle, observer: &|_| {} };
     run(&job(literature("k18", &[])), &context).expect("it runs").record
 }
 
 /// A search that is stopped after some batches.
-fn stopped(record: &Record, gap: f64, batches: usize) -> Proof {
+pub fn stopped(record: &Record, gap: f64, batches: usize) -> Proof {
     let mut proof = Proof::new(record, &Request { gap }).expect("there is a certificate");
     let cancel = AtomicBool::new(false);
     let mut seen = 0;
@@ -35,7 +35,7 @@ fn checked(record: &Record, certificate: &Certificate, bytes: &[u8]) -> Result<C
 }
 
 /// The file with its checksum put right again after a change.
-fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+pub fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     let body = bytes.len() - 32;
     let sum: [u8; 32] = Sha256::digest(&bytes[..body]).into();
     bytes[body..].copy_from_slice(&sum);

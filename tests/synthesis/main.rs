@@ -3,6 +3,7 @@
 mod answers;
 mod certificate;
 mod certificate_leaves;
+mod certificate_resuming;
 #[path = "../common/mod.rs"]
 mod common;
 mod conflicts;
