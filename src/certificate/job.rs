@@ -48,6 +48,7 @@ impl Proof {
         let mut searches = Vec::new();
         for (class, direction) in subject.parts() {
             let question = Question::new(class, direction, &subject.points, &subject.turns_deg, subject.cap)?;
+            let question = if subject.from_ground { question.from_ground() } else { question };
             searches.push((class, direction, Search::new(question, subject.wanted())));
         }
         Ok(Proof { subject, searches })
@@ -92,6 +93,7 @@ impl Proof {
         let part = |(class, direction, search): &(Class, f64, Search)| LeavesPart {
             class: *class,
             direction: if *direction > 0.0 { 1 } else { -1 },
+            from_ground: self.subject.from_ground,
             lower_bound: search.lower_bound(),
             nodes: search.nodes(),
         };

@@ -7,7 +7,7 @@
 
 use super::bound::{Bound, Cell, bound};
 use super::chart::Class;
-use super::leaves::{HALVED, Nodes, OPEN, ROOT};
+use super::leaves::{HALVED, Nodes, OPEN, ROOT, root};
 use super::target::{Target, TargetError};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -30,6 +30,8 @@ pub struct Question {
     turns: Vec<f64>,
     /// No linkage with a larger |Z| is asked about.
     cap: f64,
+    /// Whether phi_0 = 0: the crank angles are from the ground line.
+    from_ground: bool,
 }
 
 /// Why a box needs no further look.
@@ -77,7 +79,14 @@ impl Question {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let turns = turns_deg.iter().map(|deg| direction.signum() * deg.to_radians()).collect();
-        Ok(Question { class, whole, fewer, turns, cap })
+        Ok(Question { class, whole, fewer, turns, cap, from_ground: false })
+    }
+
+    /// The same where the angles are from the ground line: phi_0 = 0.
+    #[must_use]
+    pub fn from_ground(mut self) -> Self {
+        self.from_ground = true;
+        self
     }
 
     /// The whole target.
@@ -233,8 +242,9 @@ fn halves(node: u32) -> Option<(u32, u8)> {
 impl Search {
     /// To find out whether every sum of squares is at least `wanted`.
     pub fn new(question: Question, wanted: f64) -> Self {
-        let none = Bound { sum_sq: 0.0, weight: [1.0, 2.0, 1.5, 1.2] };
-        let heap = BinaryHeap::from([Waiting::new(&ROOT, &none, 0.0, 0)]);
+        let turn = if question.from_ground { 0.0 } else { 2.0 };
+        let none = Bound { sum_sq: 0.0, weight: [1.0, turn, 1.5, 1.2] };
+        let heap = BinaryHeap::from([Waiting::new(&root(question.from_ground), &none, 0.0, 0)]);
         Search { question, wanted, heap, decided: 0.0, tree: vec![u32::from(OPEN)] }
     }
 
@@ -328,7 +338,7 @@ impl Search {
         }
         let mut tree = Vec::with_capacity(count);
         tree.push(u32::from(OPEN));
-        let mut next = vec![(0_u32, ROOT)];
+        let mut next = vec![(0_u32, root(like.question.from_ground))];
         let mut waiting = Vec::with_capacity(open.len());
         let mut open = open.iter();
         for code in nodes.codes() {
@@ -382,13 +392,14 @@ impl Search {
             })
         };
         let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
+        let whole = root(self.question.from_ground);
         for (parent, pair) in batch.iter().zip(looked) {
             self.tree[parent.node as usize] = halved(self.tree.len() as u32, parent.axis);
             for (cell, outcome) in pair {
                 let number = self.tree.len() as u32;
                 self.tree.push(match outcome {
                     Outcome::Leaf(rule) => {
-                        self.decided += share(&cell);
+                        self.decided += share(&cell, &whole);
                         rule as u32
                     }
                     Outcome::Open(bound) => {
@@ -407,6 +418,7 @@ fn packed(cell: &Cell) -> Cell {
     Cell { low: cell.low.map(single), high: cell.high.map(single) }
 }
 
-fn share(cell: &Cell) -> f64 {
-    (0..4).map(|k| (cell.high[k] - cell.low[k]) / (ROOT.high[k] - ROOT.low[k])).product()
+fn share(cell: &Cell, whole: &Cell) -> f64 {
+    let side = |cell: &Cell, k: usize| cell.high[k] - cell.low[k];
+    (0..4).filter(|k| side(whole, *k) > 0.0).map(|k| side(cell, k) / side(whole, k)).product()
 }

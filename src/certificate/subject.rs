@@ -22,7 +22,9 @@ pub enum NoCertificate {
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
     /// The crank angles are not increments.
-    #[error("no certificate is available yet for crank angles from a fixed line: it needs offset = \"free\"")]
+    #[error(
+        "no certificate is available yet for crank angles from the x axis: it needs offset = \"free\" or \"ground\""
+    )]
     FixedOffset,
     /// The sum is not the plain one.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
@@ -49,8 +51,10 @@ pub enum NoCertificate {
 pub struct Subject {
     /// The points.
     pub points: Vec<[f64; 2]>,
-    /// The crank's increments, degrees.
+    /// The crank's increments, degrees; its angles where these are from the ground line.
     pub turns_deg: Vec<f64>,
+    /// Whether the crank angles are from the ground line.
+    pub from_ground: bool,
     /// The directions of the crank: 1, -1.
     pub directions: Vec<f64>,
     /// R: no linkage with a larger |Z| is asked about.
@@ -74,7 +78,7 @@ impl Subject {
         let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
         let path = &spec.task.path;
         let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
-        if timing.offset != AngleOffset::Free {
+        if timing.offset == AngleOffset::Fixed {
             return Err(NoCertificate::FixedOffset);
         }
         let problem = crate::problem::Problem::new(spec.clone()).map_err(|_| NoCertificate::NoCandidate)?;
@@ -99,6 +103,7 @@ impl Subject {
         Ok(Subject {
             points: task.points().iter().map(|p| [p.re, p.im]).collect(),
             turns_deg: timing.crank_deg.clone(),
+            from_ground: timing.offset == AngleOffset::Ground,
             directions: problem.directions().to_vec(),
             cap,
             best,
@@ -125,7 +130,8 @@ impl Subject {
     pub fn sha256(&self) -> [u8; 32] {
         let mut sum = Sha256::new();
         let points = self.points.iter().flatten();
-        let rest = [self.cap, self.best, self.gap, self.points.len() as f64];
+        let ground = f64::from(u8::from(self.from_ground));
+        let rest = [self.cap, self.best, self.gap, self.points.len() as f64, ground];
         for number in rest.iter().chain(points).chain(&self.turns_deg).chain(&self.directions) {
             sum.update(number.to_le_bytes());
         }
@@ -151,12 +157,16 @@ impl Subject {
         let (points, cap, best) = (self.points.len(), self.cap, self.best);
         // Rounded down to the digits that are shown.
         let below = bound * (1.0 - 1e-12);
+        let angles = match self.from_ground {
+            true => "angles of the crank from the ground line",
+            false => "increments of the crank",
+        };
         let either = if self.directions.len() == 2 { "either way" } else { "the way that is asked for" };
         Certificate {
             statement: format!(
                 "No four-bar linkage whose input turns fully and whose coupler point is at most {cap:.6} from the \
-                 crank pin has a sum of squared errors below {below:.12e} at these {points} points and increments \
-                 of the crank; the best one found has {best:.12e}."
+                 crank pin has a sum of squared errors below {below:.12e} at these {points} points and \
+                 {angles}; the best one found has {best:.12e}."
             ),
             lower_bound: bound,
             gap: self.gap_of(bound),
@@ -165,7 +175,10 @@ impl Subject {
             covered: vec![
                 "crank-rockers and double-cranks, change points included".into(),
                 "both assemblies".into(),
-                format!("the crank turning {either}, any first crank angle"),
+                match self.from_ground {
+                    true => "the crank angles from the ground line, as prescribed".into(),
+                    false => format!("the crank turning {either}, any first crank angle"),
+                },
                 format!(
                     "any pivots and lengths of links, the coupler point at most {cap:.6} from the crank pin"
                 ),

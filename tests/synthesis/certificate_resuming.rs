@@ -1,6 +1,6 @@
 //! A search for a certificate that is stopped and goes on ends in the bytes of one that was never broken.
 
-use crate::certificate_leaves::{k18, sealed, stopped};
+use crate::certificate_leaves::{from_ground, k18, sealed, stopped, whole};
 use linkwright::certificate::{Proof, Request, ResumeError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -37,6 +37,25 @@ fn a_stopped_search_goes_on_to_the_same_bytes_on_any_number_of_threads() {
         assert_eq!(proof.leaves(), unbroken.leaves());
     }
     assert!(certificate.boxes > 50_000, "{}", certificate.boxes);
+}
+
+#[test]
+fn a_stopped_search_closes_the_gap_as_an_unbroken_one_does() {
+    let record = from_ground();
+    let wide = Request { gap: 0.02 };
+    let unbroken = whole(&record, wide.gap);
+    assert!(unbroken.certificate().closed && unbroken.ended());
+    let mut broken = stopped(&record, wide.gap, 1);
+    let mut times = 0;
+    while !broken.ended() {
+        broken = Proof::resume(&record, &wide, &broken.checkpoint()).expect("it goes on");
+        broken = more(broken, 4, 1 + times % 2);
+        times += 1;
+    }
+    assert!(times > 2, "{times}");
+    assert_eq!(broken.certificate(), unbroken.certificate());
+    assert_eq!(broken.leaves().to_bytes(), unbroken.leaves().to_bytes());
+    assert_eq!(broken.checkpoint(), unbroken.checkpoint());
 }
 
 #[test]

@@ -10,7 +10,7 @@ pub mod interval;
 pub mod model;
 pub mod region;
 
-use super::leaves::{Leaves, LeavesError, LeavesPart, ROOT};
+use super::leaves::{Leaves, LeavesError, LeavesPart, root};
 use super::subject::{NoCertificate, Subject};
 use crate::record::{Certificate, Record};
 use rayon::prelude::*;
@@ -96,7 +96,8 @@ pub fn check(
     let subject = Subject::new(record, recorded.wanted_gap)?;
     let parts = subject.parts();
     let named = |part: &LeavesPart| (part.class, f64::from(part.direction));
-    if leaves.parts.iter().map(named).ne(parts.iter().copied()) {
+    let from_ground = leaves.parts.iter().all(|part| part.from_ground == subject.from_ground);
+    if !from_ground || leaves.parts.iter().map(named).ne(parts.iter().copied()) {
         return Err(CheckError::Parts);
     }
     compare(recorded, &subject.certificate(&leaves))?;
@@ -192,7 +193,8 @@ struct Replay<'a> {
 
 impl<'a> Replay<'a> {
     fn new(part: &'a LeavesPart) -> Self {
-        let whole = Region { low: ROOT.low, high: ROOT.high };
+        let whole = root(part.from_ground);
+        let whole = Region { low: whole.low, high: whole.high };
         Replay { codes: Box::new(part.nodes.codes()), waiting: vec![whole] }
     }
 }
