@@ -24,6 +24,10 @@ const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
 /// The file of a search half done.
 pub const CHECKPOINT: &str = "checkpoint.json";
+/// The file with the leaves of a certificate.
+pub const LEAVES: &str = "certificate.leaves";
+/// The file of a search for a certificate half done.
+pub const CERTIFICATE_CHECKPOINT: &str = "certificate.checkpoint";
 /// What stands in the place of a rank in the names of the buildable answer's files.
 pub const BUILDABLE: &str = "buildable";
 /// The largest record that is read.
@@ -150,7 +154,7 @@ fn is_ours(name: &str) -> bool {
     matches!(
         name,
         LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
-    ) || name == CHECKPOINT
+    ) || [CHECKPOINT, LEAVES, CERTIFICATE_CHECKPOINT].contains(&name)
         || name.starts_with(TEMPORARY)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")

@@ -11,13 +11,21 @@
 pub mod ball;
 pub mod bound;
 pub mod chart;
+pub mod checker;
+pub mod checkpoint;
 pub mod job;
+pub mod leaves;
 pub mod search;
+pub mod subject;
 pub mod target;
 
 pub use ball::Ball;
 pub use bound::{Bound, Cell, bound};
 pub use chart::{Class, Point, Ratios};
-pub use job::{NoCertificate, Progress, Request, certify, recheck};
+pub use checker::{CheckError, Checked, check};
+pub use checkpoint::ResumeError;
+pub use job::{Progress, Proof, Request, certify, recheck};
+pub use leaves::{Leaves, LeavesError, LeavesPart, Nodes};
 pub use search::{Leaf, Outcome, Question, Search};
+pub use subject::{NoCertificate, Subject};
 pub use target::{Target, TargetError};

@@ -7,9 +7,9 @@
 
 use super::bound::{Bound, Cell, bound};
 use super::chart::Class;
+use super::leaves::{HALVED, Nodes, OPEN, ROOT, root};
 use super::target::{Target, TargetError};
 use rayon::prelude::*;
-use sha2::{Digest, Sha256};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -17,8 +17,8 @@ use std::collections::BinaryHeap;
 const BATCH: usize = 2048;
 /// The most boxes that wait: about a gigabyte.
 const MAX_WAITING: usize = 20_000_000;
-/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
-const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
+/// The most boxes of a tree: about a gigabyte.
+const MAX_BOXES: usize = 250_000_000;
 
 /// One class and one direction of the crank, ready to be bounded.
 #[derive(Clone, Debug)]
@@ -30,17 +30,19 @@ pub struct Question {
     turns: Vec<f64>,
     /// No linkage with a larger |Z| is asked about.
     cap: f64,
+    /// Whether phi_0 = 0: the crank angles are from the ground line.
+    from_ground: bool,
 }
 
 /// Why a box needs no further look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Leaf {
     /// No linkage is there: |d| > min(g, pi - g).
-    Outside,
+    Outside = 1,
     /// Its linkages have cognates in the other half.
-    Cognate,
+    Cognate = 2,
     /// Its bound reaches what was asked for.
-    Bounded,
+    Bounded = 3,
 }
 
 /// What a box is.
@@ -77,7 +79,14 @@ impl Question {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let turns = turns_deg.iter().map(|deg| direction.signum() * deg.to_radians()).collect();
-        Ok(Question { class, whole, fewer, turns, cap })
+        Ok(Question { class, whole, fewer, turns, cap, from_ground: false })
+    }
+
+    /// The same where the angles are from the ground line: phi_0 = 0.
+    #[must_use]
+    pub fn from_ground(mut self) -> Self {
+        self.from_ground = true;
+        self
     }
 
     /// The whole target.
@@ -153,26 +162,40 @@ pub fn in_cognate_half(cell: &Cell) -> bool {
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     sum_sq: f64,
-    number: u64,
+    /// The order in which boxes were made.
+    number: u32,
+    /// Where it stands in the tree.
+    node: u32,
     axis: u8,
     cell: [f32; 8],
 }
 
 impl Waiting {
-    fn new(cell: &Cell, bound: &Bound, parent: f64, number: u64) -> Self {
+    fn new(cell: &Cell, bound: &Bound, parent: f64, number: u32) -> Self {
         let mut packed = [0.0; 8];
         for k in 0..4 {
             packed[k] = cell.low[k] as f32;
             packed[4 + k] = cell.high[k] as f32;
         }
         let axis = (0..4).max_by(|&i, &j| bound.weight[i].total_cmp(&bound.weight[j])).unwrap_or(0);
-        Waiting { sum_sq: bound.sum_sq.max(parent), number, axis: axis as u8, cell: packed }
+        Waiting { sum_sq: bound.sum_sq.max(parent), number, node: number, axis: axis as u8, cell: packed }
     }
 
     fn cell(&self) -> Cell {
         let end = |k: usize| f64::from(self.cell[k]);
         Cell { low: [end(0), end(1), end(2), end(3)], high: [end(4), end(5), end(6), end(7)] }
     }
+}
+
+/// What a stopped search keeps of a box that waits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct OpenBox {
+    /// The order in which boxes were made.
+    pub number: u32,
+    /// Its bound.
+    pub sum_sq: f64,
+    /// The axis to halve.
+    pub axis: u8,
 }
 
 impl PartialEq for Waiting {
@@ -199,17 +222,30 @@ pub struct Search {
     question: Question,
     wanted: f64,
     heap: BinaryHeap<Waiting>,
-    boxes: u64,
     decided: f64,
-    leaves: Sha256,
+    /// The boxes in the order in which they were made, two by two after the first: open, the rule of a leaf, or
+    /// [`halved`].
+    tree: Vec<u32>,
+}
+
+/// A box that is halved across an axis; the first of its halves is an odd number in the tree.
+fn halved(first: u32, axis: u8) -> u32 {
+    u32::from(HALVED) + (first / 2 * 4 + u32::from(axis))
+}
+
+/// The first half and the axis of a halved box.
+fn halves(node: u32) -> Option<(u32, u8)> {
+    let code = node.checked_sub(u32::from(HALVED))?;
+    Some((code / 4 * 2 + 1, (code % 4) as u8))
 }
 
 impl Search {
     /// To find out whether every sum of squares is at least `wanted`.
     pub fn new(question: Question, wanted: f64) -> Self {
-        let none = Bound { sum_sq: 0.0, weight: [1.0, 2.0, 1.5, 1.2] };
-        let heap = BinaryHeap::from([Waiting::new(&ROOT, &none, 0.0, 0)]);
-        Search { question, wanted, heap, boxes: 0, decided: 0.0, leaves: Sha256::new() }
+        let turn = if question.from_ground { 0.0 } else { 2.0 };
+        let none = Bound { sum_sq: 0.0, weight: [1.0, turn, 1.5, 1.2] };
+        let heap = BinaryHeap::from([Waiting::new(&root(question.from_ground), &none, 0.0, 0)]);
+        Search { question, wanted, heap, decided: 0.0, tree: vec![u32::from(OPEN)] }
     }
 
     /// At most the sum of squares of every linkage of the question: what is certified by now.
@@ -224,7 +260,7 @@ impl Search {
 
     /// How many boxes were looked at.
     pub fn boxes(&self) -> u64 {
-        self.boxes
+        self.tree.len() as u64 - 1
     }
 
     /// How many wait.
@@ -239,13 +275,99 @@ impl Search {
 
     /// Whether no more boxes can wait: the search ends with what is certified.
     pub fn full(&self) -> bool {
-        self.heap.len() > MAX_WAITING
+        self.heap.len() > MAX_WAITING || self.tree.len() > MAX_BOXES
     }
 
-    /// SHA-256 of the leaves so far, in the order in which they were decided: eight ends as little-endian single
-    /// floats (lower, then upper) and a byte for the rule.
+    /// The tree so far, each box before its halves.
+    pub fn nodes(&self) -> Nodes {
+        self.walk(|_| ())
+    }
+
+    /// The tree so far, each box before its halves; `open` is told where each open box stands.
+    fn walk(&self, mut open: impl FnMut(u32)) -> Nodes {
+        let mut nodes = Nodes::default();
+        let mut next = vec![0_u32];
+        while let Some(at) = next.pop() {
+            let node = self.tree.get(at as usize).copied().unwrap_or_default();
+            match halves(node) {
+                Some((first, axis)) => {
+                    nodes.push(HALVED + axis);
+                    next.extend([first + 1, first]);
+                }
+                None => {
+                    nodes.push(node as u8);
+                    if node == u32::from(OPEN) {
+                        open(at);
+                    }
+                }
+            }
+        }
+        nodes
+    }
+
+    /// The tree so far, and what waits in the order of its open boxes.
+    pub(super) fn state(&self) -> (Nodes, Vec<OpenBox>) {
+        let mut by_node: Vec<&Waiting> = self.heap.iter().collect();
+        by_node.sort_unstable_by_key(|waiting| waiting.node);
+        let mut open = Vec::with_capacity(by_node.len());
+        let nodes = self.walk(|node| {
+            let found = by_node.binary_search_by_key(&node, |waiting| waiting.node);
+            if let Some(waiting) = found.ok().and_then(|at| by_node.get(at)) {
+                open.push(OpenBox { number: waiting.number, sum_sq: waiting.sum_sq, axis: waiting.axis });
+            }
+        });
+        (nodes, open)
+    }
+
+    /// The sum behind [`Search::decided`].
+    pub(super) fn decided_sum(&self) -> f64 {
+        self.decided
+    }
+
+    /// A search for the same as `like` that stands where [`Search::state`] says; `None` where no search stands so.
+    pub(super) fn restored(like: &Search, nodes: &Nodes, open: &[OpenBox], decided: f64) -> Option<Self> {
+        nodes.covers().ok()?;
+        let count = usize::try_from(nodes.len()).ok().filter(|count| *count <= MAX_BOXES + 2 * BATCH)?;
+        let mut numbers: Vec<u32> = open.iter().map(|waiting| waiting.number).collect();
+        numbers.sort_unstable();
+        let apart = numbers.windows(2).all(|pair| pair[0] < pair[1]);
+        let within = numbers.last().is_none_or(|last| (*last as usize) < count);
+        let sound = open.iter().all(|waiting| waiting.axis < 4 && waiting.sum_sq >= 0.0);
+        if !(apart && within && sound && (0.0..=1.1).contains(&decided)) {
+            return None;
+        }
+        let mut tree = Vec::with_capacity(count);
+        tree.push(u32::from(OPEN));
+        let mut next = vec![(0_u32, root(like.question.from_ground))];
+        let mut waiting = Vec::with_capacity(open.len());
+        let mut open = open.iter();
+        for code in nodes.codes() {
+            let (node, cell) = next.pop()?;
+            if let Some(axis) = code.checked_sub(HALVED) {
+                let first = tree.len() as u32;
+                tree[node as usize] = halved(first, axis);
+                tree.extend([u32::from(OPEN); 2]);
+                let [lower, upper] = cell.split(usize::from(axis)).map(|half| packed(&half));
+                next.extend([(first + 1, upper), (first, lower)]);
+            } else if code == OPEN {
+                let OpenBox { number, sum_sq, axis } = *open.next()?;
+                let mut cells = [0.0; 8];
+                for k in 0..4 {
+                    cells[k] = cell.low[k] as f32;
+                    cells[4 + k] = cell.high[k] as f32;
+                }
+                waiting.push(Waiting { sum_sq, number, node, axis, cell: cells });
+            } else {
+                tree[node as usize] = u32::from(code);
+            }
+        }
+        let heap = BinaryHeap::from(waiting);
+        Some(Search { question: like.question.clone(), wanted: like.wanted, heap, decided, tree })
+    }
+
+    /// SHA-256 of the tree so far.
     pub fn leaves_sha256(&self) -> [u8; 32] {
-        self.leaves.clone().finalize().into()
+        self.nodes().sha256()
     }
 
     /// Whether some box that waits contains the point.
@@ -270,21 +392,21 @@ impl Search {
             })
         };
         let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
-        for (parent, halves) in batch.iter().zip(looked) {
-            for (cell, outcome) in halves {
-                self.boxes += 1;
-                match outcome {
+        let whole = root(self.question.from_ground);
+        for (parent, pair) in batch.iter().zip(looked) {
+            self.tree[parent.node as usize] = halved(self.tree.len() as u32, parent.axis);
+            for (cell, outcome) in pair {
+                let number = self.tree.len() as u32;
+                self.tree.push(match outcome {
                     Outcome::Leaf(rule) => {
-                        self.decided += share(&cell);
-                        for end in cell.low.iter().chain(&cell.high) {
-                            self.leaves.update((*end as f32).to_le_bytes());
-                        }
-                        self.leaves.update([rule as u8]);
+                        self.decided += share(&cell, &whole);
+                        rule as u32
                     }
                     Outcome::Open(bound) => {
-                        self.heap.push(Waiting::new(&cell, &bound, parent.sum_sq, self.boxes));
+                        self.heap.push(Waiting::new(&cell, &bound, parent.sum_sq, number));
+                        u32::from(OPEN)
                     }
-                }
+                });
             }
         }
     }
@@ -296,6 +418,7 @@ fn packed(cell: &Cell) -> Cell {
     Cell { low: cell.low.map(single), high: cell.high.map(single) }
 }
 
-fn share(cell: &Cell) -> f64 {
-    (0..4).map(|k| (cell.high[k] - cell.low[k]) / (ROOT.high[k] - ROOT.low[k])).product()
+fn share(cell: &Cell, whole: &Cell) -> f64 {
+    let side = |cell: &Cell, k: usize| cell.high[k] - cell.low[k];
+    (0..4).filter(|k| side(whole, *k) > 0.0).map(|k| side(cell, k) / side(whole, k)).product()
 }

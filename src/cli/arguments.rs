@@ -171,6 +171,9 @@ pub struct Verify {
     /// Work out the certificates again, box by box: as long as `certify` took
     #[arg(long)]
     pub certificate: bool,
+    /// Check the leaves of the certificates (certify --leaves) with arithmetic of their own: some minutes
+    #[arg(long)]
+    pub leaves: bool,
 }
 
 /// Options of `certify`.
@@ -185,6 +188,12 @@ pub struct Certify {
     /// certify.time_limit_s=S: end after S seconds with what is proved by then [default: 300]
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = certify_key)]
     pub set: Vec<(String, f64)>,
+    /// Go on from certificate.checkpoint where a run that was stopped left one
+    #[arg(long)]
+    pub resume: bool,
+    /// Keep the decided boxes too, as certificate.leaves, for verify --leaves
+    #[arg(long)]
+    pub leaves: bool,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -3,17 +3,22 @@
 use super::arguments::Certify;
 use super::result::{self, Which};
 use super::{Ended, interrupt, synth, terminal};
-use crate::certificate::{Progress, Request, certify};
+use crate::certificate::checkpoint::MAX_BYTES;
+use crate::certificate::{NoCertificate, Progress, Proof, Request, ResumeError};
 use crate::diagnostic::escaped;
 use crate::record::Certificate;
 use crate::report::certificate::repeats_text;
-use crate::results_folder::ResultsFolder;
+use crate::results_folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, replace_file};
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Progress lines come this often.
 const LINE_EVERY: Duration = Duration::from_secs(5);
+/// What is proved is kept this often, so that a process that is killed loses no more.
+const KEPT_EVERY: Duration = Duration::from_secs(60);
 /// The file with a run's times.
 const TIMING: &str = "timing.json";
 
@@ -58,16 +63,44 @@ fn inner(options: &Certify) -> Result<Ended, Ended> {
         }
     };
     let request = Request { gap: options.gap };
-    let certificate = certify(&record, &request, cancel, Some(deadline), &mut tell).map_err(|e| {
+    // Where nothing can be proved, what the search itself foretells.
+    let none = |e: NoCertificate| {
         if let Some(repeats) = &record.repeats {
             terminal::answer(&repeats_text(repeats));
         }
         refuse(&format!("{shown}: {e}"))
-    })?;
-    let text = text(&certificate);
+    };
+    let mut proof = match kept(options, &shown)? {
+        Some(bytes) => Proof::resume(&record, &request, &bytes).map_err(|e| match e {
+            ResumeError::NoCertificate(e) => none(e),
+            e => refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}")),
+        })?,
+        None => Proof::new(&record, &request).map_err(none)?,
+    };
+    loop {
+        let pause = deadline.min(Instant::now() + KEPT_EVERY);
+        proof.run(cancel, Some(pause), &mut tell);
+        if proof.ended() || pause == deadline || cancel.load(Ordering::SeqCst) {
+            break;
+        }
+        replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint())
+            .map_err(|e| refuse(&e.to_string()))?;
+    }
+    let leaves = proof.leaves();
+    let certificate = proof.certificate_of(&leaves);
+    let text = text(&certificate, proof.ended());
     let closed = certificate.closed;
     record.certificate = Some(certificate);
-    let files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+    let mut files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+    if options.leaves {
+        files.push((LEAVES.into(), leaves.to_bytes()));
+    }
+    if !proof.ended() {
+        files.push((CERTIFICATE_CHECKPOINT.into(), proof.checkpoint()));
+    }
+    if folder.has_checkpoint() {
+        folder.keep_checkpoint();
+    }
     folder.replace(&files).map_err(|e| refuse(&e.to_string()))?;
     terminal::answer(&text);
     Ok(match closed {
@@ -75,6 +108,30 @@ fn inner(options: &Certify) -> Result<Ended, Ended> {
         false if cancel.load(Ordering::SeqCst) => Ended::Interrupted,
         false => Ended::Bad,
     })
+}
+
+/// What a run that was stopped has left, where it is to go on.
+fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
+    if !options.resume {
+        return Ok(None);
+    }
+    let file = match File::open(options.result.join(CERTIFICATE_CHECKPOINT)) {
+        Ok(file) => file,
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            if !options.quiet {
+                terminal::tell(&format!("{shown}: no run of certify was stopped here: it begins anew"));
+            }
+            return Ok(None);
+        }
+        Err(e) => return Err(refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}"))),
+    };
+    let mut bytes = Vec::new();
+    let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes);
+    read.map_err(|e| refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}")))?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: it has at most {MAX_BYTES} bytes")));
+    }
+    Ok(Some(bytes))
 }
 
 /// The time limit unless another is set, seconds.
@@ -99,9 +156,13 @@ fn files(
 }
 
 /// What a person reads.
-fn text(certificate: &Certificate) -> String {
+fn text(certificate: &Certificate, ended: bool) -> String {
     let mut text = format!("{}\n\n", certificate.statement);
-    let state = if certificate.closed { "closed" } else { "not closed: the time was over" };
+    let state = match (certificate.closed, ended) {
+        (true, _) => "closed",
+        (false, true) => "not closed: no more boxes can be kept",
+        (false, false) => "not closed: certify --resume goes on",
+    };
     text.push_str(&format!("  gap {:.4} %, {state}; {} boxes\n", 100.0 * certificate.gap, certificate.boxes));
     for part in &certificate.parts {
         let way = if part.direction > 0 { "with" } else { "against" };

@@ -2,8 +2,15 @@
 
 use super::arguments::Verify;
 use super::result::{self, Which};
-use super::{Ended, terminal};
+use super::{Ended, interrupt, terminal};
+use crate::certificate::leaves::MAX_BYTES;
+use crate::certificate::{CheckError, Checked, check};
 use crate::diagnostic::escaped;
+use crate::record::Record;
+use crate::results_folder::LEAVES;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
 
 /// Runs the command.
 pub fn run(options: &Verify) -> Ended {
@@ -35,6 +42,18 @@ pub fn run(options: &Verify) -> Ended {
                 }
             }
         }
+        let mut leaves = None;
+        if let (Ok(_), true) = (&verified, options.leaves) {
+            match check_leaves(path, &record) {
+                Ok(checked) => leaves = Some(checked),
+                Err(Wrong::Told(ended)) => return ended,
+                Err(Wrong::NotProved(why)) => {
+                    ended = Ended::Bad;
+                    terminal::answer(&format!("{shown}: NOT true.\n  certificate: {}\n", escaped(&why)));
+                    continue;
+                }
+            }
+        }
         match verified {
             Ok(mismatches) if mismatches.is_empty() => {
                 let n = record.candidates.len();
@@ -46,6 +65,12 @@ pub fn run(options: &Verify) -> Ended {
                     terminal::answer(
                         "  The certificate was worked out again: the same boxes, the same bound.\n",
                     );
+                }
+                if let Some(Checked { leaves, boxes }) = leaves {
+                    terminal::answer(&format!(
+                        "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, \
+                         {boxes} boxes.\n"
+                    ));
                 }
             }
             Ok(mismatches) => {
@@ -62,4 +87,40 @@ pub fn run(options: &Verify) -> Ended {
         }
     }
     ended
+}
+
+/// Why leaves prove nothing.
+enum Wrong {
+    /// It has been told.
+    Told(Ended),
+    /// They do not prove the certificate.
+    NotProved(String),
+}
+
+/// Checks the leaves of a record's certificate, which lie beside it.
+fn check_leaves(path: &Path, record: &Record) -> Result<Checked, Wrong> {
+    let refuse = |file: &Path, text: &str| {
+        terminal::complain(&format!("{}: {text}", escaped(&file.display().to_string())));
+        Wrong::Told(Ended::Refused)
+    };
+    let recorded = record
+        .certificate
+        .as_ref()
+        .ok_or_else(|| refuse(path, "the record has no certificate; run certify with --leaves first"))?;
+    let file = if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) };
+    let mut bytes = Vec::new();
+    let read = File::open(&file).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
+    read.map_err(|e| match e.kind() {
+        io::ErrorKind::NotFound => refuse(&file, "there are no leaves; run certify with --leaves first"),
+        _ => refuse(&file, &e.to_string()),
+    })?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse(&file, &format!("leaves have at most {MAX_BYTES} bytes")));
+    }
+    let cancel = interrupt::watch("ending the check");
+    check(record, recorded, &bytes, cancel, &mut |_| {}).map_err(|e| match e {
+        CheckError::NoCertificate(e) => refuse(path, &e.to_string()),
+        CheckError::Stopped => Wrong::Told(Ended::Interrupted),
+        wrong => Wrong::NotProved(wrong.to_string()),
+    })
 }

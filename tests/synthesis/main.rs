@@ -2,6 +2,8 @@
 
 mod answers;
 mod certificate;
+mod certificate_leaves;
+mod certificate_resuming;
 #[path = "../common/mod.rs"]
 mod common;
 mod conflicts;

@@ -67,6 +67,53 @@ fn a_run_that_is_stopped_early_leaves_a_valid_bound_that_verify_works_out_again(
 }
 
 #[test]
+fn a_stopped_run_goes_on_where_it_stood_and_refuses_what_is_not_its_own() {
+    let folder = TempDir::new().expect("a folder");
+    let result = folder.path().join("r");
+    let synth = ["synth", &problem("k18"), "--out", "r", "--quiet"];
+    assert_eq!(linkwright(folder.path(), &synth).0, 0);
+    let second = |more: &[&str]| {
+        let arguments = [&["certify", "r", "--set", "certify.time_limit_s=0.5"], more].concat();
+        linkwright(folder.path(), &arguments)
+    };
+    let (code, _, stderr) = second(&["--resume"]);
+    assert!(code == 1 && stderr.contains("begins anew"), "{stderr}");
+    let checkpoint = result.join("certificate.checkpoint");
+    let kept = fs::read(&checkpoint).expect("a checkpoint");
+    let first = record(&result).certificate.expect("a certificate").boxes;
+    let (code, stdout, stderr) = second(&["--resume", "--leaves", "--quiet"]);
+    assert!(code == 1 && stdout.contains("--resume goes on"), "{stdout}{stderr}");
+    let then = record(&result).certificate.expect("a certificate").boxes;
+    assert!(then > first, "{then} after {first}");
+    // The leaves of a run that went on prove what its record says.
+    let (code, stdout, stderr) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
+    assert!(code == 0 && stdout.contains("arithmetic of its own"), "{stdout}{stderr}");
+    let files = || {
+        let names = fs::read_dir(&result).expect("it is there").map(|e| e.expect("it can be read").path());
+        let mut files: Vec<_> =
+            names.map(|path| (path.clone(), fs::read(path).expect("it is read"))).collect();
+        files.sort();
+        files
+    };
+    let before = files();
+    let (code, _, stderr) = second(&["--resume", "--gap", "0.5"]);
+    assert!(code == 2 && stderr.contains("another gap"), "{stderr}");
+    assert_eq!(before, files());
+    fs::write(&checkpoint, &kept[..kept.len() / 2]).expect("it is cut");
+    let (code, _, stderr) = second(&["--resume"]);
+    assert!(code == 2 && stderr.contains("certificate.checkpoint") && stderr.contains("cut off"), "{stderr}");
+    // Leaves that were cut, and none at all.
+    let leaves = result.join("certificate.leaves");
+    let whole = fs::read(&leaves).expect("leaves");
+    fs::write(&leaves, &whole[..whole.len() - 7]).expect("they are cut");
+    let (code, stdout, _) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
+    assert!(code == 1 && stdout.contains("NOT true") && stdout.contains("cut off"), "{stdout}");
+    fs::remove_file(&leaves).expect("they are gone");
+    let (code, _, stderr) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
+    assert!(code == 2 && stderr.contains("certify with --leaves"), "{stderr}");
+}
+
+#[test]
 fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
     let folder = TempDir::new().expect("a folder");
     let points = "x,y\n0,0\n1,0.2\n2,0\n2.1,1\n1,1.3\n0,1\n";

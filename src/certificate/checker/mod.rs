@@ -1,0 +1,240 @@
+//! The leaves of a certificate, checked in arithmetic of their own.
+//!
+//! Nothing here is shared with the search but the file of the leaves and the record's figures. The tree is replayed: its
+//! halves cover the chart. On each leaf the least sum of squares is enclosed from below: intervals with outward rounding
+//! ([`interval`]), functions over a box as polynomials of second degree with an enclosed rest ([`model`]), the target's
+//! directions in intervals ([`frame`]). A leaf that is too large for that is halved here until it is shown ([`region`]).
+
+pub mod frame;
+pub mod interval;
+pub mod model;
+pub mod region;
+
+use super::leaves::{Leaves, LeavesError, LeavesPart, root};
+use super::subject::{NoCertificate, Subject};
+use crate::record::{Certificate, Record};
+use rayon::prelude::*;
+use region::{Claim, Region, Shown};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// Leaves that are checked between two looks at the clock and at Ctrl-C.
+const BLOCK: usize = 1 << 15;
+/// The most boxes that a leaf is halved into.
+const MOST_BOXES: u64 = 20_000;
+
+/// Why a certificate's leaves do not prove it.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CheckError {
+    /// The file.
+    #[error(transparent)]
+    Leaves(#[from] LeavesError),
+    /// The record's problem.
+    #[error(transparent)]
+    NoCertificate(#[from] NoCertificate),
+    /// They belong together as little as their digests.
+    #[error(
+        "the leaves are not those of this certificate: {what} is {found} by the leaves, {recorded} in the record"
+    )]
+    Other {
+        /// The first key that differs.
+        what: String,
+        /// By the leaves.
+        found: String,
+        /// In the record.
+        recorded: String,
+    },
+    /// A part is missing, or stands twice.
+    #[error("the leaves have other classes or directions of the crank than the record's problem")]
+    Parts,
+    /// A leaf could not be shown.
+    #[error("leaf {leaf} of part {part} is not proved: p {p:?}, phi {phi:?}, g {g:?}, d {d:?} as \"{rule}\"")]
+    Leaf {
+        /// The part, from 1.
+        part: usize,
+        /// The leaf, from 1, in the order of the file.
+        leaf: u64,
+        /// Its sides.
+        p: [f64; 2],
+        /// Its sides.
+        phi: [f64; 2],
+        /// Its sides.
+        g: [f64; 2],
+        /// Its sides.
+        d: [f64; 2],
+        /// What the file says about it.
+        rule: &'static str,
+    },
+    /// It was stopped.
+    #[error("the check was stopped: nothing is said about the certificate")]
+    Stopped,
+}
+
+/// What was checked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    /// Leaves of the file.
+    pub leaves: u64,
+    /// Boxes that they were halved into.
+    pub boxes: u64,
+}
+
+/// A leaf: its box and what the file says about it.
+type Leaf = (Region, u8);
+
+/// Checks that the leaves in `bytes` prove the certificate of a record.
+///
+/// # Errors
+/// [`CheckError`]: the first thing that is wrong.
+pub fn check(
+    record: &Record,
+    recorded: &Certificate,
+    bytes: &[u8],
+    cancel: &AtomicBool,
+    progress: &mut dyn FnMut(&Checked),
+) -> Result<Checked, CheckError> {
+    let leaves = Leaves::from_bytes(bytes)?;
+    let subject = Subject::new(record, recorded.wanted_gap)?;
+    let parts = subject.parts();
+    let named = |part: &LeavesPart| (part.class, f64::from(part.direction));
+    let from_ground = leaves.parts.iter().all(|part| part.from_ground == subject.from_ground);
+    if !from_ground || leaves.parts.iter().map(named).ne(parts.iter().copied()) {
+        return Err(CheckError::Parts);
+    }
+    compare(recorded, &subject.certificate(&leaves))?;
+    let mut checked = Checked::default();
+    for (i, part) in leaves.parts.iter().enumerate() {
+        check_part(i + 1, part, &subject, cancel, &mut checked, progress)?;
+    }
+    Ok(checked)
+}
+
+/// Checks one part's leaves.
+fn check_part(
+    number: usize,
+    part: &LeavesPart,
+    subject: &Subject,
+    cancel: &AtomicBool,
+    checked: &mut Checked,
+    progress: &mut dyn FnMut(&Checked),
+) -> Result<(), CheckError> {
+    part.nodes.covers().map_err(|what| LeavesError::Uncovered { part: number, what })?;
+    let claim = Claim::new(
+        part.class,
+        f64::from(part.direction),
+        &subject.points,
+        &subject.turns_deg,
+        subject.cap,
+        part.lower_bound,
+    )
+    .ok_or(NoCertificate::Target(super::TargetError::Degenerate))?;
+    let mut replay = Replay::new(part);
+    let mut before = 0;
+    loop {
+        let block: Vec<Leaf> = replay.by_ref().take(BLOCK).collect();
+        if block.is_empty() {
+            return Ok(());
+        }
+        let boxes = AtomicU64::new(0);
+        let failed = block.par_iter().with_min_len(64).position_first(|leaf| {
+            let shown = shows(&claim, leaf);
+            boxes.fetch_add(shown.unwrap_or(0), Ordering::Relaxed);
+            shown.is_none()
+        });
+        if let Some(at) = failed {
+            let (Region { low, high }, rule) = block[at];
+            let side = |k: usize| [low[k], high[k]];
+            return Err(CheckError::Leaf {
+                part: number,
+                leaf: before + at as u64 + 1,
+                p: side(0),
+                phi: side(1),
+                g: side(2),
+                d: side(3),
+                rule: ["open", "outside", "cognate", "bounded"].get(usize::from(rule)).unwrap_or(&"unknown"),
+            });
+        }
+        before += block.len() as u64;
+        checked.leaves += block.len() as u64;
+        checked.boxes += boxes.load(Ordering::Relaxed);
+        progress(checked);
+        if cancel.load(Ordering::Relaxed) {
+            return Err(CheckError::Stopped);
+        }
+    }
+}
+
+/// How many boxes it took to show a leaf; `None` where it could not be shown.
+fn shows(claim: &Claim, (region, rule): &Leaf) -> Option<u64> {
+    match rule {
+        1 => return region.is_outside().then_some(1),
+        2 => return region.has_cognates().then_some(1),
+        _ => {}
+    }
+    let mut boxes = 0;
+    let mut waiting = vec![*region];
+    while let Some(region) = waiting.pop() {
+        boxes += 1;
+        if boxes > MOST_BOXES {
+            return None;
+        }
+        if let Shown::Not(axis) = claim.look(&region) {
+            let middle = 0.5 * (region.low[axis] + region.high[axis]);
+            waiting.extend(region.parts(axis, middle));
+        }
+    }
+    Some(boxes)
+}
+
+/// The leaves of a part in order, with their boxes.
+struct Replay<'a> {
+    codes: Box<dyn Iterator<Item = u8> + 'a>,
+    waiting: Vec<Region>,
+}
+
+impl<'a> Replay<'a> {
+    fn new(part: &'a LeavesPart) -> Self {
+        let whole = root(part.from_ground);
+        let whole = Region { low: whole.low, high: whole.high };
+        Replay { codes: Box::new(part.nodes.codes()), waiting: vec![whole] }
+    }
+}
+
+impl Iterator for Replay<'_> {
+    type Item = Leaf;
+
+    fn next(&mut self) -> Option<Leaf> {
+        loop {
+            let region = self.waiting.pop()?;
+            let code = self.codes.next()?;
+            let Some(axis @ 0..4) = code.checked_sub(4).map(usize::from) else { return Some((region, code)) };
+            // The middle in single precision, as the file's format says.
+            let middle = f64::from((0.5 * (region.low[axis] + region.high[axis])) as f32);
+            let [lower, upper] = region.parts(axis, middle);
+            self.waiting.extend([upper, lower]);
+        }
+    }
+}
+
+/// Compares what the record says with what it would say of these leaves.
+fn compare(recorded: &Certificate, found: &Certificate) -> Result<(), CheckError> {
+    let fields = |c: &Certificate| {
+        let mut fields = vec![
+            ("leaves_sha256".to_owned(), c.leaves_sha256.clone()),
+            ("lower_bound".to_owned(), format!("{:e}", c.lower_bound)),
+            ("gap".to_owned(), format!("{:e}", c.gap)),
+            ("closed".to_owned(), c.closed.to_string()),
+            ("boxes".to_owned(), c.boxes.to_string()),
+            ("statement".to_owned(), c.statement.clone()),
+            ("covered".to_owned(), c.covered.join("; ")),
+            ("not_covered".to_owned(), c.not_covered.join("; ")),
+            ("parts".to_owned(), c.parts.len().to_string()),
+        ];
+        fields
+            .extend(c.parts.iter().enumerate().map(|(i, p)| (format!("parts {}", i + 1), format!("{p:?}"))));
+        fields
+    };
+    match fields(recorded).into_iter().zip(fields(found)).find(|(recorded, found)| recorded != found) {
+        None => Ok(()),
+        Some(((what, recorded), (_, found))) => Err(CheckError::Other { what, found, recorded }),
+    }
+}

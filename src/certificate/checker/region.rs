@@ -1,0 +1,261 @@
+//! One box: whether every linkage in it has a sum of squares of at least the claimed one.
+
+use super::super::chart::Class;
+use super::frame::{Frame, turn};
+use super::interval::Interval;
+use super::model::{Model, Sum, UP};
+
+/// A box of the chart: p, phi_0, g, d.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// The lower ends.
+    pub low: [f64; 4],
+    /// The upper ends.
+    pub high: [f64; 4],
+}
+
+impl Region {
+    /// Both parts along an axis, which meet at `middle`.
+    pub fn parts(&self, axis: usize, middle: f64) -> [Region; 2] {
+        let (mut lower, mut upper) = (*self, *self);
+        lower.high[axis] = middle;
+        upper.low[axis] = middle;
+        [lower, upper]
+    }
+
+    fn side(&self, axis: usize) -> Interval {
+        Interval { low: self.low[axis], high: self.high[axis] }
+    }
+
+    /// No linkage is in it: |d| > min(g, pi - g) everywhere.
+    pub fn is_outside(&self) -> bool {
+        let (g, d) = (self.side(2), self.side(3));
+        let least = d.low.max(-d.high).max(0.0);
+        least > g.high || least > (Interval::pi() - g).high
+    }
+
+    /// |sin g sin d| < p cos d |cos g| everywhere: the other half of the chart has the cognates of all its linkages.
+    pub fn has_cognates(&self) -> bool {
+        let ([cos_g, sin_g], [cos_d, sin_d]) = (self.side(2).cos_sin(), self.side(3).cos_sin());
+        let least = |x: Interval| x.low.max(-x.high).max(0.0);
+        let right = Interval::exact(self.low[0]) * Interval::exact(least(cos_g)) * Interval::exact(cos_d.low);
+        let left = Interval::exact(sin_g.size()) * Interval::exact(sin_d.size());
+        cos_d.low > 0.0 && left.high < right.low
+    }
+}
+
+/// What came of a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shown {
+    /// The claim holds on all of it.
+    Yes,
+    /// It may be shown on its halves: across this axis.
+    Not(usize),
+}
+
+/// A claim about one class in one direction: no linkage with |Z| <= cap has a sum of squares below `claim`.
+#[derive(Clone, Debug)]
+pub struct Claim {
+    class: Class,
+    turns: Vec<[Interval; 2]>,
+    whole: Frame,
+    /// All points but one; `None` where the others are too much alike.
+    fewer: Vec<Option<Frame>>,
+    cap: f64,
+    claim: f64,
+}
+
+/// u at a point, with the sizes of its parts.
+struct Direction {
+    u: [Model; 2],
+    size: [f64; 2],
+}
+
+impl Claim {
+    /// The claim; `None` where the target's figures are too much alike to bound anything.
+    pub fn new(
+        class: Class,
+        direction: f64,
+        points: &[[f64; 2]],
+        turns_deg: &[f64],
+        cap: f64,
+        claim: f64,
+    ) -> Option<Self> {
+        let turns: Vec<[Interval; 2]> = turns_deg.iter().map(|deg| turn(*deg, direction)).collect();
+        let all: Vec<usize> = (0..points.len()).collect();
+        let whole = Frame::new(points, &turns, all.clone())?;
+        let but = |j: usize| all.iter().copied().filter(|i| *i != j).collect();
+        let fewer = (0..points.len()).map(|j| Frame::new(points, &turns, but(j))).collect();
+        Some(Claim { class, turns, whole, fewer, cap, claim })
+    }
+
+    /// Whether the claim can be seen to hold on a box.
+    pub fn look(&self, region: &Region) -> Shown {
+        if self.claim <= 0.0 || region.is_outside() || region.has_cognates() {
+            return Shown::Yes;
+        }
+        let (us, nearest) = self.directions(region);
+        let mut cost = [0.0; 4];
+        if self.holds(&self.whole, &us, &mut cost) {
+            return Shown::Yes;
+        }
+        if let Some((j, f_sq)) = nearest
+            && f_sq < 0.25
+            && let Some(fewer) = &self.fewer[j]
+        {
+            cost = [0.0; 4];
+            if self.holds(fewer, &us, &mut cost) {
+                return Shown::Yes;
+            }
+        }
+        for (k, cost) in cost.iter_mut().enumerate() {
+            // Widths decide where nothing is known.
+            *cost += 1e-6 * (region.high[k] - region.low[k]);
+        }
+        Shown::Not((0..4).max_by(|&i, &j| cost[i].total_cmp(&cost[j])).unwrap_or(0))
+    }
+
+    /// u at every point (`None`: nothing is known of it), and the point whose crank pin is nearest to B with f^2 there.
+    fn directions(&self, region: &Region) -> (Vec<Option<Direction>>, Option<(usize, f64)>) {
+        let mut centre = [0.0; 4];
+        let mut half = [0.0; 4];
+        for k in 0..4 {
+            centre[k] = 0.5 * (region.low[k] + region.high[k]);
+            half[k] = (region.high[k] - centre[k]).max(centre[k] - region.low[k]).next_up();
+        }
+        let p = Model::variable(centre[0], half[0], 0);
+        let [cos_phi, sin_phi] = Model::cos_sin(centre[1], half[1], 1);
+        let [cos_g, sin_g] = Model::cos_sin(centre[2], half[2], 2);
+        let [cos_d, sin_d] = Model::cos_sin(centre[3], half[3], 3);
+        let (cc, ss) = (cos_g.by(&cos_d), sin_g.by(&sin_d));
+        let (p_cos, p_sin) = (p.by(&cos_phi), p.by(&sin_phi));
+        let one_p_sq = p.square().plus(&Model::constant(Interval::exact(1.0)));
+        let mut nearest: Option<(usize, f64)> = None;
+        let mut all = Vec::with_capacity(self.turns.len());
+        for (j, [cos_t, sin_t]) in self.turns.iter().enumerate() {
+            // e = e^{i phi_0} e^{i turn}; p e alike.
+            let cos = cos_phi.times(*cos_t).minus(&sin_phi.times(*sin_t));
+            let along = p_cos.times(*cos_t).minus(&p_sin.times(*sin_t));
+            let f_sq = one_p_sq.minus(&along.times(Interval::exact(2.0)));
+            if nearest.is_none_or(|(_, least)| f_sq.middle() < least) {
+                nearest = Some((j, f_sq.middle()));
+            }
+            all.push(f_sq.inverse_root().and_then(|inverse| {
+                let side = along.from_one();
+                let cosine = cc.by(&side).minus(&ss.by(&cos.minus(&p))).by(&inverse);
+                let sine = cosine.square().from_one().root();
+                // e^{-i psi} = (1 - p e)/f;  e^{i chi} less the common turn phi_0 = (e^{i turn} - p e^{-i phi_0})/f.
+                let [re, im] = match self.class {
+                    Class::CrankRocker => {
+                        let across = p_sin.times(*cos_t).plus(&p_cos.times(*sin_t));
+                        [side, Model::within(0.0).minus(&across)]
+                    }
+                    Class::DoubleCrank => {
+                        [Model::constant(*cos_t).minus(&p_cos), Model::constant(*sin_t).plus(&p_sin)]
+                    }
+                };
+                let (re, im) = (re.by(&inverse), im.by(&inverse));
+                let u = [cosine.by(&re).minus(&sine.by(&im)), cosine.by(&im).plus(&sine.by(&re))];
+                let size = [u[0].size(), u[1].size()];
+                (u[0].is_known() && u[1].is_known()).then_some(Direction { u, size })
+            }));
+        }
+        (all, nearest)
+    }
+
+    /// Whether the points of a frame show the claim; else what each axis costs.
+    fn holds(&self, frame: &Frame, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
+        let size_sq = frame.size_sq.low;
+        if self.claim >= size_sq {
+            return false;
+        }
+        let n = frame.points.len();
+        let at: Vec<&Option<Direction>> = frame.points.iter().map(|j| &us[*j]).collect();
+        let y = witness(frame, &at);
+        let length_sq = y.iter().flatten().map(|y| y * y).sum::<f64>() * UP;
+        // y along the exact directions: <b, y> with its rounding and theirs; |<b, u>| <= sqrt n.
+        let rounding = (2.0 * n as f64 + 4.0) * f64::EPSILON;
+        let along = |b: &Vec<[f64; 2]>| {
+            let [re, im] = product(b, &y);
+            re.abs() + im.abs() + rounding + 1.01 * frame.error
+        };
+        let root_n = (n as f64).sqrt() * UP;
+        let slack = frame.basis.iter().map(along).sum::<f64>() * root_n * UP;
+        let beta = functional(&y, &at, slack);
+        let alpha = functional(&frame.basis[2], &at, frame.error * root_n);
+        let alpha_sq = alpha[0].square().plus(&alpha[1].square());
+        let beta_sq = beta[0].square().plus(&beta[1].square());
+        // SSE >= claim exactly where |beta|^2 >= kappa^2 |alpha|^2.
+        let claim = Interval::exact(self.claim);
+        let kappa_sq = claim.over(Interval::exact(size_sq) - claim) * Interval::exact(length_sq);
+        let excess = beta_sq.minus(&alpha_sq.times(Interval::exact(kappa_sq.high)));
+        if excess.lowest() >= 0.0 {
+            return true;
+        }
+        // |T' - Z u'| >= |T'| - |Z| |<tau, u>|.
+        let longest = Interval::exact(alpha_sq.highest().max(0.0)).root();
+        let left = Interval::exact(size_sq).root() - Interval::exact(self.cap) * longest;
+        if left.low >= claim.root().high {
+            return true;
+        }
+        for (y, direction) in y.iter().zip(&at) {
+            let Some(Direction { u, .. }) = direction else { continue };
+            let weight = (y[0] * y[0] + y[1] * y[1]).sqrt();
+            for (k, cost) in cost.iter_mut().enumerate() {
+                *cost += weight * (u[0].curve(k) + u[1].curve(k)) * beta[0].middle().abs();
+            }
+        }
+        for (k, cost) in cost.iter_mut().enumerate() {
+            *cost += excess.change(k);
+        }
+        false
+    }
+}
+
+/// <b, v> = sum conj(b) v.
+fn product(b: &[[f64; 2]], v: &[[f64; 2]]) -> [f64; 2] {
+    b.iter()
+        .zip(v)
+        .fold([0.0; 2], |[re, im], (b, v)| [re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0]])
+}
+
+/// u in the middle of the box, off the frame's directions and of length 1: any vector would do.
+fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]> {
+    let mut y: Vec<[f64; 2]> =
+        at.iter().map(|d| d.as_ref().map_or([0.0; 2], |d| [d.u[0].middle(), d.u[1].middle()])).collect();
+    for _ in 0..2 {
+        for b in &frame.basis {
+            let [re, im] = product(b, &y);
+            for (b, y) in b.iter().zip(&mut y) {
+                *y = [y[0] - (b[0] * re - b[1] * im), y[1] - (b[0] * im + b[1] * re)];
+            }
+        }
+        let length = y.iter().flatten().map(|y| y * y).sum::<f64>().sqrt();
+        let scale = if length > 0.0 { 1.0 / length } else { 0.0 };
+        for y in &mut y {
+            *y = [y[0] * scale, y[1] * scale];
+        }
+    }
+    y
+}
+
+/// Both parts of <v, u> over the box.
+fn functional(v: &[[f64; 2]], at: &[&Option<Direction>], slack: f64) -> [Model; 2] {
+    let (mut re, mut im) = (Sum::EMPTY, Sum::EMPTY);
+    for (v, direction) in v.iter().zip(at) {
+        match direction {
+            Some(Direction { u, size }) => {
+                re.add(v[0], &u[0], size[0]);
+                re.add(v[1], &u[1], size[1]);
+                im.add(v[0], &u[1], size[1]);
+                im.add(-v[1], &u[0], size[0]);
+            }
+            None => {
+                let size = (v[0] * v[0] + v[1] * v[1]).sqrt() * UP;
+                re.add_unknown(size);
+                im.add_unknown(size);
+            }
+        }
+    }
+    [re.model(slack), im.model(slack)]
+}

@@ -1,0 +1,237 @@
+//! The tree of halvings as a file: what a certificate rests on, for a checker that shares nothing with the search.
+//!
+//! ```text
+//! 0    8  "lwleaves"
+//! 8    4  1: the version of the format            numbers are little-endian
+//! 12   4  the number of parts
+//! then, a part: 1 class (0 crank-rocker, 1 double-crank), 1 direction (1 or 255 for -1),
+//!               1 first crank angle (0 any, 1 on the ground line), 5 zeros,
+//!               8 its lower bound (double), 8 the number of nodes,
+//!               the nodes, half a byte each, the lower half first; 15 fills the last byte
+//! at the end  32  SHA-256 of all before: `leaves_sha256` of the record
+//! ```
+//!
+//! The nodes of a part are its tree, each before its two children: 4 to 7 is a box that is halved across p, phi, g or d
+//! (the lower half comes first), 0 a box that is open, 1 to 3 a leaf: outside, cognate, bounded. The first box is the
+//! whole chart ([`root`]). Halves meet in the middle of the two ends, rounded to single precision.
+
+use super::bound::Cell;
+use super::chart::Class;
+use sha2::{Digest, Sha256};
+
+/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
+pub const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
+/// The part of the chart that a question is about: all of it, or phi_0 = 0 where crank angles are from the ground line.
+pub fn root(from_ground: bool) -> Cell {
+    let mut root = ROOT;
+    if from_ground {
+        (root.low[1], root.high[1]) = (0.0, 0.0);
+    }
+    root
+}
+
+/// The largest file that is read.
+pub const MAX_BYTES: u64 = 1 << 30;
+/// A box that is open.
+pub(super) const OPEN: u8 = 0;
+/// The first of the four codes of a halved box.
+pub(super) const HALVED: u8 = 4;
+const FILLER: u8 = 15;
+const MAGIC: &[u8; 8] = b"lwleaves";
+const VERSION: u32 = 1;
+const MAX_PARTS: u32 = 4;
+const SUM: usize = 32;
+
+/// Why a file holds no leaves.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LeavesError {
+    /// It begins otherwise.
+    #[error("these are no leaves of a certificate (certify RESULT --leaves FILE writes them)")]
+    Foreign,
+    /// It is of another version.
+    #[error(
+        "the leaves are of format {found}, this program reads format {VERSION}: write them anew with certify"
+    )]
+    Version {
+        /// What was found.
+        found: u32,
+    },
+    /// Its checksum is wrong, or it ends too early or too late.
+    #[error("the leaves were changed or cut off after they were written: write them anew with certify")]
+    Changed,
+    /// The tree does not cover the chart.
+    #[error("the leaves of part {part} do not cover the chart: {what}")]
+    Uncovered {
+        /// Which part, from 1.
+        part: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
+}
+
+/// The nodes of a tree, half a byte each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Nodes {
+    bytes: Vec<u8>,
+    count: u64,
+}
+
+impl Nodes {
+    pub(super) fn push(&mut self, code: u8) {
+        if self.count.is_multiple_of(2) {
+            self.bytes.push(code | FILLER << 4);
+        } else if let Some(last) = self.bytes.last_mut() {
+            *last = *last & 0x0f | code << 4;
+        }
+        self.count += 1;
+    }
+
+    /// How many.
+    pub fn len(&self) -> u64 {
+        self.count
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The codes in order.
+    pub fn codes(&self) -> impl Iterator<Item = u8> + '_ {
+        let halves = self.bytes.iter().flat_map(|byte| [byte & 0x0f, byte >> 4]);
+        halves.take(usize::try_from(self.count).unwrap_or(usize::MAX))
+    }
+
+    /// SHA-256 of the bytes.
+    pub fn sha256(&self) -> [u8; 32] {
+        Sha256::digest(&self.bytes).into()
+    }
+
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// `count` nodes from their bytes; `None` where these are not as many, or not filled up as they should be.
+    pub(super) fn from_bytes(bytes: &[u8], count: u64) -> Option<Self> {
+        let whole = bytes.len() as u64 == count.div_ceil(2);
+        let filled = count.is_multiple_of(2) || bytes.last().is_some_and(|last| last >> 4 == FILLER);
+        (whole && filled).then(|| Nodes { bytes: bytes.to_vec(), count })
+    }
+
+    /// Whether this is one whole tree of known codes: every halved box has both halves, and nothing is left over.
+    ///
+    /// # Errors
+    /// What is wrong.
+    pub fn covers(&self) -> Result<(), &'static str> {
+        let mut missing = 1_u64;
+        for code in self.codes() {
+            match (missing, code) {
+                (0, _) => return Err("there are more boxes than the tree has"),
+                (_, HALVED..=7) => missing += 1,
+                (_, 0..HALVED) => missing -= 1,
+                _ => return Err("a box has no known rule"),
+            }
+        }
+        if missing == 0 { Ok(()) } else { Err("boxes are missing") }
+    }
+}
+
+/// One class in one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeavesPart {
+    /// The class.
+    pub class: Class,
+    /// The direction of the crank, 1 or -1.
+    pub direction: i8,
+    /// Whether the crank angles are from the ground line.
+    pub from_ground: bool,
+    /// No linkage of the part has a sum of squares below it.
+    pub lower_bound: f64,
+    /// The tree.
+    pub nodes: Nodes,
+}
+
+/// The leaves of a whole certificate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Leaves {
+    /// The parts, in the order of the record.
+    pub parts: Vec<LeavesPart>,
+}
+
+impl Leaves {
+    fn body(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend((self.parts.len() as u32).to_le_bytes());
+        for part in &self.parts {
+            bytes.extend([u8::from(part.class == Class::DoubleCrank), part.direction as u8]);
+            bytes.push(u8::from(part.from_ground));
+            bytes.extend([0; 5]);
+            bytes.extend(part.lower_bound.to_le_bytes());
+            bytes.extend(part.nodes.len().to_le_bytes());
+            bytes.extend(part.nodes.bytes());
+        }
+        bytes
+    }
+
+    /// The file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = self.body();
+        let sum: [u8; SUM] = Sha256::digest(&bytes).into();
+        bytes.extend(sum);
+        bytes
+    }
+
+    /// SHA-256 of the file without its last 32 bytes, which are this sum.
+    pub fn sha256(&self) -> [u8; 32] {
+        Sha256::digest(self.body()).into()
+    }
+
+    /// The leaves of a file, each part a whole tree.
+    ///
+    /// # Errors
+    /// [`LeavesError`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, LeavesError> {
+        let mut rest = bytes.strip_prefix(MAGIC).ok_or(LeavesError::Foreign)?;
+        let version = u32::from_le_bytes(take(&mut rest)?);
+        if version != VERSION {
+            return Err(LeavesError::Version { found: version });
+        }
+        let (body, sum) =
+            bytes.split_at_checked(bytes.len().wrapping_sub(SUM)).ok_or(LeavesError::Changed)?;
+        if <[u8; SUM]>::from(Sha256::digest(body)) != sum {
+            return Err(LeavesError::Changed);
+        }
+        let mut rest = rest.strip_suffix(sum).ok_or(LeavesError::Changed)?;
+        let count = u32::from_le_bytes(take(&mut rest)?);
+        if count > MAX_PARTS {
+            return Err(LeavesError::Changed);
+        }
+        let mut parts = Vec::new();
+        for number in 1..=count as usize {
+            let [class, direction, ground, zeros @ ..] = take::<8>(&mut rest)?;
+            let class = match (class, direction, ground, zeros) {
+                (0, 1 | 255, 0 | 1, [0, 0, 0, 0, 0]) => Class::CrankRocker,
+                (1, 1 | 255, 0 | 1, [0, 0, 0, 0, 0]) => Class::DoubleCrank,
+                _ => return Err(LeavesError::Changed),
+            };
+            let lower_bound = f64::from_le_bytes(take(&mut rest)?);
+            let count = u64::from_le_bytes(take(&mut rest)?);
+            let length = usize::try_from(count.div_ceil(2)).map_err(|_| LeavesError::Changed)?;
+            let (own, others) = rest.split_at_checked(length).ok_or(LeavesError::Changed)?;
+            rest = others;
+            let nodes = Nodes::from_bytes(own, count).ok_or(LeavesError::Changed)?;
+            nodes.covers().map_err(|what| LeavesError::Uncovered { part: number, what })?;
+            let (direction, from_ground) = (direction as i8, ground == 1);
+            parts.push(LeavesPart { class, direction, from_ground, lower_bound, nodes });
+        }
+        if rest.is_empty() { Ok(Leaves { parts }) } else { Err(LeavesError::Changed) }
+    }
+}
+
+/// The next N bytes.
+fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], LeavesError> {
+    let (first, others) = rest.split_first_chunk::<N>().ok_or(LeavesError::Changed)?;
+    *rest = others;
+    Ok(*first)
+}

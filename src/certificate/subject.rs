@@ -1,0 +1,199 @@
+//! What a certificate is about: the points, the crank's increments, the cap and the best sum of a record; and what a
+//! certificate says when each part is bounded.
+
+use super::chart::Class;
+use super::leaves::{Leaves, OPEN};
+use super::target::TargetError;
+use crate::problem::spec::{Limits, Objective};
+use crate::record::{Certificate, CertificatePart, Record};
+use crate::task::AngleOffset;
+use sha2::{Digest, Sha256};
+
+/// A little less than the wanted gap is searched for, so that the gap from the rounded bound is not above it.
+const WITHIN: f64 = 1.0 - 1e-9;
+
+/// Why a result has no certificate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NoCertificate {
+    /// Nothing to compare with.
+    #[error("the result has no candidate")]
+    NoCandidate,
+    /// The points are met at whatever crank angle is nearest.
+    #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
+    FreeTiming,
+    /// The crank angles are not increments.
+    #[error(
+        "no certificate is available yet for crank angles from the x axis: it needs offset = \"free\" or \"ground\""
+    )]
+    FixedOffset,
+    /// The sum is not the plain one.
+    #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
+    OtherObjective,
+    /// The best candidate meets the points exactly.
+    #[error("the best candidate meets the points exactly: nothing can be below it")]
+    Exact,
+    /// A gap that is none.
+    #[error("the gap is {gap}; it lies between 0 and 1, such as 1e-4")]
+    Gap {
+        /// What was given.
+        gap: f64,
+    },
+    /// The coupler point may be anywhere.
+    #[error("the coupler point has no limits: give design.coupler_x and coupler_y, or design.d")]
+    NoLimits,
+    /// The figures are too few or too much alike.
+    #[error(transparent)]
+    Target(#[from] TargetError),
+}
+
+/// The figures of a record that its certificate rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// The points.
+    pub points: Vec<[f64; 2]>,
+    /// The crank's increments, degrees; its angles where these are from the ground line.
+    pub turns_deg: Vec<f64>,
+    /// Whether the crank angles are from the ground line.
+    pub from_ground: bool,
+    /// The directions of the crank: 1, -1.
+    pub directions: Vec<f64>,
+    /// R: no linkage with a larger |Z| is asked about.
+    pub cap: f64,
+    /// The sum of squares of the best candidate.
+    pub best: f64,
+    /// The wanted gap.
+    pub gap: f64,
+}
+
+impl Subject {
+    /// Of a record.
+    ///
+    /// # Errors
+    /// [`NoCertificate`].
+    pub fn new(record: &Record, gap: f64) -> Result<Self, NoCertificate> {
+        if !(gap > 0.0 && gap < 1.0) {
+            return Err(NoCertificate::Gap { gap });
+        }
+        let spec = &record.problem.resolved;
+        let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
+        let path = &spec.task.path;
+        let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
+        if timing.offset == AngleOffset::Fixed {
+            return Err(NoCertificate::FixedOffset);
+        }
+        let problem = crate::problem::Problem::new(spec.clone()).map_err(|_| NoCertificate::NoCandidate)?;
+        let task = problem.task();
+        let first = task.weights().first().copied().unwrap_or(1.0);
+        let weighted = task.weights().iter().any(|w| *w != first);
+        if weighted || spec.solve.objective != Objective::SumOfSquares {
+            return Err(NoCertificate::OtherObjective);
+        }
+        if best.is_nan() || best <= 0.0 {
+            return Err(NoCertificate::Exact);
+        }
+        let design = &spec.design;
+        let largest = |limits: Limits| limits.0.abs().max(limits.1.abs());
+        let by_box = design.coupler_x.zip(design.coupler_y).map(|(x, y)| largest(x).hypot(largest(y)));
+        let by_length = design.d.map(largest);
+        let cap = match (by_box, by_length) {
+            (Some(x), Some(y)) => x.min(y),
+            (Some(x), None) | (None, Some(x)) => x,
+            (None, None) => return Err(NoCertificate::NoLimits),
+        } * (1.0 + 1e-9);
+        Ok(Subject {
+            points: task.points().iter().map(|p| [p.re, p.im]).collect(),
+            turns_deg: timing.crank_deg.clone(),
+            from_ground: timing.offset == AngleOffset::Ground,
+            directions: problem.directions().to_vec(),
+            cap,
+            best,
+            gap,
+        })
+    }
+
+    /// The bound that closes the gap.
+    pub fn wanted(&self) -> f64 {
+        self.best * (1.0 - self.gap * WITHIN)
+    }
+
+    /// The parts of the proof: each class in each direction, in the order of the record.
+    pub fn parts(&self) -> Vec<(Class, f64)> {
+        Class::ALL.iter().flat_map(|class| self.directions.iter().map(|way| (*class, *way))).collect()
+    }
+
+    /// How far a bound is below the best, relative.
+    pub fn gap_of(&self, lower_bound: f64) -> f64 {
+        (1.0 - lower_bound / self.best).max(0.0)
+    }
+
+    /// SHA-256 of all figures: two subjects with one digest have the same searches.
+    pub fn sha256(&self) -> [u8; 32] {
+        let mut sum = Sha256::new();
+        let points = self.points.iter().flatten();
+        let ground = f64::from(u8::from(self.from_ground));
+        let rest = [self.cap, self.best, self.gap, self.points.len() as f64, ground];
+        for number in rest.iter().chain(points).chain(&self.turns_deg).chain(&self.directions) {
+            sum.update(number.to_le_bytes());
+        }
+        sum.finalize().into()
+    }
+
+    /// What the record says when its parts have these trees.
+    pub fn certificate(&self, leaves: &Leaves) -> Certificate {
+        let parts: Vec<CertificatePart> = leaves
+            .parts
+            .iter()
+            .map(|part| CertificatePart {
+                linkage_type: part.class.name().to_owned(),
+                direction: part.direction,
+                lower_bound: part.lower_bound,
+                closed: part.nodes.codes().all(|code| code != OPEN),
+                // The first box is the whole chart, which is not looked at.
+                boxes: part.nodes.len().saturating_sub(1),
+                leaves_sha256: hex(&part.nodes.sha256()),
+            })
+            .collect();
+        let bound = parts.iter().map(|part| part.lower_bound).fold(f64::INFINITY, f64::min);
+        let (points, cap, best) = (self.points.len(), self.cap, self.best);
+        // Rounded down to the digits that are shown.
+        let below = bound * (1.0 - 1e-12);
+        let angles = match self.from_ground {
+            true => "angles of the crank from the ground line",
+            false => "increments of the crank",
+        };
+        let either = if self.directions.len() == 2 { "either way" } else { "the way that is asked for" };
+        Certificate {
+            statement: format!(
+                "No four-bar linkage whose input turns fully and whose coupler point is at most {cap:.6} from the \
+                 crank pin has a sum of squared errors below {below:.12e} at these {points} points and \
+                 {angles}; the best one found has {best:.12e}."
+            ),
+            lower_bound: bound,
+            gap: self.gap_of(bound),
+            closed: parts.iter().all(|part| part.closed),
+            boxes: parts.iter().map(|part| part.boxes).sum(),
+            covered: vec![
+                "crank-rockers and double-cranks, change points included".into(),
+                "both assemblies".into(),
+                match self.from_ground {
+                    true => "the crank angles from the ground line, as prescribed".into(),
+                    false => format!("the crank turning {either}, any first crank angle"),
+                },
+                format!(
+                    "any pivots and lengths of links, the coupler point at most {cap:.6} from the crank pin"
+                ),
+            ],
+            not_covered: vec![
+                "linkages whose input rocks".into(),
+                "coupler points farther from the crank pin".into(),
+            ],
+            leaves_sha256: hex(&leaves.sha256()),
+            wanted_gap: self.gap,
+            parts,
+        }
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
