@@ -15,7 +15,6 @@ mod interrupt;
 mod man;
 mod measured;
 mod new;
-mod one_job;
 mod progress;
 mod report;
 mod result;

@@ -85,6 +85,8 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("checkpoint.rs", &["record", "run", "search"]),
         ("verify.rs", &["assess", "linkage", "problem", "record", "run", "search", "task"]),
         ("verify", &["assess", "certificate", "linkage", "problem", "record", "search"]),
+        ("result_files.rs", &["linkage_file", "name", "record", "report", "results_folder"]),
+        ("saved_run.rs", &["checkpoint", "record", "result_files", "results_folder", "run", "search"]),
         ("results_folder.rs", &["record"]),
         ("results_folder", &[]),
         ("practicality.rs", &[]),
