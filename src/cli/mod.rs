@@ -13,7 +13,6 @@ mod export;
 mod inputs;
 mod interrupt;
 mod man;
-mod measured;
 mod new;
 mod progress;
 mod report;

@@ -28,5 +28,7 @@ mod seeds_document;
 mod shipped_problems;
 #[cfg(feature = "studio")]
 mod studio;
+#[cfg(feature = "studio")]
+mod studio_jobs;
 mod svg_in;
 mod text_in;
