@@ -2,7 +2,7 @@
 //! comparisons are made from the record that it belongs to, by the functions that the command line calls.
 
 use super::messages::{Ask, Shown};
-use crate::assess::assess;
+use crate::assess::{assess, to_raw};
 use crate::export::{Format, Settings, Subject, export};
 use crate::given::{Given, Run, Which};
 use crate::linkage::{AssemblyMode, FourBar, NaturalCoordinates};
@@ -14,6 +14,7 @@ use crate::record::{Termination, Tool, Unit};
 use crate::report::compare::SortKey;
 use crate::report::{csv, html, svg};
 use crate::run::digest;
+use crate::search::warnings::warnings;
 use crate::search::{Budget, SearchOutcome, costs};
 use crate::studio::shelf::Shelf;
 use crate::verify::verify;
@@ -227,7 +228,11 @@ impl Sources<'_> {
         let mut candidate = assess(&problem, &linkage, &drawn.crank_deg, &t1_at)
             .ok_or("this linkage cannot be assembled at every point")?;
         candidate.rank = 1;
-        let candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
+        let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
+        for candidate in &mut candidates {
+            candidate.warnings = warnings(&problem, candidate);
+            candidate.error.to_raw = to_raw(&problem, candidate);
+        }
         Ok(Found { record: by_hand(file, digest, candidates), index: 0 })
     }
 

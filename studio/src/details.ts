@@ -1,6 +1,7 @@
 // Everything about one linkage: the report's player, its charts and its words, and files.
 
 import { CycleChart } from "../../src/report/html/player/chart.mjs";
+import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
@@ -24,7 +25,7 @@ class AnglesPlayer extends Player {
 
   makeCharts(place: HTMLElement, unit: string | null) {
     super.makeCharts(place, unit);
-    const read = (s: any) => `input ${figure(this.cycle.crankDeg(s.q), 4)}°, coupler ${figure(s.coupler, 4)}°, follower ${figure(s.follower, 4)}°`;
+    const read = (s: any) => `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
     const line = (kind: string, of: (s: any) => number) => ({ name: kind, kind, of });
     this.angles = new CycleChart(place, {
       title: "Angles of the links",
@@ -33,7 +34,7 @@ class AnglesPlayer extends Player {
         this.pause();
         this.moveTo(q);
       },
-      lines: [line("main", (s) => s.follower), line("along-x", (s) => s.coupler), line("along-y", (s) => this.cycle.crankDeg(s.q))],
+      lines: [line("main", (s) => s.follower), line("along-x", (s) => s.coupler), line("along-y", (s) => (this.cycle as Cycle).crankDeg(s.q))],
       read,
     } as never);
     const key = (kind: string, text: string) => element("span", { class: "key" }, [shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [shape("path", { class: `line ${kind}`, d: "M0 4h18" })]), text]);
@@ -47,13 +48,13 @@ class AnglesPlayer extends Player {
       if (sample) this.turn(sample, last);
       last = sample ?? last;
     }
-    this.angles.show(this.cycle, this.samples);
+    this.angles.show(this.cycle as Cycle, this.samples as never);
     this.moveTo(this.q);
   }
 
   /** The angles at a sample, without a jump from the one before. */
   private turn(sample: Sample, before: Sample | null) {
-    const { B } = (this.cycle.mechanism as any).linkage;
+    const { B } = ((this.cycle as Cycle).mechanism as any).linkage;
     const [coupler, follower] = [degrees(sample.joints.C, sample.joints.D), degrees(B, sample.joints.D)];
     sample.coupler = before ? near(coupler, before.coupler as number) : coupler;
     sample.follower = before ? near(follower, before.follower as number) : follower;

@@ -62,7 +62,7 @@ export class Share {
     const copy = element("button", { type: "button", id: "copy-link" }, ["Copy a link"]);
     const take = element("button", { type: "button", id: "take-link" }, ["Take the link"]);
     const file = element("input", { type: "file", id: "open-problem", accept: ".toml,application/toml" }) as HTMLInputElement;
-    place.append(element("div", { class: "row share" }, [copy, this.field, take]), element("label", {}, ["Open a problem file ", file]));
+    place.append(element("div", { class: "row share" }, [copy, this.field, take]), element("label", {}, ["Open one that was saved ", file]));
     copy.addEventListener("click", () => void this.copy());
     take.addEventListener("click", () => void this.take(this.field.value));
     file.addEventListener("change", async () => {

@@ -201,6 +201,12 @@ fn studio_ask(guest: &Guest<'_>, text: &str) -> Reply {
     guest.studio.posts(&guest.cookie, "/ask.json", text.as_bytes())
 }
 
+/// Where a job's search began: evaluations before its first word.
+fn begun_at(job: &Value) -> f64 {
+    let of = |key: &str| job["progress"][key].as_f64().expect("a number");
+    (of("evaluations") - of("rate") * of("elapsed_s")).round()
+}
+
 #[test]
 fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio_was_killed() {
     let folder = TempDir::new().expect("a folder");
@@ -215,10 +221,13 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let part = |job: &Value| job["progress"]["evaluations"].as_u64().is_some_and(|n| n > 20_000);
     let running = guest.waits("long", part);
     assert!(running["state"] == "running" && running["progress"]["rate"].as_f64() > Some(0.0), "{running}");
+    let anew = begun_at(&running);
     assert!(running["progress"]["left_s"].as_f64().is_some(), "{running}");
     assert_eq!(guest.posts("/jobs", &ask).status(), 409);
-    // Checkpoints come once a second. Then the studio dies.
-    sleep(Duration::from_millis(1300));
+    // Then the studio dies.
+    while !saved.join("long/checkpoint.json").exists() {
+        sleep(Duration::from_millis(50));
+    }
     drop(first);
     let second = studio(&saved, "18443");
     let guest = Guest::of(&second);
@@ -226,7 +235,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     assert!(broken["state"] == "broken-off" && broken["resumable"] == true, "{broken}");
     assert_eq!(guest.posts("/jobs/long/resume", &json!(null)).status(), 202);
     let at = guest.waits("long", |job| !job["progress"].is_null());
-    assert!(at["progress"]["evaluations"].as_u64() > Some(10_000), "it begins anew: {at}");
+    assert!(begun_at(&at) > 2.0 * anew, "it begins anew, as after {anew} evaluations: {at}");
     let before = Instant::now();
     assert_eq!(guest.posts("/jobs/long/cancel", &json!(null)).status(), 202);
     let stopped = guest.waits_for("long", "stopped");
@@ -235,7 +244,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     assert_eq!(guest.posts("/jobs/long/cancel", &json!(null)).status(), 404);
     assert_eq!(guest.posts("/jobs/long/resume", &json!(null)).status(), 202);
     let at = guest.waits("long", |job| !job["progress"].is_null());
-    assert!(at["progress"]["evaluations"].as_u64() > Some(10_000), "it begins anew: {at}");
+    assert!(begun_at(&at) > 2.0 * anew, "it begins anew, as after {anew} evaluations: {at}");
     guest.waits_for("long", "done");
     let mut text = egg(1, 30, 3.0);
     text["name"] = json!("long");
