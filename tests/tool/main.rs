@@ -29,6 +29,8 @@ mod shipped_problems;
 #[cfg(feature = "studio")]
 mod studio;
 #[cfg(feature = "studio")]
+mod studio_hostile;
+#[cfg(feature = "studio")]
 mod studio_interface;
 #[cfg(feature = "studio")]
 mod studio_jobs;

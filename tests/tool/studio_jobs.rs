@@ -213,7 +213,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let saved = folder.path().join("results");
     let mut ask = egg(1, 30, 3.0);
     ask["name"] = json!("long");
-    let set = json!({"solve.method": "genetic", "solve.evaluations": "200000"});
+    let set = json!({"solve.method": "genetic", "solve.evaluations": "120000"});
     let ask = json!({"ask": ask, "set": set});
     let first = studio(&saved, "18443");
     let guest = Guest::of(&first);
@@ -225,8 +225,10 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     assert!(running["progress"]["left_s"].as_f64().is_some(), "{running}");
     assert_eq!(guest.posts("/jobs", &ask).status(), 409);
     // Then the studio dies.
+    let start = Instant::now();
     while !saved.join("long/checkpoint.json").exists() {
-        sleep(Duration::from_millis(50));
+        assert!(start.elapsed() < Duration::from_secs(60), "no checkpoint: {}", guest.job("long"));
+        sleep(Duration::from_millis(20));
     }
     drop(first);
     let second = studio(&saved, "18443");
@@ -249,7 +251,7 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     let mut text = egg(1, 30, 3.0);
     text["name"] = json!("long");
     fs::write(folder.path().join("long.toml"), body(&guest.posts("/problem.toml", &text))).expect("written");
-    let arguments = ["--set", "solve.evaluations=200000", "--method", "genetic", "--out", "own"];
+    let arguments = ["--set", "solve.evaluations=120000", "--method", "genetic", "--out", "own"];
     linkwright(folder.path(), &[&["synth", "long.toml"], &arguments[..]].concat());
     assert!(files(&saved.join("long")) == files(&folder.path().join("own")), "the records differ");
     assert_eq!(fs::read_dir(saved.join(".studio")).expect("a folder").count(), 0);
