@@ -86,6 +86,7 @@ export class DetailsPanel {
   private details: api.Details | null = null;
   private player: AnglesPlayer | null = null;
   private shownOf = "";
+  private loading = "";
   private timer = 0;
 
   constructor(place: HTMLElement, private host: Host) {
@@ -135,17 +136,22 @@ export class DetailsPanel {
   }
 
   private async load() {
+    const { job } = this;
     const of = this.source();
     this.nothing.hidden = of !== null;
     this.nothing.textContent = "None is chosen.";
     if (!of) return;
     const key = JSON.stringify(this.job ?? of);
     if (key === this.shownOf) return;
+    this.loading = key;
     try {
       const details = await api.details(of);
+      // Another one may have been asked for since.
+      if (this.loading !== key || this.job !== job) return;
       this.shownOf = key;
       this.show(details);
     } catch (error) {
+      if (this.loading !== key || this.job !== job) return;
       this.nothing.hidden = false;
       this.nothing.textContent = `Nothing is known of it: ${api.wordsOf(error)}`;
     }
