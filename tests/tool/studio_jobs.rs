@@ -308,7 +308,6 @@ fn ten_jobs_and_ten_tabs_all_progress_the_page_answers_and_stopping_frees_the_co
     let status = fs::read_to_string(format!("/proc/{}/status", studio.child.id())).expect("a process");
     let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("a line");
     let most: u64 = most.trim().trim_end_matches(" kB").parse().expect("a number");
-    println!("ten tabs and sixteen jobs: {} MB at most", most / 1024);
     assert!(most < 500 * 1024, "{most} kB");
     // Stopped, they work no more.
     drop(tabs);
@@ -319,7 +318,6 @@ fn ten_jobs_and_ten_tabs_all_progress_the_page_answers_and_stopping_frees_the_co
     for i in 0..16 {
         guest.waits_for(&format!("job%20{i}"), "stopped");
     }
-    println!("sixteen jobs stopped and saved in {:?}", start.elapsed());
     assert!(start.elapsed() < Duration::from_secs(20), "{:?}", start.elapsed());
     let before = work_of(&studio);
     sleep(Duration::from_secs(1));
