@@ -44,7 +44,9 @@
 //! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
 //! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
-//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs; no mathematics | live, run, search, record, report, problem, problem_file, linkage, linkage_file, name |
+//! | [`given`], [`measured`] | a result, a candidate or a linkage that is to be compared; its figures, by the referee | assess, linkage, linkage_file, problem, problem_file, record, report, results_folder, run, search, task, verify |
+//! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint |
+//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, linkage, linkage_file, name |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;
@@ -56,10 +58,12 @@ pub mod cli;
 pub mod diagnostic;
 pub mod exact;
 pub mod export;
+pub mod given;
 mod input_text;
 pub mod linkage;
 pub mod linkage_file;
 pub mod live;
+pub mod measured;
 pub mod name;
 pub mod plates;
 pub mod points_file;
@@ -71,8 +75,10 @@ pub mod published;
 pub mod record;
 pub mod report;
 pub mod resampling;
+pub mod result_files;
 pub mod results_folder;
 pub mod run;
+pub mod saved_run;
 pub mod schema;
 pub mod search;
 pub mod snap;

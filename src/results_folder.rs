@@ -4,6 +4,7 @@ use crate::record::{BeyondLimits, Record};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 mod disk;
 mod lock;
@@ -159,6 +160,21 @@ fn is_ours(name: &str) -> bool {
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")
         || numbered("candidate-", ".svg")
+}
+
+/// Whether a file of this name is one that a run leaves in a result's folder: no lock, nothing temporary.
+pub fn is_result_file(name: &str) -> bool {
+    is_ours(name) && !name.starts_with('.')
+}
+
+/// How long a lock is left alone: whoever has just made it may be about to take it.
+const FRESH: Duration = Duration::from_secs(2);
+
+/// Whether a run works in a folder now. A lock that was made a moment ago counts as held.
+pub fn is_in_use(folder: &Path) -> bool {
+    let Ok(found) = fs::symlink_metadata(folder.join(LOCK)) else { return false };
+    let fresh = found.modified().ok().and_then(|made| made.elapsed().ok()).is_none_or(|age| age < FRESH);
+    fresh || Lock::is_taken(folder)
 }
 
 /// What a folder with these names, sorted, holds that linkwright did not write.

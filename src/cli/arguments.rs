@@ -342,6 +342,9 @@ pub struct Studio {
     /// The port on 127.0.0.1 [default: 8017, or a free one where that is taken]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub port: Option<u16>,
+    /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Open no browser: print the address alone
     #[arg(long)]
     pub no_open: bool,

@@ -1,13 +1,14 @@
 //! `compare`: results and linkages side by side.
 
 use super::arguments::Compare;
-use super::measured::{Measured, Target};
 use super::result::{self, Given, Which};
 use super::{Ended, terminal};
 use crate::diagnostic::escaped;
-use crate::record::Unit;
-use crate::report::compare::{Comparison, compare, in_one_unit, unit_remarks};
+use crate::measured::{NotCompared, Target, compared};
+use crate::problem_file;
+use crate::report::compare::Comparison;
 use crate::results_folder::write_file;
+use ariadne::ReportKind;
 use std::path::Path;
 
 /// Runs the command.
@@ -16,47 +17,38 @@ pub fn run(options: &Compare) -> Ended {
 }
 
 fn inner(options: &Compare) -> Result<Ended, Ended> {
-    let target = options.target.as_deref().map(Target::load).transpose()?;
+    let target = options.target.as_deref().map(target_of).transpose()?;
     let mut given = Vec::new();
     for argument in &options.results {
         given.push((argument.as_path(), result::read(argument)?));
     }
     let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
-    let named = target.as_ref().map(|target| (target.name.clone(), target.unit));
-    let unit = named.as_ref().and_then(|(_, unit)| *unit);
-    let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
-    let measured = Measured::of(&given, target.as_ref(), unit)?;
-    if measured.entries.is_empty() {
-        for out in &measured.left_out {
-            terminal::complain(&format!("{}: {}", out.label, out.why));
+    let comparison = match compared(&given, target.as_ref(), &options.sort, reference.as_deref()) {
+        Ok(comparison) => comparison,
+        Err(NotCompared::Refused(why)) => return Err(refuse(&why)),
+        Err(NotCompared::Nothing(left_out)) => {
+            for out in &left_out {
+                terminal::complain(&format!("{}: {}", out.label, out.why));
+            }
+            terminal::complain("none of these results has a candidate to compare");
+            return Ok(Ended::Bad);
         }
-        terminal::complain("none of these results has a candidate to compare");
-        return Ok(Ended::Bad);
-    }
-    let reference = match reference {
-        Some(label) => Some(measured.entries.iter().position(|e| e.label == label).ok_or_else(|| {
-            terminal::complain(&format!("{label} has no figures that others could be compared with"));
-            Ended::Refused
-        })?),
-        None => None,
     };
-    let entries = in_one_unit(&measured.entries, unit).map_err(|e| {
-        terminal::complain(&format!("a linkage cannot be converted to another unit: {e}"));
-        Ended::Refused
-    })?;
-    let mut comparison = compare(&entries, &options.sort, reference);
-    comparison.remarks.extend(measured.remarks);
-    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
-    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
-    comparison.left_out = measured.left_out;
     deliver(options, &comparison)
 }
 
-fn unit_of(given: &Given) -> Option<Unit> {
-    match given {
-        Given::Run(run) => run.record.problem.unit,
-        Given::Linkage(file) => file.unit,
-    }
+fn refuse(text: &str) -> Ended {
+    terminal::complain(text);
+    Ended::Refused
+}
+
+/// The target of a problem file.
+fn target_of(path: &Path) -> Result<Target, Ended> {
+    let file = problem_file::load(path, &[]).map_err(|diagnostic| {
+        terminal::diagnose(ReportKind::Error, &diagnostic);
+        Ended::Refused
+    })?;
+    Target::new(file).map_err(|e| refuse(&e.to_string()))
 }
 
 /// The label of what differences are from; read and put to the others where it is none of them.
@@ -103,7 +95,7 @@ fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
     let file = given
         .iter()
         .position(|(path, one)| matches!(one, Given::Linkage(_)) && path.display().to_string() == label);
-    file.map_or_else(|| label.to_owned(), |i| super::measured::label_of_file(given, i))
+    file.map_or_else(|| label.to_owned(), |i| crate::measured::label_of_file(given, i))
 }
 
 /// Writes the files that were asked for and prints the tables or JSON.

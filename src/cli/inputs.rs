@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Where results go when nothing is said.
-const RESULTS: &str = "results";
+pub const RESULTS: &str = "results";
 /// The most files of a folder.
 const MOST_FILES: usize = 100_000;
 

@@ -1,12 +1,14 @@
 //! `studio`: a local page that answers while a target is drawn.
 
 use super::arguments::Studio;
+use super::inputs::RESULTS;
 use super::{Ended, interrupt, terminal};
 use crate::diagnostic::escaped;
 use crate::problem_file::load_any;
 use crate::studio::messages::Ask;
 use crate::studio::{self, StudioError};
 use ariadne::ReportKind;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Where the studio is when no port is asked for: always the same, so that the page finds what it remembers.
@@ -29,11 +31,12 @@ pub fn run(options: &Studio) -> Ended {
         },
     };
     let beginning = beginning.as_ref();
+    let results = options.out.as_deref().unwrap_or(Path::new(RESULTS));
     let bound = match options.port {
-        Some(port) => studio::Studio::bind(port, beginning),
+        Some(port) => studio::Studio::bind(port, beginning, results),
         // The usual port may be another studio's.
-        None => match studio::Studio::bind(PORT, beginning) {
-            Err(StudioError::Port { .. }) => studio::Studio::bind(0, beginning),
+        None => match studio::Studio::bind(PORT, beginning, results) {
+            Err(StudioError::Port { .. }) => studio::Studio::bind(0, beginning, results),
             bound => bound,
         },
     };

@@ -2,19 +2,18 @@
 
 use super::arguments::Synth;
 use super::inputs::{self, Input};
-use super::one_job::{self, Done, Ran, Written};
-use super::progress::{BatchShown, Shown};
+use super::progress::{BatchShown, Proving, Shown};
 use super::{Ended, interrupt, terminal};
-use crate::linkage_file;
-use crate::record::{Reason, Record};
+use crate::record::Reason;
 use crate::report::batch_csv::batch_csv;
 use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
 use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
-use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
-use crate::results_folder::{BUILDABLE, replace_file};
+pub use crate::result_files::{Timing, files};
+use crate::results_folder::replace_file;
+use crate::saved_run::{self, Done, Listener, Options, Ran, Written};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -82,7 +81,7 @@ pub fn run(options: &Synth) -> Ended {
     };
     let put = |group: Vec<(usize, Written)>| {
         let (indices, written): (Vec<_>, Vec<_>) = group.into_iter().unzip();
-        for (i, put) in indices.into_iter().zip(one_job::put_in_place(written)) {
+        for (i, put) in indices.into_iter().zip(saved_run::put_in_place(written)) {
             take(i, put.map_or_else(Outcome::Refused, |done| Outcome::Done(Box::new(done))));
         }
     };
@@ -97,7 +96,26 @@ pub fn run(options: &Synth) -> Ended {
                     let begun = if several { Instant::now() } else { start };
                     let shown = Shown::new(&job.name, options.quiet || side_by_side);
                     let extent = if side_by_side { Extent::Brief } else { Extent::Full };
-                    let run = || one_job::run(job, place, options, (&shown, extent), cancel, begun);
+                    let observer = |progress: &_| shown.update(progress);
+                    let proving = Mutex::new(Proving::new(&job.name, shown.is_silent()));
+                    let listener = Listener {
+                        observer: &observer,
+                        proving: &|progress| {
+                            shown.finish();
+                            proving.lock().unwrap_or_else(PoisonError::into_inner).update(progress);
+                        },
+                        tell: &|text| terminal::tell(text),
+                    };
+                    let how = Options {
+                        resume: options.resume,
+                        checkpoint_every: options.checkpoint_every,
+                        extent,
+                    };
+                    let run = || {
+                        let ran = saved_run::run(job, place, how, listener, cancel, begun);
+                        shown.finish();
+                        ran
+                    };
                     match catch_unwind(AssertUnwindSafe(|| pool.install(run))) {
                         Ok(Ok(Ran::Written(written))) => {
                             // While one thread waits for the disk the others search.
@@ -221,71 +239,6 @@ fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
 fn write_summary(folder: &Path, csv: &str) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     replace_file(folder, SUMMARY, csv.as_bytes()).map_err(|e| e.to_string())
-}
-
-/// What `timing.json` holds.
-#[derive(serde::Serialize)]
-pub struct Timing {
-    /// Seconds of search.
-    pub search_s: f64,
-    /// Seconds more for what stands beside the candidates.
-    pub beside_s: f64,
-    /// Seconds altogether.
-    pub total_s: f64,
-    /// Threads.
-    pub threads: usize,
-}
-
-/// Everything that a result's folder holds.
-pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
-    files_of(record, timing, Extent::Full)
-}
-
-/// The same with a page of this extent.
-pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let json = |text: Result<String, serde_json::Error>| {
-        text.map(|t| (t + "\n").into_bytes())
-            .map_err(|e| format!("the record cannot be written as JSON: {e}"))
-    };
-    let mut files = vec![
-        ("record.json".to_string(), json(serde_json::to_string_pretty(record))?),
-        ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
-        ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
-    ];
-    let mut drawings = Vec::new();
-    for (i, candidate) in record.candidates.iter().enumerate() {
-        let n = i + 1;
-        let name = numbered(&record.problem.name, &n.to_string());
-        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
-        files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
-        files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
-        drawings.push(svg::candidate_svg(record, i));
-    }
-    if let Some(candidate) = &record.buildable {
-        let name = numbered(&record.problem.name, BUILDABLE);
-        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
-        files.push((format!("linkage-{BUILDABLE}.toml"), toml.into_bytes()));
-        files.push((format!("curve-{BUILDABLE}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
-    }
-    if record.candidates.len() > 1 {
-        let sheet = contact_sheet::contact_sheet_svg(record);
-        files.push(("contact-sheet.svg".into(), sheet.into_bytes()));
-    }
-    if record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()) {
-        files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
-    }
-    let drawn: Vec<&str> = drawings.iter().map(String::as_str).collect();
-    files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn, extent).into_bytes()));
-    files
-        .extend((1..).zip(drawings).map(|(n, drawing)| (format!("candidate-{n}.svg"), drawing.into_bytes())));
-    Ok(files)
-}
-
-/// The problem's name with a candidate's rank (or `buildable`), within the length of a name.
-fn numbered(name: &str, n: &str) -> String {
-    let suffix = format!("-{n}");
-    let stem: String = name.chars().take(crate::name::MAX_NAME - suffix.len()).collect();
-    format!("{}{suffix}", stem.trim_end())
 }
 
 /// What is printed for one problem.

@@ -16,6 +16,11 @@ const MOST: usize = 96;
 /// A connection that says nothing for so long is closed. A tab answers a ping more often than that.
 const SILENCE: Duration = Duration::from_secs(45);
 
+/// A connection has so long for the head of its first request: one that comes letter by letter holds its place no longer.
+const FIRST_WORDS: Duration = Duration::from_secs(5);
+/// How a head ends.
+const END_OF_HEAD: &[u8] = b"\r\n\r\n";
+
 /// Listens for connections within the limits.
 pub(super) struct Limited {
     listener: TcpListener,
@@ -43,8 +48,8 @@ impl axum::serve::Listener for Limited {
                 Ok((stream, from)) => {
                     // Without it small answers wait for a timer; with an old kernel they may.
                     let _ = stream.set_nodelay(true);
-                    let silence = Box::pin(sleep(SILENCE));
-                    return (Connection { stream, silence, _place: place }, from);
+                    let silence = Box::pin(sleep(FIRST_WORDS));
+                    return (Connection { stream, silence, head: Some(0), _place: place }, from);
                 }
                 // No more files may be open, or the other side has left: a little later there may be room.
                 Err(_) => sleep(Duration::from_millis(100)).await,
@@ -57,11 +62,28 @@ impl axum::serve::Listener for Limited {
     }
 }
 
-/// A connection that ends when nothing comes for [`SILENCE`].
+/// A connection that ends when nothing comes for [`SILENCE`], or not even a first request within [`FIRST_WORDS`].
 pub(super) struct Connection {
     stream: TcpStream,
     silence: Pin<Box<Sleep>>,
+    /// How much of [`END_OF_HEAD`] has come last, until it has come.
+    head: Option<usize>,
     _place: OwnedSemaphorePermit,
+}
+
+/// How much of [`END_OF_HEAD`] stands at the end when more bytes come; `None`: it has come.
+fn after(mut there: usize, bytes: &[u8]) -> Option<usize> {
+    for byte in bytes {
+        there = match there {
+            _ if *byte == END_OF_HEAD[there] => there + 1,
+            _ if *byte == END_OF_HEAD[0] => 1,
+            _ => 0,
+        };
+        if there == END_OF_HEAD.len() {
+            return None;
+        }
+    }
+    Some(there)
 }
 
 impl AsyncRead for Connection {
@@ -70,10 +92,17 @@ impl AsyncRead for Connection {
         context: &mut Context<'_>,
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
+        let before = buffer.filled().len();
         let read = Pin::new(&mut self.stream).poll_read(context, buffer);
         if read.is_ready() {
-            self.silence.as_mut().reset(Instant::now() + SILENCE);
-            return read;
+            self.head = self.head.and_then(|there| after(there, &buffer.filled()[before..]));
+            if self.head.is_none() {
+                self.silence.as_mut().reset(Instant::now() + SILENCE);
+                return read;
+            }
+            if !self.silence.is_elapsed() {
+                return read;
+            }
         }
         match self.silence.as_mut().poll(context) {
             Poll::Ready(()) => Poll::Ready(Err(io::ErrorKind::TimedOut.into())),
@@ -97,5 +126,23 @@ impl AsyncWrite for Connection {
 
     fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
         Pin::new(&mut self.stream).poll_shutdown(context)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_head_is_seen_however_it_comes() {
+        let head = b"GET / HTTP/1.1\r\nHost: x\r\n\r\nbody";
+        assert_eq!(after(0, head), None);
+        for cut in 0..head.len() - 4 {
+            let ended = after(0, &head[..cut]).and_then(|there| after(there, &head[cut..]));
+            assert_eq!(ended, None, "{cut}");
+        }
+        assert_eq!(after(0, b"GET /\r\nHost: x\r\n"), Some(2));
+        assert_eq!(after(0, b"\r\n\r\r\n\r"), Some(3));
+        assert_eq!(after(0, b"\n\n\n\n"), Some(0));
     }
 }

@@ -170,7 +170,10 @@ fn with_headers(mut response: Response<Body>) -> Response<Body> {
 /// Stands before every route.
 pub(super) async fn guarded(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response<Body> {
     if let Some(refusal) = guard.refusal(&request) {
-        return with_headers(refusal.into_response());
+        // Whoever is refused makes room for others.
+        let mut response = with_headers(refusal.into_response());
+        response.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
+        return response;
     }
     let answer = tokio::time::timeout(PATIENCE, next.run(request)).await;
     let late = || (StatusCode::REQUEST_TIMEOUT, "this took too long\n").into_response();

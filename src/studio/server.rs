@@ -1,7 +1,9 @@
 //! Routes, the page, the WebSocket.
 
+use super::api;
 use super::connection::Limited;
 use super::guard::{Guard, MOST_BYTES, guarded};
+use super::jobs::Jobs;
 use super::messages::{Ask, LinkageAsk, schemas};
 use super::tab::{Mailbox, Searches, Told, work};
 use crate::linkage::FourBar;
@@ -16,6 +18,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
@@ -65,21 +68,25 @@ pub struct Studio {
 }
 
 /// What all requests share.
-struct House {
+pub(super) struct House {
     guard: Arc<Guard>,
     /// What the page begins with, as JSON; `null`: with what it remembers.
     beginning: String,
-    searches: Arc<Searches>,
+    pub(super) searches: Arc<Searches>,
+    pub(super) jobs: Arc<Jobs>,
+    /// Places for requests that take work.
+    pub(super) work: Arc<Semaphore>,
     tabs: Arc<Semaphore>,
     closing: watch::Sender<bool>,
 }
 
 impl Studio {
-    /// Listens on a port of 127.0.0.1; port 0: one that is free. The page begins with `beginning`.
+    /// Listens on a port of 127.0.0.1; port 0: one that is free. The page begins with `beginning`; jobs save their
+    /// results in folders inside of `results`.
     ///
     /// # Errors
     /// [`StudioError`] where the port is taken or the system gives no server.
-    pub fn bind(port: u16, beginning: Option<&Ask>) -> Result<Studio, StudioError> {
+    pub fn bind(port: u16, beginning: Option<&Ask>, results: &Path) -> Result<Studio, StudioError> {
         // One thread carries messages; the work is done on others.
         let runtime = Builder::new_current_thread().enable_io().enable_time().build()?;
         let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
@@ -91,6 +98,8 @@ impl Studio {
             guard: Arc::new(Guard::new(port).map_err(StudioError::Random)?),
             beginning: serde_json::to_string(&beginning).map_err(io::Error::other)?,
             searches: Arc::default(),
+            jobs: Arc::new(Jobs::new(results)),
+            work: Arc::new(Semaphore::new(api::AT_ONCE)),
             tabs: Arc::new(Semaphore::new(MOST_TABS)),
             closing: watch::Sender::new(false),
         };
@@ -114,7 +123,7 @@ impl Studio {
     /// [`StudioError::System`] where the server breaks down.
     pub fn serve(self, end: &AtomicBool) -> Result<(), StudioError> {
         let Studio { runtime, listener, house, .. } = self;
-        let closing = house.closing.clone();
+        let (closing, jobs) = (house.closing.clone(), Arc::clone(&house.jobs));
         let app = routes(house);
         let served = runtime.block_on(async {
             let mut goodbye = closing.subscribe();
@@ -126,6 +135,7 @@ impl Studio {
                 while !end.load(Ordering::SeqCst) {
                     sleep(LOOK).await;
                 }
+                jobs.close();
                 closing.send_replace(true);
                 sleep(FAREWELL).await;
             };
@@ -134,6 +144,8 @@ impl Studio {
                 () = asked_to_end => Ok(()),
             }
         });
+        jobs.close();
+        jobs.wait(FAREWELL);
         runtime.shutdown_timeout(FAREWELL);
         Ok(served?)
     }
@@ -149,6 +161,7 @@ fn routes(house: Arc<House>) -> Router {
         .route("/problem.toml", post(problem))
         .route("/linkage.toml", post(linkage))
         .route(LIVE, get(live))
+        .merge(api::routes())
         .layer(from_fn_with_state(Arc::clone(&house), known));
     Router::new()
         .route("/", get(page))
@@ -183,7 +196,7 @@ async fn file(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind)], text).into_response()
 }
 
-fn json(text: String) -> Response {
+pub(super) fn json(text: String) -> Response {
     ([(header::CONTENT_TYPE, "application/json")], text).into_response()
 }
 
@@ -206,7 +219,7 @@ async fn beginning(State(house): State<Arc<House>>) -> Response {
     json(house.beginning.clone())
 }
 
-fn refused(why: impl Into<String>) -> Response {
+pub(super) fn refused(why: impl Into<String>) -> Response {
     (StatusCode::UNPROCESSABLE_ENTITY, why.into() + "\n").into_response()
 }
 

@@ -3,6 +3,7 @@
 //! The latest edit wins: one that comes before the last was looked at takes its place. An edit cancels the search for
 //! the one before. Every tab has at most one search, and all searches together as many threads as there are cores.
 
+use super::details::Finished;
 use super::messages::{Answer, Ask, Doing, Shown};
 use crate::live::{Session, first_look};
 use crate::problem::Problem;
@@ -105,7 +106,17 @@ impl Mailbox {
 
 /// Searches that run now, of all tabs.
 #[derive(Default)]
-pub(super) struct Searches(AtomicUsize);
+pub(super) struct Searches {
+    running: AtomicUsize,
+    finished: Finished,
+}
+
+impl Searches {
+    /// The records of the latest that have ended.
+    pub(super) fn finished(&self) -> &Finished {
+        &self.finished
+    }
+}
 
 /// One search among them, counted as long as it lives.
 struct OneSearch(Arc<Searches>);
@@ -113,7 +124,7 @@ struct OneSearch(Arc<Searches>);
 impl OneSearch {
     /// One more, with its share of the cores.
     fn new(searches: &Arc<Searches>) -> (Self, usize) {
-        let running = 1 + searches.0.fetch_add(1, Ordering::SeqCst);
+        let running = 1 + searches.running.fetch_add(1, Ordering::SeqCst);
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         (OneSearch(Arc::clone(searches)), (cores / running).max(1))
     }
@@ -121,7 +132,7 @@ impl OneSearch {
 
 impl Drop for OneSearch {
     fn drop(&mut self) {
-        self.0.0.fetch_sub(1, Ordering::SeqCst);
+        self.0.running.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
@@ -282,6 +293,7 @@ impl Tab {
             }
             What::Finished(record) => {
                 let said = ended(&record);
+                self.searches.finished.keep(&record);
                 self.session.join(&current.problem, record.candidates);
                 self.tell(version, Doing::Done, said, None);
             }

@@ -3,9 +3,11 @@
 import { figure } from "../../src/report/html/player/svg.mjs";
 import { Board, type Tool } from "./board";
 import { Connection } from "./connection";
+import { Desk } from "./desk";
 import { Moving } from "./figures";
 import { Steps, remember, remembered } from "./memory";
 import type { Answer, Point, Shown, Task } from "./messages";
+import { Pace } from "./pace";
 import { Strip, inWords } from "./strip";
 import { moved, ofText } from "./target";
 
@@ -55,10 +57,15 @@ class Page {
   private board: Board;
   private strip: Strip;
   private connection: Connection | null = null;
+  private desk: Desk;
+  private pace = new Pace();
 
   constructor() {
     this.board = new Board(byId("board"), {
-      drawn: (points, closed) => this.change({ points, closed, name: "drawing" }, { fresh: true }),
+      drawn: (points, closed) => {
+        this.pace.penUp();
+        this.change({ points, closed, name: "drawing" }, { fresh: true });
+      },
       grasp: () => this.steps.note(this.task),
       drag: (index, to, last) => this.drag(index, to, last),
       add: (at) => this.change({ points: [...this.task.points, at] }),
@@ -66,6 +73,16 @@ class Page {
       box: (pivots_in, last) => this.put({ ...this.task, pivots_in }, { moving: !last }),
     }, (text) => this.say(text));
     this.strip = new Strip(byId("strip"), (i) => this.choose(i), (i) => this.pin(i));
+    this.desk = new Desk(byId("desk"), byId("share"), {
+      task: () => this.task,
+      chosen: () => this.shownAll[this.chosen]?.shown ?? null,
+      take: (task) => {
+        this.steps.note(this.task);
+        this.fitNext = true;
+        this.put(task, { fresh: true });
+      },
+      keep: (shown) => this.keepShown(shown),
+    });
     this.listen();
   }
 
@@ -95,6 +112,7 @@ class Page {
       if (!open && tries > 1) this.say("The studio does not answer. Start it again with `linkwright studio` and open the address that it prints; your drawing is kept here.");
     });
     this.put(this.task, {});
+    void this.desk.begin();
     let last = performance.now();
     const frame = (now: number) => {
       if (this.playing) {
@@ -148,6 +166,7 @@ class Page {
       return;
     }
     this.answer = answer;
+    this.pace.answered(answer, this.version);
     if (this.chosen < this.count() || this.chosen >= this.shownAll.length) this.chosen = Math.min(this.chosen, Math.max(answer.candidates.length - 1, 0));
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
@@ -159,6 +178,7 @@ class Page {
     const best = answer.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
     const head = best ? `Best: rms ${figure(best.rms, 3)}${unit}, ${inWords(best)}. ` : "";
+    this.desk.changed(answer.doing === "done");
     this.say(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
   }
 
@@ -185,6 +205,14 @@ class Page {
   private choose(index: number) {
     this.chosen = index;
     this.draw();
+    this.desk.chose();
+  }
+
+  /** Keeps a linkage to compare others with. */
+  private keepShown(shown: Shown) {
+    this.pinned = [...this.pinned, shown].slice(-MOST_PINNED);
+    this.keep();
+    this.draw();
   }
 
   /** Pins a candidate to compare others with it, or lets a pinned one go. */
@@ -194,7 +222,7 @@ class Page {
       this.pinned = this.pinned.filter((_, i) => i !== index - found);
       if (this.chosen >= found) this.chosen = 0;
     } else if (this.answer) {
-      this.pinned = [...this.pinned, this.answer.candidates[index]].slice(-MOST_PINNED);
+      return this.keepShown(this.answer.candidates[index]);
     }
     this.keep();
     this.draw();

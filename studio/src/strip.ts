@@ -44,7 +44,7 @@ class Card {
     const scale = Math.min((W - 16) / w, (H - 16) / h);
     const toward = ([x, y]: Point): Point => [W / 2 + (x - (box[0] + box[2]) / 2) * scale, H / 2 - (y - (box[1] + box[3]) / 2) * scale];
     const line = points.map(toward);
-    setAll(this.target, { d: `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
+    setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
     const length = unit ? ` ${unit}` : "";
     this.title.textContent = name;

@@ -30,5 +30,11 @@ mod seeds_document;
 mod shipped_problems;
 #[cfg(feature = "studio")]
 mod studio;
+#[cfg(feature = "studio")]
+mod studio_hostile;
+#[cfg(feature = "studio")]
+mod studio_interface;
+#[cfg(feature = "studio")]
+mod studio_jobs;
 mod svg_in;
 mod text_in;

@@ -7,14 +7,14 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// A studio that runs as a program of its own.
-struct Studio {
-    child: Child,
+pub(crate) struct Studio {
+    pub(crate) child: Child,
     port: u16,
     token: String,
 }
 
 impl Studio {
-    fn start(arguments: &[&str]) -> Studio {
+    pub(crate) fn start(arguments: &[&str]) -> Studio {
         let mut child = Command::new(env!("CARGO_BIN_EXE_linkwright"))
             .args(["studio", "--no-open"])
             .args(arguments)
@@ -29,18 +29,18 @@ impl Studio {
         Studio { child, port: port.parse().expect("a port"), token: token.to_owned() }
     }
 
-    fn socket(&self) -> TcpStream {
+    pub(crate) fn socket(&self) -> TcpStream {
         let socket = TcpStream::connect(SocketAddr::from(([127, 0, 0, 1], self.port))).expect("it listens");
         socket.set_read_timeout(Some(Duration::from_secs(30))).expect("a timeout");
         socket
     }
 
-    fn host(&self) -> String {
+    pub(crate) fn host(&self) -> String {
         format!("127.0.0.1:{}", self.port)
     }
 
     /// The whole answer to a request with these headers.
-    fn asks(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Reply {
+    pub(crate) fn asks(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Reply {
         let mut text = format!("{method} {path} HTTP/1.1\r\nConnection: close\r\n");
         if !headers.iter().any(|(name, _)| *name == "Host") {
             text += &format!("Host: {}\r\n", self.host());
@@ -65,7 +65,7 @@ impl Studio {
     }
 
     /// Brings the token; the cookie.
-    fn cookie(&self) -> String {
+    pub(crate) fn cookie(&self) -> String {
         let reply = self.asks("GET", &format!("/?token={}", self.token), &[], b"");
         assert_eq!((reply.status(), reply.header("location").as_deref()), (303, Some("/")));
         let cookie = reply.header("set-cookie").expect("a cookie");
@@ -75,17 +75,17 @@ impl Studio {
         cookie.split(';').next().expect("a pair").to_owned()
     }
 
-    fn origin(&self) -> String {
+    pub(crate) fn origin(&self) -> String {
         format!("http://{}", self.host())
     }
 
-    fn posts(&self, cookie: &str, path: &str, body: &[u8]) -> Reply {
+    pub(crate) fn posts(&self, cookie: &str, path: &str, body: &[u8]) -> Reply {
         let origin = self.origin();
         self.asks("POST", path, &[("Cookie", cookie), ("Origin", &origin)], body)
     }
 
     /// A tab: its WebSocket, upgraded.
-    fn tab(&self, cookie: &str) -> Tab {
+    pub(crate) fn tab(&self, cookie: &str) -> Tab {
         let mut socket = self.socket();
         let (host, origin) = (self.host(), self.origin());
         write!(
@@ -105,7 +105,7 @@ impl Studio {
         Tab(socket)
     }
 
-    fn is_well(&self, cookie: &str) {
+    pub(crate) fn is_well(&self, cookie: &str) {
         let reply = self.asks("GET", "/", &[("Cookie", cookie)], b"");
         assert!(reply.status() == 200 && reply.0.contains("<title>"), "{}", reply.0);
     }
@@ -118,25 +118,25 @@ impl Drop for Studio {
     }
 }
 
-struct Reply(String);
+pub(crate) struct Reply(pub(crate) String);
 
 impl Reply {
-    fn status(&self) -> u16 {
+    pub(crate) fn status(&self) -> u16 {
         self.0.split(' ').nth(1).and_then(|code| code.parse().ok()).unwrap_or(0)
     }
 
-    fn header(&self, name: &str) -> Option<String> {
+    pub(crate) fn header(&self, name: &str) -> Option<String> {
         let head = self.0.split("\r\n\r\n").next()?;
         let pairs = head.lines().filter_map(|line| line.split_once(": "));
         pairs.filter(|(key, _)| key.eq_ignore_ascii_case(name)).map(|(_, value)| value.to_owned()).next()
     }
 }
 
-struct Tab(TcpStream);
+pub(crate) struct Tab(pub(crate) TcpStream);
 
 impl Tab {
     /// Sends a text frame, masked with zeros.
-    fn send(&mut self, text: &str) {
+    pub(crate) fn send(&mut self, text: &str) {
         let n = text.len();
         let mut frame = vec![0x81];
         match n {
@@ -157,7 +157,7 @@ impl Tab {
     }
 
     /// The next text; `None` at the end.
-    fn hears(&mut self) -> Option<Value> {
+    pub(crate) fn hears(&mut self) -> Option<Value> {
         loop {
             let mut head = [0; 2];
             self.0.read_exact(&mut head).ok()?;
@@ -182,7 +182,7 @@ impl Tab {
     }
 
     /// The first answer of which this holds.
-    fn hears_that(&mut self, what: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn hears_that(&mut self, what: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
             let answer = self.hears().expect("the tab is open");
@@ -195,7 +195,7 @@ impl Tab {
 }
 
 /// An egg of `n` points with one of them moved.
-fn egg(version: u64, n: usize, by: f64) -> Value {
+pub(crate) fn egg(version: u64, n: usize, by: f64) -> Value {
     let points: Vec<[f64; 2]> = (0..n)
         .map(|i| {
             let angle = std::f64::consts::TAU * i as f64 / n as f64;

@@ -56,7 +56,7 @@ const POINTS: &str = r#"<section class="card screen-only" id="points"><details><
 <div class="scroll" tabindex="0" role="region" aria-label="Points"><table><thead><tr><th scope="col" class="n">point</th><th scope="col" class="n">crank °</th><th scope="col" class="n">desired x</th><th scope="col" class="n">desired y</th><th scope="col" class="n">generated x</th><th scope="col" class="n">generated y</th><th scope="col" class="n">error</th></tr></thead><tbody></tbody></table></div></details></section>
 "#;
 
-fn header(record: &Record) -> String {
+pub(super) fn header(record: &Record) -> String {
     let mut out = String::from("<a class=\"skip\" href=\"#candidates\">To the candidates</a>\n<header>\n");
     out.push_str(&format!("<h1>{}</h1>\n", escaped(&words::problem_name(record))));
     let source = record.problem.source.as_deref().map(clean).filter(|source| !source.is_empty());

@@ -23,16 +23,22 @@ pub(super) fn articles(record: &Record, drawings: &[&str]) -> String {
         .candidates
         .iter()
         .enumerate()
-        .map(|(i, c)| {
-            let title = format!("Candidate {}", i + 1);
-            let drawing = drawings.get(i).copied().filter(|_| i < MOST_DRAWN);
-            article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing)
-        })
+        .map(|(i, c)| ranked(record, i, c, drawings.get(i).copied().filter(|_| i < MOST_DRAWN)))
         .collect();
     if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
         out.push_str(&article(record, c, (BUILDABLE_KEY, "buildable", "The buildable answer"), None));
     }
     out
+}
+
+/// The article of one candidate, without a drawing.
+pub(super) fn one(record: &Record, index: usize) -> String {
+    record.candidates.get(index).map_or(String::new(), |c| ranked(record, index, c, None))
+}
+
+fn ranked(record: &Record, i: usize, c: &Candidate, drawing: Option<&str>) -> String {
+    let title = format!("Candidate {}", i + 1);
+    article(record, c, (&candidate_key(i), &(i + 1).to_string(), &title), drawing)
 }
 
 fn article(

@@ -82,6 +82,17 @@ pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], ex
     .render()
 }
 
+/// What the report says of the whole run, as markup: what came of it, what stands in the way, what would help.
+pub fn summary_markup(record: &Record) -> String {
+    body::header(record)
+}
+
+/// What the report says of one candidate, as markup: figures, mobility, warnings, requirements with what they cost,
+/// dimensions, cognates. `index` counts from 0.
+pub fn candidate_markup(record: &Record, index: usize) -> Option<String> {
+    record.candidates.get(index).map(|_| candidate::one(record, index))
+}
+
 /// Whether a file begins as a report of ours does.
 pub fn is_report(bytes: &[u8]) -> bool {
     bytes.starts_with(page::BEGINNING.as_bytes())

@@ -1,22 +1,52 @@
-//! One job of `synth`, from its folder to its files: lock, resume, run, checkpoints on the way, result.
+//! One job from its folder to its files: lock, resume, run, checkpoints on the way, result.
+//!
+//! `linkwright synth` and the studio run jobs by this alone, so that the same problem and seed give the same bytes.
 
-use super::arguments::Synth;
-use super::progress::{Proving, Shown};
-use super::{synth, terminal};
 use crate::certificate;
 use crate::checkpoint::{Checkpoint, Writer};
 use crate::record::{Reason, Record};
 use crate::report::html::Extent;
+use crate::result_files::{Timing, files_of};
 use crate::results_folder::{
     CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
 };
 use crate::run::{Context, Finished, Job, digest, prove, run_kept};
-use crate::search::keeper::{Keeper, Pace, SearchState};
+use crate::search::Observer;
+use crate::search::keeper::{Keeper, LEAST_PAUSE, Pace, SearchState};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// How a job is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Whether it goes on from the checkpoint of an earlier run, and is not run where it was done before.
+    pub resume: bool,
+    /// Checkpoints come at most so often; zero: at every boundary of the search.
+    pub checkpoint_every: Duration,
+    /// What the page of the result holds.
+    pub extent: Extent,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { resume: false, checkpoint_every: LEAST_PAUSE, extent: Extent::Full }
+    }
+}
+
+/// Whom a job tells what it does.
+#[derive(Clone, Copy)]
+pub struct Listener<'a> {
+    /// Where the search stands.
+    pub observer: &'a Observer<'a>,
+    /// Where the certificate stands that the problem asks for.
+    pub proving: &'a (dyn Fn(&certificate::Progress) + Sync),
+    /// What a person should know, a sentence each.
+    pub tell: &'a (dyn Fn(&str) + Sync),
+}
 
 /// What came of a job.
+#[derive(Clone, Debug)]
 pub struct Done {
     /// The record.
     pub record: Record,
@@ -43,16 +73,17 @@ pub struct Written {
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs a job on the current thread pool and writes its result, with a page of this extent; [`put_in_place`] ends it.
-/// The time that is written counts from `begun`.
+/// Runs a job on the current thread pool and writes its result to the folder `place`; [`put_in_place`] ends it. The
+/// time that is written counts from `begun`. Setting `cancel` ends the search: its best so far is the result, and the
+/// checkpoint stays.
 ///
 /// # Errors
 /// What a person has to know; nothing is half written.
 pub fn run(
     job: &Job,
     place: &Path,
-    options: &Synth,
-    (shown, extent): (&Shown, Extent),
+    options: Options,
+    listener: Listener<'_>,
     cancel: &AtomicBool,
     begun: Instant,
 ) -> Result<Ran, String> {
@@ -71,13 +102,13 @@ pub fn run(
         let path = place.join(CHECKPOINT);
         if let Some(checkpoint) = Checkpoint::read(&path, job).map_err(|e| e.to_string())? {
             match checkpoint.leads_to(job) {
-                Some(why) => terminal::tell(&format!("{} begins anew: {why}", job.name)),
+                Some(why) => (listener.tell)(&format!("{} begins anew: {why}", job.name)),
                 None => earlier = checkpoint.into_state(),
             }
         }
     } else if folder.has_checkpoint() {
         let name = &job.name;
-        terminal::tell(&format!(
+        (listener.tell)(&format!(
             "{name} begins anew; --resume would go on from the checkpoint that is there"
         ));
     }
@@ -88,26 +119,23 @@ pub fn run(
         if let Err(e) = replace_file(place, CHECKPOINT, &bytes)
             && !failed.swap(true, Ordering::Relaxed)
         {
-            terminal::tell(&format!("warning: no checkpoint could be written, the search goes on: {e}"));
+            (listener.tell)(&format!("warning: no checkpoint could be written, the search goes on: {e}"));
         }
     };
     let pause = options.checkpoint_every;
     let pace = if pause.is_zero() { Pace::EveryBoundary } else { Pace::NotWithin(pause) };
     let keeper = Keeper::new(earlier, pace, &sink);
-    let observer = |progress: &_| shown.update(progress);
-    let outcome = run_kept(job, &Context { cancel, observer: &observer }, Some(&keeper));
-    shown.finish();
+    let outcome = run_kept(job, &Context { cancel, observer: listener.observer }, Some(&keeper));
     let Finished { mut record, search_s, beside_s } = outcome.map_err(|e| format!("{}: {e}", job.name))?;
-    let mut proving = Proving::new(&job.name, shown.is_silent());
-    prove(&mut record, cancel, &mut |progress| proving.update(progress));
+    prove(&mut record, cancel, &mut |progress| (listener.proving)(progress));
     let interrupted =
         cancel.load(Ordering::Relaxed) && record.certificate.as_ref().is_some_and(|c| !c.closed);
     if matches!(record.termination.reason, Reason::Cancelled | Reason::TimeLimit) {
         folder.keep_checkpoint();
     }
     let total_s = begun.elapsed().as_secs_f64();
-    let timing = synth::Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
-    let files = synth::files_of(&record, &timing, extent)?;
+    let timing = Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
+    let files = files_of(&record, &timing, options.extent)?;
     folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
     let seconds = Some((search_s, beside_s));
     let done = Done { record, folder: place.to_path_buf(), seconds, interrupted };

@@ -1,19 +1,20 @@
-//! What was given to `compare`, measured by the referee: no figure is taken from a record on trust.
+//! What was given to be compared, measured by the referee: no figure is taken from a record on trust.
 
-use super::result::{Chosen, Given, Run};
-use super::{Ended, terminal};
 use crate::assess::assess;
 use crate::diagnostic::escaped;
+use crate::given::{Chosen, Given, Run};
 use crate::linkage::{AssemblyMode, FourBar};
 use crate::linkage_file::LinkageFile;
 use crate::problem::Problem;
-use crate::problem_file;
+use crate::problem_file::ProblemFile;
 use crate::record::{Candidate, Unit};
-use crate::report::compare::{Entry, LeftOut, same_points, scaled, times};
+use crate::report::compare::{
+    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, scaled, times, unit_remarks,
+};
 use crate::run::digest;
 use crate::search::nearest::nearest_positions;
+use crate::task::TaskError;
 use crate::verify::verify_candidate;
-use ariadne::ReportKind;
 use std::path::Path;
 
 /// What errors are measured on.
@@ -28,20 +29,19 @@ pub struct Target {
 
 impl Target {
     /// The target of a problem file.
-    pub fn load(path: &Path) -> Result<Self, Ended> {
-        let file = problem_file::load(path, &[]).map_err(|diagnostic| {
-            terminal::diagnose(ReportKind::Error, &diagnostic);
-            Ended::Refused
-        })?;
-        let problem = Problem::new(file.spec.clone()).map_err(|e| refuse(&e.to_string()))?;
+    ///
+    /// # Errors
+    /// Why it is no problem.
+    pub fn new(file: ProblemFile) -> Result<Self, TaskError> {
+        let problem = Problem::new(file.spec.clone())?;
         Ok(Target { name: file.name, problem, unit: file.unit })
     }
 
     /// The target of a run.
-    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, Ended> {
+    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, String> {
         let asked = &run.record.problem;
         let problem = Problem::new(asked.resolved.clone())
-            .map_err(|e| refuse(&format!("{}: the recorded problem is none: {e}", run.named)))?;
+            .map_err(|e| format!("{}: the recorded problem is none: {e}", run.named))?;
         Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
     }
 
@@ -95,9 +95,54 @@ pub struct Measured {
     pub remarks: Vec<String>,
 }
 
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
+/// Why there is no comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotCompared {
+    /// Nothing that was given has figures; why each has none.
+    Nothing(Vec<LeftOut>),
+    /// What a person has to know.
+    Refused(String),
+}
+
+/// What was given, side by side: in the unit of the target, else of the first that has one, ranked by `keys`.
+/// `reference` is the label of the one that differences are from.
+///
+/// # Errors
+/// [`NotCompared`].
+pub fn compared(
+    given: &[(&Path, Given)],
+    target: Option<&Target>,
+    keys: &[SortKey],
+    reference: Option<&str>,
+) -> Result<Comparison, NotCompared> {
+    let named = target.map(|target| (target.name.clone(), target.unit));
+    let unit = named.as_ref().and_then(|(_, unit)| *unit);
+    let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
+    let measured = Measured::of(given, target, unit).map_err(NotCompared::Refused)?;
+    if measured.entries.is_empty() {
+        return Err(NotCompared::Nothing(measured.left_out));
+    }
+    let reference = match reference {
+        Some(label) => Some(measured.entries.iter().position(|e| e.label == label).ok_or_else(|| {
+            NotCompared::Refused(format!("{label} has no figures that others could be compared with"))
+        })?),
+        None => None,
+    };
+    let entries = in_one_unit(&measured.entries, unit)
+        .map_err(|e| NotCompared::Refused(format!("a linkage cannot be converted to another unit: {e}")))?;
+    let mut comparison = compare(&entries, keys, reference);
+    comparison.remarks.extend(measured.remarks);
+    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
+    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
+    comparison.left_out = measured.left_out;
+    Ok(comparison)
+}
+
+fn unit_of(given: &Given) -> Option<Unit> {
+    match given {
+        Given::Run(run) => run.record.problem.unit,
+        Given::Linkage(file) => file.unit,
+    }
 }
 
 /// What a linkage file is called: its name, or its path where something else has that name.
@@ -114,8 +159,8 @@ impl Measured {
     /// unit, also of a target, are taken to be in `unit`.
     ///
     /// # Errors
-    /// [`Ended::Refused`], told.
-    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, Ended> {
+    /// What a person has to know.
+    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, String> {
         let mut measured = Measured::default();
         let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
         let target = target.as_ref();
@@ -141,9 +186,7 @@ impl Measured {
                 (Given::Linkage(file), _) => {
                     let on = common.ok_or_else(|| {
                         let shown = escaped(&path.display().to_string());
-                        refuse(&format!(
-                            "{shown} is a linkage without a target: say which with --target PROBLEM.toml"
-                        ))
+                        format!("{shown} is a linkage without a target: say which with --target PROBLEM.toml")
                     })?;
                     let label = label_of_file(given, i);
                     measured.units.push((label.clone(), file.unit));

@@ -1,0 +1,72 @@
+//! Everything that a result's folder holds, as bytes: pure functions of the record, but for its times.
+
+use crate::linkage_file;
+use crate::record::Record;
+use crate::report::html::Extent;
+use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
+use crate::results_folder::BUILDABLE;
+
+/// What `timing.json` holds.
+#[derive(serde::Serialize)]
+pub struct Timing {
+    /// Seconds of search.
+    pub search_s: f64,
+    /// Seconds more for what stands beside the candidates.
+    pub beside_s: f64,
+    /// Seconds altogether.
+    pub total_s: f64,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Everything that a result's folder holds.
+pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
+    files_of(record, timing, Extent::Full)
+}
+
+/// The same with a page of this extent.
+pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let json = |text: Result<String, serde_json::Error>| {
+        text.map(|t| (t + "\n").into_bytes())
+            .map_err(|e| format!("the record cannot be written as JSON: {e}"))
+    };
+    let mut files = vec![
+        ("record.json".to_string(), json(serde_json::to_string_pretty(record))?),
+        ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
+        ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
+    ];
+    let mut drawings = Vec::new();
+    for (i, candidate) in record.candidates.iter().enumerate() {
+        let n = i + 1;
+        let name = numbered(&record.problem.name, &n.to_string());
+        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
+        files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
+        files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
+        drawings.push(svg::candidate_svg(record, i));
+    }
+    if let Some(candidate) = &record.buildable {
+        let name = numbered(&record.problem.name, BUILDABLE);
+        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
+        files.push((format!("linkage-{BUILDABLE}.toml"), toml.into_bytes()));
+        files.push((format!("curve-{BUILDABLE}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
+    }
+    if record.candidates.len() > 1 {
+        let sheet = contact_sheet::contact_sheet_svg(record);
+        files.push(("contact-sheet.svg".into(), sheet.into_bytes()));
+    }
+    if record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()) {
+        files.push(("exact.svg".into(), exact_sheet::exact_svg(record).into_bytes()));
+    }
+    let drawn: Vec<&str> = drawings.iter().map(String::as_str).collect();
+    files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn, extent).into_bytes()));
+    files
+        .extend((1..).zip(drawings).map(|(n, drawing)| (format!("candidate-{n}.svg"), drawing.into_bytes())));
+    Ok(files)
+}
+
+/// The problem's name with a candidate's rank (or `buildable`), within the length of a name.
+fn numbered(name: &str, n: &str) -> String {
+    let suffix = format!("-{n}");
+    let stem: String = name.chars().take(crate::name::MAX_NAME - suffix.len()).collect();
+    format!("{}{suffix}", stem.trim_end())
+}

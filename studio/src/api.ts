@@ -1,0 +1,70 @@
+// What the page asks of the studio over HTTP: see /openapi.json.
+
+import type { Point, Shown, Task } from "./messages";
+
+export interface JobShown {
+  name: string;
+  state: "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
+  said: string;
+  resumable: boolean;
+  progress?: { phase: string; evaluations: number; budget: number; rate: number; best_rms?: number; accepted: boolean; elapsed_s: number; left_s?: number };
+  result?: {
+    points: number; unit?: string; seed: number; method: string; candidates: number; accepted: number; evaluations: number; reproducible: boolean; version: string;
+    best?: { rms: number; max: number; type: string; transmission_deg: number; accepted: boolean };
+  };
+}
+
+export interface JobList { folder: string; jobs: JobShown[]; more: number }
+
+export interface Opened { ask?: Task & { version?: number }; why_not?: string; name: string; unit?: string; points: Point[]; closed: boolean; candidates: Shown[]; files: string[] }
+
+export type Source = { job: { name: string; rank: number } } | { drawn: { ask: Task; linkage: Shown["linkage"]; crank_deg: number[]; t1_at: number[] } };
+
+export interface Details {
+  name: string; unit?: string; points: Point[]; closed: boolean; tolerance?: number[]; transmission_deg_min?: number; candidates: number; shown: Shown; summary: string; words: string;
+}
+
+export interface Compared {
+  unit: string | null;
+  notes: string[];
+  rows: { rank: number; label: string; accepted: boolean; on_front: boolean; type: string; figures: Record<"rms" | "max" | "transmission" | "link_ratio" | "size", number | null> }[];
+}
+
+/** An answer that is not what was asked for, in the studio's words. */
+export class Refused extends Error {}
+
+async function answered(path: string, body?: unknown, text?: string): Promise<Response> {
+  let reply: Response;
+  try {
+    const init = body === undefined && text === undefined ? {} : { method: "POST", body: text ?? JSON.stringify(body), headers: { "Content-Type": text === undefined ? "application/json" : "application/toml" } };
+    reply = await fetch(path, init);
+  } catch {
+    throw new Refused("the studio does not answer");
+  }
+  if (!reply.ok) throw new Refused((await reply.text()).trim());
+  return reply;
+}
+
+export const jobs = async () => (await answered("/jobs")).json() as Promise<JobList>;
+export const start = async (ask: unknown) => (await answered("/jobs", ask)).json() as Promise<JobShown>;
+const at = (name: string) => `/jobs/${encodeURIComponent(name)}`;
+export const cancel = (name: string) => answered(`${at(name)}/cancel`, null);
+export const resume = (name: string) => answered(`${at(name)}/resume`, null);
+export const open = async (name: string) => (await answered(`${at(name)}/opened`)).json() as Promise<Opened>;
+export const details = async (of: Source) => (await answered("/details", { of })).json() as Promise<Details>;
+export const exported = async (of: Source, format: string) => (await answered("/export", { of, format })).blob();
+export const compared = async (of: Source[]) => (await answered("/compare", { of })).json() as Promise<Compared>;
+export const comparedAs = async (of: Source[], form: string) => (await answered("/compare", { of, form })).blob();
+export const askOf = async (text: string) => (await answered("/ask.json", undefined, text)).json() as Promise<Task>;
+export const problemOf = async (task: Task) => (await answered("/problem.toml", { ...task, version: 0 })).text();
+
+/** Saves a file where the browser saves files. */
+export function saved(what: Blob, name: string) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(what);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+export const wordsOf = (error: unknown) => (error instanceof Refused ? error.message : String(error));

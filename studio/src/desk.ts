@@ -1,0 +1,62 @@
+// The desk below the board: everything about the chosen linkage, long searches, sharing. It knows the page by Host alone.
+
+import { element } from "../../src/report/html/player/svg.mjs";
+import { DetailsPanel } from "./details";
+import { JobsPanel } from "./jobs";
+import type { Shown, Task } from "./messages";
+import { Share } from "./share";
+
+export interface Host {
+  task(): Task;
+  /** The linkage that is chosen in the strip. */
+  chosen(): Shown | null;
+  /** Takes another problem. */
+  take(task: Task): void;
+  /** Keeps a linkage to compare others with. */
+  keep(shown: Shown): void;
+  /** Says something that stays until it can have been read. */
+  say(text: string): void;
+}
+
+/** Milliseconds that a word stays, and more for each letter. */
+const STAYS = 3000;
+const A_LETTER = 60;
+
+export class Desk {
+  private details: DetailsPanel;
+  private share: Share;
+
+  private said = element("p", { id: "desk-said", role: "status", "aria-live": "polite" }) as HTMLParagraphElement;
+  private timer = 0;
+
+  constructor(place: HTMLElement, sharePlace: HTMLElement, page: Omit<Host, "say">) {
+    const host: Host = { ...page, say: (text) => this.say(text) };
+    document.body.append(this.said);
+    this.details = new DetailsPanel(place, host);
+    const jobs = new JobsPanel(place, host, (name, rank) => this.details.ofJob(name, rank));
+    this.share = new Share(sharePlace, host);
+    void jobs.refresh();
+  }
+
+  /** Beside the status, which the next answer of the search replaces. */
+  private say(text: string) {
+    clearTimeout(this.timer);
+    this.said.textContent = text;
+    this.timer = setTimeout(() => { this.said.textContent = ""; }, STAYS + A_LETTER * text.length) as unknown as number;
+  }
+
+  /** Takes what the address holds, if it holds a problem. */
+  async begin() {
+    await this.share.fromAddress();
+  }
+
+  /** Another linkage is chosen, or the same has new figures. */
+  changed(settled: boolean) {
+    this.details.changed(settled);
+  }
+
+  /** A card of the strip was chosen by hand. */
+  chose() {
+    this.details.ofStrip();
+  }
+}

@@ -1,0 +1,196 @@
+// Everything about one linkage: the report's player, its charts and its words, and files.
+
+import { CycleChart } from "../../src/report/html/player/chart.mjs";
+import { Cycle } from "../../src/report/html/player/cycle.mjs";
+import { Player } from "../../src/report/html/player/player.mjs";
+import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
+import * as api from "./api";
+import type { Host } from "./desk";
+
+const FORMATS: [string, string, string][] = [
+  ["dxf", "dxf", "DXF: skeleton, curve, target"], ["dxf-plates", "dxf", "DXF: plates to cut"], ["svg", "svg", "SVG in millimetres"],
+  ["svg-plates", "svg", "SVG: plates to cut"], ["stl", "stl", "STL: plates to print"], ["scad", "scad", "OpenSCAD"],
+  ["csv", "csv", "CSV: the whole cycle"], ["points", "csv", "CSV: along the points"], ["toml", "toml", "Linkage file (TOML)"],
+  ["json", "json", "Linkage (JSON)"], ["cut-list", "txt", "Cut list"], ["sheet", "svg", "Drawing (SVG)"], ["html", "html", "Report (HTML)"],
+];
+
+interface Sample { q: number; joints: { C: number[]; D: number[] }; coupler?: number; follower?: number }
+
+const degrees = (from: number[], to: number[]) => (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
+const near = (angle: number, other: number) => angle + 360 * Math.round((other - angle) / 360);
+
+/** The report's player with one chart more: the angles of the links. */
+class AnglesPlayer extends Player {
+  declare angles: CycleChart;
+
+  makeCharts(place: HTMLElement, unit: string | null) {
+    super.makeCharts(place, unit);
+    const read = (s: any) => `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
+    const line = (kind: string, of: (s: any) => number) => ({ name: kind, kind, of });
+    this.angles = new CycleChart(place, {
+      title: "Angles of the links",
+      height: 150,
+      onPick: (q: number) => {
+        this.pause();
+        this.moveTo(q);
+      },
+      lines: [line("main", (s) => s.follower), line("along-x", (s) => s.coupler), line("along-y", (s) => (this.cycle as Cycle).crankDeg(s.q))],
+      read,
+    } as never);
+    const key = (kind: string, text: string) => element("span", { class: "key" }, [shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [shape("path", { class: `line ${kind}`, d: "M0 4h18" })]), text]);
+    place.append(element("p", { class: "chart-note" }, [element("span", { class: "keys" }, [key("main", "follower"), key("along-x", "coupler"), key("along-y", "input")])]));
+  }
+
+  show(mechanism: unknown) {
+    super.show(mechanism as never);
+    let last: Sample | null = null;
+    for (const sample of this.samples as unknown as (Sample | null)[]) {
+      if (sample) this.turn(sample, last);
+      last = sample ?? last;
+    }
+    this.angles.show(this.cycle as Cycle, this.samples as never);
+    this.moveTo(this.q);
+  }
+
+  /** The angles at a sample, without a jump from the one before. */
+  private turn(sample: Sample, before: Sample | null) {
+    const { B } = ((this.cycle as Cycle).mechanism as any).linkage;
+    const [coupler, follower] = [degrees(sample.joints.C, sample.joints.D), degrees(B, sample.joints.D)];
+    sample.coupler = before ? near(coupler, before.coupler as number) : coupler;
+    sample.follower = before ? near(follower, before.follower as number) : follower;
+  }
+
+  moveTo(q: number) {
+    super.moveTo(q);
+    if (!this.angles || !this.cycle) return;
+    const sample = this.cycle.sample(this.q) as unknown as Sample | null;
+    const around = (this.samples as unknown as (Sample | null)[]).filter((s) => s && s.coupler !== undefined) as Sample[];
+    if (!sample || around.length === 0) return;
+    this.turn(sample, around.reduce((best, s) => (Math.abs(s.q - this.q) < Math.abs(best.q - this.q) ? s : best)));
+    this.angles.at(this.q, sample);
+  }
+}
+
+export class DetailsPanel {
+  private panel = element("details", { class: "desk-card", id: "details" }) as HTMLDetailsElement;
+  private title = element("h3", { id: "details-title" });
+  private candidates = element("select", { id: "details-candidate", "aria-label": "Candidate" }) as HTMLSelectElement;
+  private keep = element("button", { type: "button", id: "details-pin" }, ["Pin it"]) as HTMLButtonElement;
+  private format = element("select", { id: "format", "aria-label": "Format" }, FORMATS.map(([name, , words]) => element("option", { value: name }, [words]))) as HTMLSelectElement;
+  private save = element("button", { type: "button", id: "export" }, ["Save"]) as HTMLButtonElement;
+  private stage = element("div", { class: "details-stage" });
+  private charts = element("div", { class: "details-charts" });
+  private words = element("div", { class: "details-words" });
+  private nothing = element("p", { class: "quiet" });
+  private job: { name: string; rank: number } | null = null;
+  private details: api.Details | null = null;
+  private player: AnglesPlayer | null = null;
+  private shownOf = "";
+  private loading = "";
+  private timer = 0;
+
+  constructor(place: HTMLElement, private host: Host) {
+    const head = element("div", { class: "row" }, [this.title, this.candidates, this.keep]);
+    const files = element("div", { class: "row" }, [element("label", {}, ["As a file: ", this.format]), this.save]);
+    this.panel.append(element("summary", {}, [element("h2", {}, ["Everything about this linkage"])]), this.nothing, head, files, element("div", { class: "details-columns" }, [this.stage, this.charts]), this.words);
+    place.append(this.panel);
+    this.panel.addEventListener("toggle", () => {
+      if (this.panel.open) this.changed(true);
+      else this.player?.pause();
+    });
+    this.candidates.addEventListener("change", () => {
+      if (this.job) this.ofJob(this.job.name, Number(this.candidates.value));
+    });
+    this.keep.addEventListener("click", () => {
+      if (this.details) this.host.keep(this.details.shown);
+    });
+    this.save.addEventListener("click", () => void this.export());
+  }
+
+  /** Shows a candidate of a saved result. */
+  ofJob(name: string, rank: number) {
+    this.job = { name, rank };
+    this.panel.open = true;
+    this.changed(true);
+  }
+
+  /** Shows what is chosen in the strip. */
+  ofStrip() {
+    this.job = null;
+    this.changed(true);
+  }
+
+  private source(): api.Source | null {
+    if (this.job) return { job: this.job };
+    const shown = this.host.chosen();
+    if (!shown) return null;
+    const { linkage, crank_deg, t1_at } = shown;
+    return { drawn: { ask: this.host.task(), linkage, crank_deg, t1_at } };
+  }
+
+  /** While the hand moves nothing is asked; a moment after it rests, once. */
+  changed(settled: boolean) {
+    clearTimeout(this.timer);
+    if (!this.panel.open || (this.job && this.shownOf === JSON.stringify(this.job))) return;
+    if (settled) this.timer = setTimeout(() => void this.load(), 150) as unknown as number;
+  }
+
+  private async load() {
+    const { job } = this;
+    const of = this.source();
+    this.nothing.hidden = of !== null;
+    this.nothing.textContent = "None is chosen.";
+    if (!of) return;
+    const key = JSON.stringify(this.job ?? of);
+    if (key === this.shownOf) return;
+    this.loading = key;
+    try {
+      const details = await api.details(of);
+      // Another one may have been asked for since.
+      if (this.loading !== key || this.job !== job) return;
+      this.shownOf = key;
+      this.show(details);
+    } catch (error) {
+      if (this.loading !== key || this.job !== job) return;
+      this.nothing.hidden = false;
+      this.nothing.textContent = `Nothing is known of it: ${api.wordsOf(error)}`;
+    }
+  }
+
+  private show(details: api.Details) {
+    this.details = details;
+    const { shown } = details;
+    this.title.textContent = this.job ? `${details.name}, candidate` : `${details.name}, as it stands`;
+    this.candidates.hidden = this.job === null;
+    this.candidates.replaceChildren(...Array.from({ length: details.candidates }, (_, i) => element("option", { value: i + 1 }, [`${i + 1} of ${details.candidates}`])));
+    this.candidates.value = String(this.job?.rank ?? 1);
+    this.player?.pause();
+    this.stage.replaceChildren();
+    this.charts.replaceChildren();
+    const { points, closed, tolerance } = details;
+    this.player = new AnglesPlayer(this.stage, this.charts, { unit: details.unit ?? null, target: { points, closed, tolerance }, transmissionMin: details.transmission_deg_min ?? null } as never);
+    this.player.show({ key: "", name: "", ...shown });
+    this.words.replaceChildren(...marked(details.summary, "header > p, header > ul"), ...marked(details.words, "article > :not(h2)"));
+    this.panel.dataset.shown = this.shownOf;
+  }
+
+  private async export() {
+    const of = this.source();
+    const format = FORMATS.find(([name]) => name === this.format.value);
+    if (!of || !format) return this.host.say("There is no linkage to save.");
+    const name = this.job ? `${this.job.name}-${this.job.rank}` : this.host.task().name;
+    try {
+      api.saved(await api.exported(of, format[0]), `${name}.${format[1]}`);
+      return this.host.say(`Saved as ${name}.${format[1]}.`);
+    } catch (error) {
+      return this.host.say(`This cannot be saved: ${api.wordsOf(error)}`);
+    }
+  }
+}
+
+/** What the report has written: every foreign text in it stands as text, and the page's policy runs no script of it. */
+function marked(markup: string, chosen: string): Element[] {
+  const page = new DOMParser().parseFromString(markup, "text/html");
+  for (const named of page.querySelectorAll("[id]")) named.removeAttribute("id");
+  return [...page.querySelectorAll(chosen)].map((one) => document.adoptNode(one));
+}
