@@ -98,7 +98,7 @@ def main(address):
     answer = live.hear()
     while answer["doing"] != "done":
         answer = live.hear()
-    print(f"{len(answer['candidates'])} linkages, the best with an rms error of {answer['candidates'][0]['rms']:.3g} mm")
+    print(f"linkages: {len(answer['candidates'])}, the best with an rms error of {answer['candidates'][0]['rms']:.3g} mm")
     for version in range(2, 12):
         live.tell(egg(version, 0.3 * (version - 1), moving=True))
         while answer["version"] != version or answer["doing"] == "refused":
