@@ -44,7 +44,7 @@
 //! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
 //! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
-//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs; no mathematics | live, run, search, record, report, problem, problem_file, linkage, linkage_file, name |
+//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs; no mathematics | live, run, search, record, report, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;

@@ -2,6 +2,8 @@
 //!
 //! ```text
 //! messages.rs     what a tab says and what it is answered, as JSON
+//! asked.rs        what a tab asks as a problem file, and a problem file as what a tab asks
+//! reading.rs      texts that are pasted or dropped, read by the readers of files
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
 //! server.rs       routes, the page, the WebSocket
 //! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
@@ -12,10 +14,13 @@
 //! The studio listens on 127.0.0.1 alone and reads no file: targets come as points. It does no mathematics: what
 //! follows the hand is [`live`](crate::live), what is searched is [`run`](mod@crate::run), as on the command line.
 
+mod asked;
 mod connection;
 mod guard;
 pub mod messages;
+pub mod reading;
 mod server;
 mod tab;
 
+pub use asked::{MOST_POINTS, NotHere};
 pub use server::{Studio, StudioError};

@@ -58,7 +58,10 @@ class Page {
 
   constructor() {
     this.board = new Board(byId("board"), {
-      drawn: (points, closed) => this.change({ points, closed, name: "drawing" }, { fresh: true }),
+      drawn: (points, closed) => {
+        this.fitNext = true;
+        this.change({ points, closed, name: "drawing" }, { fresh: true });
+      },
       grasp: () => this.steps.note(this.task),
       drag: (index, to, last) => this.drag(index, to, last),
       add: (at) => this.change({ points: [...this.task.points, at] }),

@@ -95,10 +95,12 @@ fn every_room_uses_only_what_the_picture_allows() {
         (
             "studio",
             &[
+                "diagnostic",
                 "linkage",
                 "linkage_file",
                 "live",
                 "name",
+                "points_file",
                 "problem",
                 "problem_file",
                 "record",
@@ -106,6 +108,7 @@ fn every_room_uses_only_what_the_picture_allows() {
                 "run",
                 "search",
                 "studio",
+                "svg_file",
             ],
         ),
         ("diagnostic.rs", &[]),

@@ -299,6 +299,24 @@ fn bodies_that_are_wrong_or_huge_are_refused() {
         "t1": 1, "t2": -1}});
     let reply = studio.posts(&cookie, "/linkage.toml", linkage.to_string().as_bytes());
     assert!(reply.status() == 200 && reply.0.contains("[linkage]"), "{}", reply.0);
+    // Texts to be read: no file is opened, nothing wrong hangs or breaks.
+    for body in [
+        "{}",
+        "{\"kind\": \"csv\"}",
+        "{\"kind\": \"exe\", \"text\": \"\"}",
+        "{\"kind\": \"csv\", \"text\": \"x,y\\n1,nan\\n\"}",
+        "{\"kind\": \"problem\", \"text\": \"format = 1\\n[task.path]\\nfile = '/etc/passwd'\"}",
+        "{\"kind\": \"svg\", \"text\": \"<!DOCTYPE x [<!ENTITY a 'b'>]><svg>&a;</svg>\"}",
+    ] {
+        let reply = studio.posts(&cookie, "/read", body.as_bytes());
+        assert_eq!(reply.status(), 422, "{body}: {}", reply.0);
+    }
+    let deep = json!({"kind": "svg", "text": "<g>".repeat(60_000)}).to_string();
+    assert_eq!(studio.posts(&cookie, "/read", deep.as_bytes()).status(), 422);
+    let csv =
+        json!({"kind": "csv", "name": "a.csv", "text": "x,y,crank_deg\n0,0,1\n1,1,2\n2,0,3\n"}).to_string();
+    let reply = studio.posts(&cookie, "/read", csv.as_bytes());
+    assert!(reply.status() == 200 && reply.0.contains("crank_deg"), "{}", reply.0);
     studio.is_well(&cookie);
 }
 
@@ -402,7 +420,7 @@ fn ctrl_c_ends_it_cleanly_with_a_search_on() {
 }
 
 #[test]
-fn a_problem_begins_and_one_that_the_page_cannot_hold_is_refused() {
+fn a_problem_begins_with_all_that_it_says_and_one_of_too_many_points_is_refused() {
     let root = crate::common::root();
     let problem = root.join("problems/examples/pivot-box.toml");
     let studio = Studio::start(&["--port", "18466", &problem.display().to_string()]);
@@ -419,7 +437,21 @@ fn a_problem_begins_and_one_that_the_page_cannot_hold_is_refused() {
     assert_eq!((again.spec, again.name, again.unit), (before.spec, before.name, before.unit));
     let schemas = studio.asks("GET", "/schemas.json", &[("Cookie", &cookie)], b"").0;
     assert!(schemas.contains("transmission_deg_min") && schemas.contains("half_width_deg"));
-    for (file, says) in [("problems/literature/e5.toml", "the studio"), ("problems/none.toml", "none.toml")] {
+    let timed =
+        Studio::start(&["--port", "18467", &root.join("problems/literature/e5.toml").display().to_string()]);
+    let cookie = timed.cookie();
+    let reply = timed.asks("GET", "/beginning.json", &[("Cookie", &cookie)], b"");
+    let ask: Value = serde_json::from_str(reply.0.split("\r\n\r\n").nth(1).expect("a body")).expect("JSON");
+    let before = crate::common::load(&root.join("problems/literature/e5.toml"), &[]).spec;
+    assert_eq!(ask["timing"]["crank_deg"].as_array().map(Vec::len), Some(before.task.path.points.len()));
+    assert!(ask["kept"]["design.a"].is_string(), "{ask}");
+    let text = timed.posts(&cookie, "/problem.toml", ask.to_string().as_bytes()).0;
+    assert_eq!(crate::common::parse(text.split("\r\n\r\n").nth(1).expect("a body")).spec, before);
+    let folder = tempfile::tempdir().expect("a folder");
+    let many = folder.path().join("many.csv");
+    std::fs::write(&many, format!("x,y\n{}", "0,0\n1,1\n".repeat(600))).expect("written");
+    let many = many.display().to_string();
+    for (file, says) in [(many.as_str(), "1200 points"), ("problems/none.toml", "none.toml")] {
         let output = Command::new(env!("CARGO_BIN_EXE_linkwright"))
             .args(["studio", "--no-open", file])
             .current_dir(root)
