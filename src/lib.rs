@@ -28,7 +28,7 @@
 //! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage can do better | task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
-//! | [`live`] | answers that follow a target under the hand: warm starts, same referee | assess, problem, record, search |
+//! | [`live`] | answers that follow a target under the hand: warm starts, same referee; all linkages through nine points | assess, exact, problem, record, search |
 //! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
@@ -44,7 +44,7 @@
 //! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
 //! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
-//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs; no mathematics | live, run, search, record, report, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
+//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs; no mathematics | live, run, search, record, report, assess, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;

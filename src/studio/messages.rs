@@ -1,11 +1,14 @@
 //! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
 
 use super::reading::{Reading, Text};
+use crate::assess::assess;
 use crate::linkage::{LinkageType, NaturalCoordinates};
+use crate::problem::Problem;
 use crate::problem::spec::{
     DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec, TransmissionOver,
 };
-use crate::record::{Candidate, Unit};
+use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation, Unit};
+use crate::report::exact;
 use crate::report::html::Drive;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -141,8 +144,45 @@ pub struct Answer {
     /// How far the search is, 0 to 1 of its budget; most end before it is used up.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<f64>,
-    /// The linkages, better first.
+    /// The linkages, better first; in exact mode all real ones through the nine points.
     pub candidates: Vec<Shown>,
+    /// In exact mode: how many linkages there are through the nine points, and of what kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nine: Option<Counted>,
+    /// Where nothing is acceptable: the changes that help, nearest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub relaxations: Vec<Relaxation>,
+}
+
+/// The linkages through nine points, counted.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Counted {
+    /// Solutions up to cognates, complex ones included.
+    pub classes: usize,
+    /// Those that are linkages.
+    pub real: usize,
+    /// Of these, those that pass all points on one circuit.
+    pub one_circuit: usize,
+    /// Of these, in order.
+    pub in_order: usize,
+    /// Of these, on one branch.
+    pub free_of_defects: usize,
+    /// The same and more in words.
+    pub said: Vec<String>,
+}
+
+impl Counted {
+    pub(super) fn of(exact: &ExactRecord) -> Counted {
+        let census = &exact.census;
+        Counted {
+            classes: census.classes,
+            real: census.real,
+            one_circuit: census.one_circuit,
+            in_order: census.in_order,
+            free_of_defects: census.free_of_defects,
+            said: super::status::census(exact),
+        }
+    }
 }
 
 /// A linkage with its figures, ready to be played.
@@ -175,6 +215,25 @@ pub struct Shown {
     pub accepted: bool,
     /// The requirements that are not met, by their keys, and the defects.
     pub unmet: Vec<String>,
+    /// Through nine points: what the best of the curve's six mechanisms can do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ability: Option<String>,
+    /// Through nine points: one exact linkage is proved to stand this near.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified_within: Option<f64>,
+}
+
+impl Shown {
+    /// A real linkage through nine points, judged; `None` where it cannot be.
+    pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
+        let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
+        Some(Shown {
+            rank,
+            ability: Some(exact::ability(linkage).into()),
+            certified_within: linkage.certified.map(|certified| certified.radius),
+            ..Shown::from(&judged)
+        })
+    }
 }
 
 impl From<&Candidate> for Shown {
@@ -194,6 +253,8 @@ impl From<&Candidate> for Shown {
             link_ratio: candidate.link_ratio,
             accepted: candidate.accepted,
             unmet: missed.collect(),
+            ability: None,
+            certified_within: candidate.certified.map(|certified| certified.radius),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! asked.rs        what a tab asks as a problem file, and a problem file as what a tab asks
 //! reading.rs      texts that are pasted or dropped, read by the readers of files
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
+//! status.rs       how a search ended, in words
 //! server.rs       routes, the page, the WebSocket
 //! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
 //! connection.rs   how many connections there may be, and for how long a silent one stays
@@ -20,6 +21,7 @@ mod guard;
 pub mod messages;
 pub mod reading;
 mod server;
+mod status;
 mod tab;
 
 pub use asked::{MOST_POINTS, NotHere};

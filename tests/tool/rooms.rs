@@ -82,6 +82,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("assess.rs", &["linkage", "task", "problem", "record"]),
         ("run.rs", &["assess", "problem", "record", "search", "solve", "task"]),
         ("live.rs", &["assess", "problem", "record", "search"]),
+        ("live", &["exact", "problem", "record", "search"]),
         ("checkpoint.rs", &["record", "run", "search"]),
         ("verify.rs", &["assess", "linkage", "problem", "record", "run", "search", "task"]),
         ("verify", &["assess", "certificate", "linkage", "problem", "record", "search"]),
@@ -95,6 +96,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         (
             "studio",
             &[
+                "assess",
                 "diagnostic",
                 "linkage",
                 "linkage_file",

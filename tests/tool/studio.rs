@@ -356,6 +356,40 @@ fn a_tab_gets_linkages_they_follow_and_nonsense_in_between_is_said_to_be_so() {
 }
 
 #[test]
+fn nine_points_give_every_linkage_and_all_of_them_move_along() {
+    let studio = Studio::start(&["--port", "18468"]);
+    let cookie = studio.cookie();
+    let mut tab = studio.tab(&cookie);
+    let ask = |version: u64, by: f64| {
+        let mut ask = egg(version, 9, 5.0 + by);
+        ask["method"] = json!("continuation");
+        ask
+    };
+    tab.send(&ask(1, 0.0).to_string());
+    let first = tab.hears_that(|a| a["version"] == 1 && a["nine"].is_object());
+    let counted = |a: &Value| (a["nine"]["classes"].as_u64(), a["nine"]["real"].as_u64());
+    assert!(counted(&first).0 == Some(1442), "{}", first["nine"]);
+    assert_eq!(first["candidates"].as_array().map(|c| c.len() as u64), counted(&first).1);
+    assert!(first["candidates"][0]["ability"].is_string());
+    // The same counts with proofs when the run has ended.
+    let done = tab.hears_that(|a| a["version"] == 1 && a["doing"] == "done");
+    assert_eq!(counted(&done), counted(&first));
+    assert!(done["nine"]["said"].to_string().contains("Proved"), "{}", done["nine"]);
+    let mut moved = ask(2, 0.3);
+    moved["moving"] = json!(true);
+    tab.send(&moved.to_string());
+    let followed = tab.hears_that(|a| a["version"] == 2);
+    assert!(followed["doing"] == "following" && counted(&followed).0 == Some(1442), "{}", followed["nine"]);
+    // Eight points have no such list.
+    let mut eight = egg(3, 8, 5.0);
+    eight["method"] = json!("continuation");
+    tab.send(&eight.to_string());
+    let refused = tab.hears_that(|a| a["doing"] == "refused");
+    assert!(refused["said"].as_str().is_some_and(|said| said.contains("9 points")), "{refused}");
+    studio.is_well(&cookie);
+}
+
+#[test]
 fn bursts_are_served_or_refused_and_ten_tabs_all_get_their_linkages() {
     let studio = Studio::start(&["--port", "18464"]);
     let cookie = studio.cookie();

@@ -1,0 +1,107 @@
+//! What a search came to, in words: how sure it is, and where nothing is acceptable what stands in the way.
+
+use crate::record::{Completeness, ExactRecord, Reason, Record};
+use crate::report::{exact, table};
+use crate::search::Progress;
+use crate::search::belief::HITS;
+
+/// What a search is doing.
+pub(super) fn under_way(progress: &Progress) -> String {
+    match (progress.phase, progress.accepted) {
+        ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
+        ("continuation", _) => {
+            format!("Following {} of {} solution paths to their ends.", progress.evaluations, progress.budget)
+        }
+        (_, false) if progress.best_sum_sq.is_some() => "Searching: nothing acceptable yet.".into(),
+        _ => "Searching for better ones.".into(),
+    }
+}
+
+/// How a search ended and how sure its best answer is.
+pub(super) fn ended(record: &Record) -> String {
+    let end = table::ending_sentences(record);
+    let mut said = match record.candidates.first() {
+        None => "Nothing was found.".to_owned(),
+        Some(best) if best.accepted => sure(record),
+        Some(_) => format!("{} {}", in_the_way(record), sure(record)),
+    };
+    said.push('\n');
+    said.push_str(&end);
+    said
+}
+
+/// How sure it is that nothing better was missed.
+fn sure(record: &Record) -> String {
+    if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
+        return match exact.completeness {
+            Completeness::Complete => {
+                "These are all linkages through the points, by the published count.".into()
+            }
+            _ => "Some linkages through the points may be missing.".into(),
+        };
+    }
+    match record.termination.reason {
+        Reason::Converged => {
+            format!(
+                "Sure as far as sampling can be: the best came back from {HITS} independent sets of starts or more."
+            )
+        }
+        Reason::TargetReached => {
+            "Sure: the points are met to the last digit, and nothing is better than that.".into()
+        }
+        Reason::Stalled => {
+            "Fairly sure: every kind of start was tried, and the last of them gave nothing better.".into()
+        }
+        Reason::EvaluationLimit => {
+            "Not sure: the budget of evaluations ended before the best came back often enough.".into()
+        }
+        Reason::TimeLimit | Reason::Cancelled => "Not sure: it was cut short.".into(),
+    }
+}
+
+/// A requirement in plain words.
+pub(super) fn plain(key: &str) -> String {
+    let words = match key {
+        "require.type" => "how it is driven",
+        "require.transmission_deg_min" => "the least transmission angle",
+        "require.link_ratio_max" => "the longest over shortest link",
+        "require.pivots_in" => "the pivot box",
+        "require.footprint_in" => "the space for the whole linkage",
+        "require.order" => "the order of the points",
+        "require.direction" => "the direction of the crank",
+        "require.circuit" => "that it is not taken apart",
+        "require.branch" => "that it passes no toggle",
+        "task.path.tolerance" => "the largest error",
+        _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
+    };
+    words.to_owned()
+}
+
+/// Which requirements are not met together, and whether a change helps.
+fn in_the_way(record: &Record) -> String {
+    let among = record.conflict.as_ref().map_or(&[][..], |conflict| &conflict.among);
+    let named: Vec<String> = among.iter().map(|key| plain(key)).collect();
+    let way = match named.as_slice() {
+        [] => "Nothing acceptable was found.".to_owned(),
+        [only] => format!("Nothing acceptable was found: {only} asks for too much."),
+        [most @ .., last] => {
+            format!("Nothing acceptable was found: {} and {last} conflict.", most.join(", "))
+        }
+    };
+    let help = match record.relaxations.as_slice() {
+        [] => "No single change that helps was found.",
+        [_] => "One change was found that helps: see below.",
+        _ => "Changes were found that help: see below.",
+    };
+    format!("{way} {help}")
+}
+
+/// All linkages through nine points, counted in words; proofs where there are any.
+pub(super) fn census(record: &ExactRecord) -> Vec<String> {
+    let [found, real, paths, proof] = exact::sentences(record);
+    let mut said = vec![found, real];
+    if record.census.certified > 0 {
+        said.extend([paths, proof]);
+    }
+    said
+}
