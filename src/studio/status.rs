@@ -9,9 +9,7 @@ use crate::search::belief::HITS;
 pub(super) fn under_way(progress: &Progress) -> String {
     match (progress.phase, progress.accepted) {
         ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
-        ("continuation", _) => {
-            format!("Following {} of {} solution paths to their ends.", progress.evaluations, progress.budget)
-        }
+        ("continuation", _) => "Following the solution paths of the nine points to their ends.".into(),
         (_, false) if progress.best_sum_sq.is_some() => "Searching: nothing acceptable yet.".into(),
         _ => "Searching for better ones.".into(),
     }
@@ -69,8 +67,8 @@ pub(super) fn plain(key: &str) -> String {
         "require.footprint_in" => "the space for the whole linkage",
         "require.order" => "the order of the points",
         "require.direction" => "the direction of the crank",
-        "require.circuit" => "that it is not taken apart",
-        "require.branch" => "that it passes no toggle",
+        "require.circuit" => "staying on one circuit",
+        "require.branch" => "passing no toggle",
         "task.path.tolerance" => "the largest error",
         _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
     };
@@ -99,9 +97,11 @@ fn in_the_way(record: &Record) -> String {
 /// All linkages through nine points, counted in words; proofs where there are any.
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
     let [found, real, paths, proof] = exact::sentences(record);
-    let mut said = vec![found, real];
-    if record.census.certified > 0 {
-        said.extend([paths, proof]);
+    let counted = &record.census;
+    // What is isolated is known by its proof.
+    match (counted.certified, record.completeness) {
+        (0, Completeness::Complete) => vec![found, real],
+        (0, _) => vec![format!("{} solutions up to cognates so far, not yet proved.", counted.classes), real],
+        _ => vec![found, real, paths, proof],
     }
-    said
 }
