@@ -39,6 +39,12 @@ const dropped = (page, name, type, text) => page.evaluate(([name, type, text]) =
   document.querySelector("#board").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer: data }));
 }, [name, type, text]);
 
+/** Where something on the board is; it is drawn anew while answers come. */
+const placeOf = (page, selector) => page.evaluate((selector) => {
+  const { x, y, width, height } = document.querySelector(selector).getBoundingClientRect();
+  return { x, y, width, height };
+}, selector);
+
 const count = (page, n) => page.waitForFunction((n) => document.querySelector("#point-count").textContent === n, String(n));
 
 test("a table of points with crank angle, tolerance and weight; all of it can be undone", async () => {
@@ -87,7 +93,8 @@ test("a table of points with crank angle, tolerance and weight; all of it can be
   for (let i = 0; i < 16; i += 1) await page.keyboard.press("]");
   const wide = Number(await cell(page, "Point 1, largest error").inputValue());
   assert.ok(wide > 2, `${wide}`);
-  const rim = await page.locator(".rim[data-rim='0']").boundingBox();
+  await page.waitForSelector(".rim[data-rim='0']");
+  const rim = await placeOf(page, ".rim[data-rim='0']");
   await page.mouse.move(rim.x + 5, rim.y + 5);
   await page.mouse.down();
   await page.mouse.move(rim.x + 45, rim.y - 35, { steps: 4 });
@@ -269,7 +276,7 @@ test("nine points: every real linkage, counted, and they follow a point", async 
   });
   await page.getByRole("button", { name: "Show all" }).click();
   await page.locator("#board svg").scrollIntoViewIfNeeded();
-  const handle = await page.locator(".handle[data-point='4']").boundingBox();
+  const handle = await placeOf(page, ".handle[data-point='4']");
   const [x, y] = [handle.x + handle.width / 2, handle.y + handle.height / 2];
   await page.mouse.move(x, y);
   await page.mouse.down();

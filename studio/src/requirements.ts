@@ -36,6 +36,8 @@ export function listenToRequirements(now: () => Task, change: (task: Task) => vo
   for (const [id, usual] of CHECKS) on(id, () => ({ ...now(), [id]: input(id).checked ? usual : "any" }));
   on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
   on("direction", () => ({ ...now(), direction: select("direction").value as Task["direction"] }));
+  on("unit", () => ({ ...now(), unit: select("unit").value || undefined }));
+  on("name", () => (input("name").value.trim() === "" ? null : { ...now(), name: input("name").value.trim() }));
   on("objective", () => ({ ...now(), objective: select("objective").value as Task["objective"] }));
   on("timing", () => settled(withTiming(now(), select("timing").value as "none")));
   on("each-tolerance", () => withTolerances(now(), input("each-tolerance").checked));
@@ -56,6 +58,8 @@ export function fillRequirements(task: Task) {
   for (const [id, usual] of CHECKS) input(id).checked = (task[id] ?? usual) === usual;
   select("over").value = task.transmission_over ?? "";
   select("direction").value = task.direction ?? "any";
+  select("unit").value = task.unit ?? "";
+  if (document.activeElement !== input("name")) input("name").value = task.name;
   select("objective").value = task.objective ?? "sum-of-squares";
   select("timing").value = task.timing?.offset ?? "none";
   set("tolerance", task.tolerance);
