@@ -153,14 +153,20 @@ export class Board {
     const radii = spots.map((_, i) => (toleranceAt(task, i) ?? 0) * this.view.scale);
     const circles = spots.flatMap(([cx, cy], i) => (radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : []));
     this.back.replaceChildren(...circles, shape("path", { class: "target-line", d: pathThrough(closedLine) }));
-    this.marks.replaceChildren(...spots.flatMap(([x, y], i) => {
+    const marks = spots.flatMap(([x, y], i) => {
       const [cx, cy] = [px(x), px(y)];
       const chosen = i === this.selected;
       const dot = shape("circle", { class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`, cx, cy, r: chosen ? 6.5 : many ? 3.4 : 5 });
-      // The rim can be drawn outwards and inwards where it does not lie on the point itself.
-      const rim = (chosen || !many) && radii[i] > 8 ? [shape("circle", { class: "rim", cx: px(x + radii[i] * Math.SQRT1_2), cy: px(y - radii[i] * Math.SQRT1_2), r: 5, "data-rim": i })] : [];
-      return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i }), ...rim];
-    }));
+      return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i })];
+    });
+    // The rim of a circle can be drawn outwards and inwards where it does not lie on the point itself; the chosen one's lies on top.
+    const rims = spots.flatMap(([x, y], i) => {
+      if (!(i === this.selected || !many) || radii[i] <= 8) return [];
+      return [shape("circle", { class: "rim", cx: px(x + radii[i] * Math.SQRT1_2), cy: px(y - radii[i] * Math.SQRT1_2), r: 5, "data-rim": i })];
+    });
+    const top = rims.findIndex((rim) => rim.getAttribute("data-rim") === String(this.selected));
+    if (top >= 0) rims.push(...rims.splice(top, 1));
+    this.marks.replaceChildren(...marks, ...rims);
     while (this.ghosts.length < this.pinned.length) this.ghosts.push(new Figure(0.8));
     this.pins.replaceChildren(...this.pinned.map((_, i) => this.ghosts[i].group));
     this.pinned.forEach((moving, i) => this.ghosts[i].show(moving, this.toPixel));

@@ -1,6 +1,6 @@
 // What stands in the way: changes that help, each a button; and what of a problem file the page does not show.
 
-import { element, figure } from "../../src/report/html/player/svg.mjs";
+import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { EXACT } from "./task";
 import type { Relaxation, Task, Value } from "./messages";
 
@@ -17,11 +17,14 @@ const NAMES: Record<string, [string, string]> = {
   "task.path.tolerance": ["largest error", "unit"],
 };
 
+/** A number as it would be typed. */
+const plain = (value: number) => minus(String(Number(value.toPrecision(5))));
+
 const words = (value: Value): string => {
-  if (typeof value === "number") return figure(value, 4);
+  if (typeof value === "number") return plain(value);
   if (typeof value === "string") return value;
   if (value.length === 0) return "any";
-  return value.map((one) => (Array.isArray(one) ? `${one.map((x) => figure(x, 4)).join(" to ")}` : typeof one === "number" ? figure(one, 4) : one)).join(", ");
+  return value.map((one) => (Array.isArray(one) ? `${one.map(plain).join(" to ")}` : typeof one === "number" ? plain(one) : one)).join(", ");
 };
 
 /** A change in plain words: `least transmission angle 18° instead of 45°`. */
