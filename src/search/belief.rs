@@ -81,6 +81,11 @@ impl Belief {
         (self.hit, self.near) = (false, false);
     }
 
+    /// How many batches came to the best.
+    pub fn hits(&self) -> usize {
+        self.hits
+    }
+
     /// Whether the best is believed.
     pub fn is_firm(&self) -> bool {
         self.hits >= HITS || self.near_hits >= FLAT_HITS

@@ -28,7 +28,7 @@ use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::reassign::{Reassigned, reassigned};
 use super::starts::{Start, Starts};
-use super::{Budget, Observer, Progress};
+use super::{Budget, HitsSoFar, Observer, Progress};
 use crate::linkage::{Complex, LinkageType, dot};
 use crate::problem::Problem;
 use crate::problem::requirements::assembly_of;
@@ -616,22 +616,26 @@ pub(super) fn search(
             local.reason = reason;
             break;
         }
+        let within = |error: f64, part: f64| {
+            let limit = error + (part * error).max(exact);
+            best_merits.iter().filter(|merit| **merit <= limit).count()
+        };
+        let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
         observer(&Progress {
             phase: "least-squares",
             evaluations: local.evaluations.objective,
             budget: limit,
             best_sum_sq: best.as_ref().or(shown(&ends)).map(|c| c.error.sum_sq),
             accepted: best.as_ref().is_some_and(|b| b.accepted),
+            hits: best
+                .as_ref()
+                .filter(|b| b.accepted)
+                .map(|b| HitsSoFar { came: within(searched(problem, b), SAME_OPTIMUM), wanted: hits.same }),
         });
         if let Some(best) = &best {
             let error = searched(problem, best);
             let is_exact = error <= exact;
-            let within = |part: f64| {
-                let limit = error + (part * error).max(exact);
-                best_merits.iter().filter(|merit| **merit <= limit).count()
-            };
-            let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
-            let believed = within(SAME_OPTIMUM) >= hits.same || within(NEARLY) >= hits.near;
+            let believed = within(error, SAME_OPTIMUM) >= hits.same || within(error, NEARLY) >= hits.near;
             let least = match &coarse {
                 _ if is_exact => 0,
                 None => LEAST_BATCHES,

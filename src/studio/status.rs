@@ -2,8 +2,7 @@
 
 use crate::record::{Completeness, ExactRecord, Reason, Record};
 use crate::report::{exact, table};
-use crate::search::Progress;
-use crate::search::belief::HITS;
+use crate::search::{HitsSoFar, Progress};
 
 /// What a search is doing.
 pub(super) fn under_way(progress: &Progress) -> String {
@@ -11,17 +10,23 @@ pub(super) fn under_way(progress: &Progress) -> String {
         ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
         ("continuation", _) => "Following the solution paths of the nine points to their ends.".into(),
         (_, false) if progress.best_sum_sq.is_some() => "Searching: nothing acceptable yet.".into(),
-        _ => "Searching for better ones.".into(),
+        _ => match progress.hits {
+            Some(HitsSoFar { came, wanted }) => {
+                format!("Searching for better ones; the best came {} of {wanted} times.", came.min(wanted))
+            }
+            None => "Searching for better ones.".into(),
+        },
     }
 }
 
 /// How a search ended and how sure its best answer is.
-pub(super) fn ended(record: &Record) -> String {
+pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> String {
     let end = table::ending_sentences(record);
     let mut said = match record.candidates.first() {
         None => "Nothing was found.".to_owned(),
-        Some(best) if best.accepted => sure(record),
-        Some(_) => format!("{} {}", in_the_way(record), sure(record)),
+        Some(best) if best.accepted => sure(record, hits),
+        // What the attempts with other requirements came to says nothing of this one.
+        Some(_) => format!("{} {}", in_the_way(record), sure(record, None)),
     };
     said.push('\n');
     said.push_str(&end);
@@ -29,7 +34,7 @@ pub(super) fn ended(record: &Record) -> String {
 }
 
 /// How sure it is that nothing better was missed.
-fn sure(record: &Record) -> String {
+fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
     if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
         return match exact.completeness {
             Completeness::Complete => {
@@ -38,21 +43,24 @@ fn sure(record: &Record) -> String {
             _ => "Some linkages through the points may be missing.".into(),
         };
     }
+    let came = match hits {
+        Some(HitsSoFar { came, .. }) => format!("came from {came} independent rounds of starts"),
+        None => "was found again and again from different starts".into(),
+    };
     match record.termination.reason {
-        Reason::Converged => {
-            format!(
-                "Sure as far as sampling can be: the best came back from {HITS} independent sets of starts or more."
-            )
-        }
+        Reason::Converged => format!("Sure as far as sampling can be: the best {came}."),
         Reason::TargetReached => {
             "Sure: the points are met to the last digit, and nothing is better than that.".into()
         }
         Reason::Stalled => {
             "Fairly sure: every kind of start was tried, and the last of them gave nothing better.".into()
         }
-        Reason::EvaluationLimit => {
-            "Not sure: the budget of evaluations ended before the best came back often enough.".into()
-        }
+        Reason::EvaluationLimit => match hits {
+            Some(HitsSoFar { came, wanted }) => {
+                format!("Not sure: the budget ended when the best had come {came} of {wanted} times.")
+            }
+            None => "Not sure: the budget of evaluations ended.".into(),
+        },
         Reason::TimeLimit | Reason::Cancelled => "Not sure: it was cut short.".into(),
     }
 }

@@ -12,7 +12,7 @@ use crate::problem::spec::Method;
 use crate::problem_file::ProblemFile;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::run::{Context, Job, run};
-use crate::search::{Budget, Progress};
+use crate::search::{Budget, HitsSoFar, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -51,7 +51,8 @@ enum What {
     /// How far it is, and what it is doing.
     Progress(f64, String),
     First(Vec<Candidate>),
-    Finished(Box<Record>),
+    /// What was found, and how often the best of it came back.
+    Finished(Box<Record>, Option<HitsSoFar>),
     Failed(String),
     /// The search's thread is about to end.
     Left,
@@ -324,8 +325,8 @@ impl Tab {
                 self.session.join(&current.problem, found);
                 self.tell(version, Doing::Searching, searching, Some(0.0));
             }
-            What::Finished(record) => {
-                let said = ended(&record);
+            What::Finished(record, hits) => {
+                let said = ended(&record, hits);
                 if let Some(exact) = record.exact.as_ref().filter(|_| self.exact.is_some()) {
                     self.exact = Some(all_of(&current.problem, exact));
                 }
@@ -365,7 +366,11 @@ fn searched(
         }
     }
     let last = Mutex::new(Instant::now());
+    let hits = Mutex::new(None);
     let observer = |progress: &Progress| {
+        if progress.hits.is_some() {
+            *hits.lock().unwrap_or_else(PoisonError::into_inner) = progress.hits;
+        }
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.elapsed() >= TELL_EVERY {
             *last = Instant::now();
@@ -376,7 +381,10 @@ fn searched(
     match pool.install(|| run(job, &Context { cancel, observer: &observer })) {
         // What was cancelled is not what was asked.
         Ok(_) if cancel.load(Ordering::Relaxed) => {}
-        Ok(finished) => tell(What::Finished(Box::new(finished.record))),
+        Ok(finished) => {
+            let hits = *hits.lock().unwrap_or_else(PoisonError::into_inner);
+            tell(What::Finished(Box::new(finished.record), hits));
+        }
         Err(e) => tell(What::Failed(e.to_string())),
     }
 }
