@@ -41,7 +41,7 @@ export async function taskOfText(text: string, name: string, task: Task, samples
   const said = [`${ask.points.length} points`, ...warnings].join(". ");
   if (whole) return { task: taskOf(ask), said: `The problem ${ask.name}: ${said}` };
   const { tolerances, weights, timing, unit } = ask;
-  const next: Task = { ...withPoints({ ...task, timing: undefined }, ask.points as Point[], kind === "svg" ? ask.closed : task.closed), weights, timing, name: ask.name };
+  const next: Task = { ...withPoints({ ...task, timing: undefined }, ask.points as Point[], kind === "svg" ? ask.closed : task.closed), weights, timing, name: ask.name, source: undefined };
   if (tolerances) Object.assign(next, { tolerances, tolerance: undefined });
   if (timing) next.method = undefined;
   if (unit) next.unit = unit;

@@ -68,7 +68,7 @@ class Page {
       drawn: (points, closed) => {
         this.fitNext = true;
         this.guide.done("draw");
-        this.replace({ ...withPoints(this.task, points, closed), name: "drawing" }, { fresh: true });
+        this.replace({ ...withPoints(this.task, points, closed), name: "drawing", source: undefined }, { fresh: true });
       },
       grasp: () => this.note(),
       drag: (index, to, last) => this.drag(index, to, last),
@@ -284,6 +284,8 @@ class Page {
     byId<HTMLSelectElement>("type").value = key ?? "as-given";
     byId("as-given").hidden = key !== undefined;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
+    const example = EXAMPLES.findIndex(([, one]) => one.name === task.name);
+    byId<HTMLSelectElement>("example-choice").value = example < 0 ? "" : String(example);
     fillRequirements(task);
     this.kept.show(task);
     this.table.show(task);
@@ -302,10 +304,10 @@ class Page {
     click("redo", () => this.back("redo"));
     click("clear", () => this.replace(withPoints(this.task, [], this.task.closed), { fresh: true }));
     const choice = byId<HTMLSelectElement>("example-choice");
-    choice.replaceChildren(...EXAMPLES.map(([name], i) => new Option(name, String(i))));
+    choice.replaceChildren(new Option("choose one", ""), ...EXAMPLES.map(([name], i) => new Option(name, String(i))));
     const example = () => {
       this.fitNext = true;
-      this.replace(EXAMPLES[Number(choice.value)][1], { fresh: true });
+      this.replace(EXAMPLES[Number(choice.value || 0)][1], { fresh: true });
     };
     click("example", example);
     choice.addEventListener("change", example);

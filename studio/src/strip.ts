@@ -59,7 +59,7 @@ class Card {
     setAll(this.target, { d: `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
     this.title.textContent = name;
-    this.figures.textContent = `${nearness(shown, unit)}; ${shown.type}, ${figure(shown.transmission_deg, shown.transmission_deg < 0.1 ? 1 : 3)}°`;
+    this.figures.textContent = `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`;
     this.verdict.textContent = inWords(shown);
     this.verdict.classList.toggle("good", shown.accepted);
     setAll(this.pick, { "aria-pressed": String(chosen) });
