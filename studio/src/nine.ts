@@ -16,8 +16,8 @@ export class Nine {
   private buttons: HTMLButtonElement[];
 
   constructor(private place: HTMLElement, changed: () => void) {
-    this.buttons = LEVELS.map((_, level) => {
-      const button = element("button", { type: "button" }) as HTMLButtonElement;
+    this.buttons = LEVELS.map((name, level) => {
+      const button = element("button", { type: "button" }, [name]) as HTMLButtonElement;
       button.addEventListener("click", () => {
         this.least = level;
         this.show();
