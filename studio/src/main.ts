@@ -4,7 +4,7 @@ import { figure } from "../../src/report/html/player/svg.mjs";
 import { Board, type Tool } from "./board";
 import { Connection } from "./connection";
 import { EXAMPLES } from "./examples";
-import { Moving } from "./figures";
+import { type Moving, movingOf } from "./figures";
 import { taskOfText, watchFiles } from "./files";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
@@ -222,7 +222,7 @@ class Page {
   private draw() {
     const candidates = this.candidates();
     const { points } = this.task;
-    this.shownAll = [...candidates, ...this.pinned].map((shown) => new Moving(shown, points));
+    this.shownAll = [...candidates, ...this.pinned].map((shown) => movingOf(shown, points));
     const pins = this.shownAll.slice(candidates.length);
     const shown = this.shownAll[this.chosen] ?? null;
     this.board.show(this.task, shown, pins.filter((one) => one !== shown));

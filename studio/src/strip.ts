@@ -33,6 +33,9 @@ export function nearness(shown: Shown, unit: string | undefined): string {
 /** One card of the strip. */
 class Card {
   seen = true;
+  private moving: Moving | null = null;
+  private points: Point[] | null = null;
+  private key = "";
   private picture = new Figure(0.55);
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
   private target = shape("path", { class: "target-line" });
@@ -51,6 +54,9 @@ class Card {
 
   show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
     const { shown } = moving;
+    const key = JSON.stringify([name, unit, chosen, pinned, closed]);
+    if (moving === this.moving && points === this.points && key === this.key) return;
+    [this.moving, this.points, this.key] = [moving, points, key];
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
     const scale = Math.min((W - 16) / w, (H - 16) / h);
