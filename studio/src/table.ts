@@ -64,13 +64,14 @@ export class Table {
   private pages = element("span", { class: "pages" });
   private label = element("span");
 
-  constructor(place: HTMLElement, private edit: (task: Task) => void, private say: (text: string) => void) {
+  constructor(private place: HTMLElement, private edit: (task: Task) => void, private say: (text: string) => void) {
     const table = element("table", { class: "points", "aria-label": "Points" }, [this.head, this.body]);
     this.pages.append(this.earlier, this.label, this.later);
     place.append(table, element("div", { class: "row" }, [this.add, this.pages]));
     this.earlier.addEventListener("click", () => this.turn(-PAGE));
     this.later.addEventListener("click", () => this.turn(PAGE));
     this.add.addEventListener("click", () => this.more());
+    place.closest("details")?.addEventListener("toggle", () => this.task && this.show(this.task));
   }
 
   private turn(by: number) {
@@ -92,6 +93,8 @@ export class Table {
 
   show(task: Task) {
     this.task = task;
+    // While a point is dragged nobody fills a table that is not seen.
+    if (this.place.closest("details")?.open === false) return;
     const n = task.points.length;
     this.from = Math.max(0, Math.min(this.from, Math.floor(Math.max(n - 1, 0) / PAGE) * PAGE));
     const columns = columnsOf(task);
