@@ -169,6 +169,8 @@ test("boxes are drawn with the mouse and with keys", async () => {
   await page.mouse.up();
   assert.ok(await page.locator("#pivots").isChecked());
   assert.equal(await page.locator("#tool-draw").getAttribute("aria-pressed"), "true", "the pen is back in the hand");
+  // What is said of a corner stays until there is other news.
+  await doing(page, "done");
   const right = Number(await page.locator("#right").inputValue());
   await page.locator("#board svg").focus();
   for (const key of ["b", "b"]) await page.keyboard.press(key);
@@ -179,6 +181,7 @@ test("boxes are drawn with the mouse and with keys", async () => {
   await open(page, "more-requirements");
   await page.locator("#space").check();
   assert.match(await problemText(page), /pivots_in = [^]*footprint_in = /);
+  await doing(page, "done");
   await shot(page, "boxes");
   await page.locator("#board svg").focus();
   for (let i = 0; i < 3; i += 1) await page.keyboard.press("b");

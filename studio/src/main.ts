@@ -46,6 +46,7 @@ class Page {
   private shownAll: Moving[] = [];
   private fitNext = true;
   private fitted = false;
+  private filling: ReturnType<typeof setTimeout> | undefined;
   private part = 0;
   private playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   private status = byId("status");
@@ -171,7 +172,10 @@ class Page {
       this.board.touched = false;
     }
     this.draw();
-    this.fill();
+    // The controls can wait for a hand that moves; what is drawn cannot.
+    clearTimeout(this.filling);
+    if (how.moving) this.filling = setTimeout(() => this.fill(), 100);
+    else this.fill();
     this.keep();
     document.body.dataset.asked = String(this.version);
     if (task.points.length < 3) {
