@@ -43,6 +43,44 @@ const LAID: usize = 2400;
 
 type Descriptor = [f32; 2 * HARMONICS];
 
+/// x and y of points evenly along a closed curve, centred and of unit norm.
+#[derive(Clone, Copy, Debug)]
+struct Even([[f32; EVEN]; 2]);
+
+impl Even {
+    fn of(points: &[Complex]) -> Option<Even> {
+        let middle = points.iter().sum::<Complex>() / points.len() as f64;
+        let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
+        let mut out = [[0.0; EVEN]; 2];
+        for (m, p) in points.iter().enumerate().take(EVEN) {
+            let q = (p - middle) / norm;
+            (out[0][m], out[1][m]) = (q.re as f32, q.im as f32);
+        }
+        norm.is_normal().then_some(Even(out))
+    }
+
+    /// What a similarity leaves of a target laid onto this from each of its points on, along it or against it.
+    fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
+        // Twice around, so that every shift is a plain stretch.
+        let mut around = [[0.0f32; 2 * EVEN]; 2];
+        for (around, own) in around.iter_mut().zip(&self.0) {
+            around[..EVEN].copy_from_slice(own);
+            around[EVEN..].copy_from_slice(own);
+        }
+        let (mut re, mut im) = ([0.0f32; EVEN], [0.0f32; EVEN]);
+        for m in 0..EVEN {
+            let (tx, ty) = (target.0[0][m], target.0[1][m]);
+            let from = if ahead { m } else { EVEN - m };
+            let (x, y) = (&around[0][from..from + EVEN], &around[1][from..from + EVEN]);
+            for shift in 0..EVEN {
+                re[shift] += x[shift] * tx + y[shift] * ty;
+                im[shift] += x[shift] * ty - y[shift] * tx;
+            }
+        }
+        std::array::from_fn(|shift| 1.0 - (re[shift] * re[shift] + im[shift] * im[shift]))
+    }
+}
+
 /// A linkage of the atlas with the circuit that it runs on.
 #[derive(Clone, Copy, Debug)]
 struct Entry {
@@ -54,6 +92,7 @@ struct Entry {
     assembly: f64,
     arc: Option<InputArc>,
     descriptor: Descriptor,
+    even: Even,
 }
 
 /// A traced curve with its length along the parameter.
@@ -221,9 +260,12 @@ fn draw(stream: &mut Stream) -> Option<Entry> {
         let mobility: Mobility = super::starts::unit_linkage(&ratios)?;
         Some(mobility.arc(Circuit { index: which % mobility.circuits().max(1) })?)
     };
-    let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS] };
+    let even = Even([[0.0; EVEN]; 2]);
+    let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS], even };
     let traced = entry.trace()?;
-    entry.descriptor = descriptor(&evenly(&traced.points, &traced.along, EVEN))?;
+    let points = evenly(&traced.points, &traced.along, EVEN);
+    entry.descriptor = descriptor(&points)?;
+    entry.even = Even::of(&points)?;
     Some(entry)
 }
 
@@ -402,11 +444,8 @@ impl Matches {
         let problem = starts.problem();
         let points: Vec<Complex> = starts.loop_points().to_vec();
         let Some(along) = lengths(&points) else { return none };
-        let mut even = evenly(&points, &along, EVEN);
-        let Some(wanted) = descriptor(&even) else { return none };
-        let middle = even.iter().sum::<Complex>() / EVEN as f64;
-        even.iter_mut().for_each(|p| *p -= middle);
-        let spread: f64 = even.iter().map(|p| p.norm_sqr()).sum();
+        let even = evenly(&points, &along, EVEN);
+        let (Some(wanted), Some(target)) = (descriptor(&even), Even::of(&even)) else { return none };
         let types = problem.types();
         let senses: &[f64] = problem.directions();
         let usable = |entry: &Entry| {
@@ -436,20 +475,10 @@ impl Matches {
         near.sort_by(order);
         let lay = |&(_, index): &(f32, usize)| -> Option<Laid> {
             let entry: &'static Entry = &atlas()[index];
-            let traced = entry.trace()?;
-            let mut curve = evenly(&traced.points, &traced.along, EVEN);
-            let middle = curve.iter().sum::<Complex>() / EVEN as f64;
-            curve.iter_mut().for_each(|p| *p -= middle);
-            let own: f64 = curve.iter().map(|p| p.norm_sqr()).sum();
             let mut best: Option<Laid> = None;
             for &direction in senses {
-                for shift in 0..EVEN {
-                    let mut inner = Complex::new(0.0, 0.0);
-                    for (m, target) in even.iter().enumerate() {
-                        let at = if direction > 0.0 { shift + m } else { shift + EVEN - m };
-                        inner += curve[at % EVEN].conj() * target;
-                    }
-                    let misfit = 1.0 - inner.norm_sqr() / (own * spread);
+                for (shift, misfit) in entry.even.misfits(&target, direction > 0.0).into_iter().enumerate() {
+                    let misfit = f64::from(misfit);
                     if best.is_none_or(|b| misfit < b.misfit) {
                         let begin = shift as f64 / EVEN as f64;
                         best = Some(Laid { entry, begin, span: 1.0, direction, misfit });

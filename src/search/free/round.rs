@@ -1,0 +1,422 @@
+//! One round of the search for free timing: starts, short fits, fits of the best, and what becomes of their ends.
+
+use super::super::Budget;
+use super::super::atlas::Matches;
+use super::super::coarse::Coarse;
+use super::super::multistart::{fit_with, judged, promise};
+use super::super::plan::SAME_OPTIMUM;
+use super::super::rank::searched;
+use super::super::reassign::{Reassigned, reassigned};
+use super::super::starts::{Start, Starts};
+use super::moves::{along_a_difference, near};
+use super::required::{led_back, strayed};
+use super::{BATCH, DENSE_BATCHES, End};
+use crate::problem::Problem;
+use crate::solve::streams::{stream, uniform};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Starts drawn and screened in a round.
+const SCREEN: usize = 160;
+/// Matches of the atlas taken in a round.
+const MATCHED: usize = 48;
+/// Starts near a known end taken in a round.
+const JITTERED: usize = 40;
+/// Starts fitted for a few steps.
+const SHORT: usize = 16;
+const DENSE_SHORT: usize = 10;
+/// Starts fitted on. On a dense target most lead to the same end: at first one a round, and more rounds.
+const MIDDLE: usize = 3;
+const DENSE_MIDDLE: usize = 1;
+/// How often the points of an end are brought to their best places.
+const REASSIGNED: usize = 6;
+/// Types that are aimed at, the most promising first, where points have strayed.
+const LED_BACK: usize = 2;
+/// What a fit to such a type may spend: where the type binds, the linkage is almost a change point, and not worth more.
+const LED_BACK_MOST: u64 = 600;
+/// After a few steps, of the strayed end's merit.
+const WORTH_LEADING_BACK: f64 = 16.0;
+/// An end whose merit on the explored points is beyond this many times the best one there is not finished when
+/// one answer is wanted.
+const WORTH_FINISHING: f64 = 4.0;
+
+/// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    steps: usize,
+    rounds: usize,
+    relative_reduction: f64,
+}
+
+const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
+const LAST_FIT: Effort = Effort { steps: 300, rounds: 14, relative_reduction: 1e-12 };
+
+/// What all rounds share.
+pub(super) struct Setup<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) coarse: Option<&'a Coarse>,
+    pub(super) starts: &'a Starts<'a>,
+    pub(super) matches: Option<Matches>,
+    /// One answer is wanted: the first exact one ends the search.
+    pub(super) single: bool,
+    pub(super) exact: f64,
+}
+
+impl Setup<'_> {
+    /// The problem that is explored.
+    fn explored(&self) -> &Problem {
+        self.coarse.map_or(self.problem, |coarse| &coarse.problem)
+    }
+
+    /// Whether ends are finished after their batch, each of them once. Sparse ones are finished in their rounds: the
+    /// first exact answer ends a batch.
+    pub(super) fn finishes_apart(&self) -> bool {
+        Coarse::is_for(self.problem)
+    }
+
+    /// Whether an end with this merit on the explored points can still matter beside the best one there.
+    fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
+        !self.single || merit <= WORTH_FINISHING * best + self.exact
+    }
+}
+
+/// What earlier batches of a stage know.
+pub(super) struct Known<'a> {
+    pub(super) bar: f64,
+    pub(super) near_ends: &'a [Start],
+}
+
+/// Which round it is: of the whole search, for its random stream, and of its stage.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) stream: u64,
+    pub(super) index: u64,
+}
+
+/// What fits cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cost {
+    pub(super) evaluations: u64,
+    pub(super) positions: u64,
+}
+
+impl Cost {
+    pub(super) fn add(&mut self, other: Cost) {
+        self.evaluations += other.evaluations;
+        self.positions += other.positions;
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct Round {
+    pub(super) draws: u64,
+    pub(super) cost: Cost,
+    /// The ends on the explored points with their merits there, best first.
+    pub(super) leaders: Vec<(f64, Start)>,
+    /// Those that it finished itself.
+    pub(super) finished: Vec<Finished>,
+    /// It started from nothing that other rounds have found.
+    pub(super) independent: bool,
+}
+
+impl Round {
+    /// The least merit on the explored points.
+    pub(super) fn explored(&self) -> f64 {
+        self.leaders.first().map_or(f64::INFINITY, |(merit, _)| *merit)
+    }
+}
+
+/// An end on the explored points, fitted to all of them.
+#[derive(Clone, Debug)]
+pub(super) struct Finished {
+    /// Its merit on the explored points.
+    pub(super) explored: f64,
+    pub(super) end: End,
+    /// It is an exact, accepted answer.
+    pub(super) exact: bool,
+}
+
+/// Counts while it fits, and stops at its allowance.
+struct Spender<'a> {
+    cost: Cost,
+    allowance: u64,
+    budget: &'a Budget<'a>,
+}
+
+impl Spender<'_> {
+    fn left(&self) -> u64 {
+        self.allowance.saturating_sub(self.cost.evaluations)
+    }
+
+    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        let mut left = self.left();
+        if left == 0 || self.budget.stopped() {
+            return None;
+        }
+        if !problem.branch_any() && start.setting.aim.is_some() && problem.types().is_empty() {
+            left = left.min(LED_BACK_MOST);
+        }
+        let Effort { steps, rounds, relative_reduction } = effort;
+        let fit = fit_with(problem, start, (steps, rounds, relative_reduction), left, self.budget);
+        self.cost.evaluations += fit.evaluations;
+        self.cost.positions += problem.task().len() as u64 * fit.evaluations;
+        fit.end.map(|end| (fit.merit, end))
+    }
+
+    /// An end with its points brought to their best places on its curve and fitted again, as long as that gains.
+    fn at_best_places(
+        &mut self,
+        problem: &Problem,
+        (mut merit, mut end): (f64, Start),
+        effort: Effort,
+    ) -> (f64, Start) {
+        for _ in 0..REASSIGNED {
+            let Reassigned { better, positions } = reassigned(problem, &end);
+            self.cost.positions += positions;
+            // As many evaluations as its positions are worth, within the allowance.
+            self.cost.evaluations += (positions / problem.task().len() as u64).min(self.left());
+            let Some(start) = better else { break };
+            match self.fit_as_required(problem, start, effort) {
+                Some((again, start)) if again < merit => (merit, end) = (again, start),
+                _ => break,
+            }
+        }
+        (merit, end)
+    }
+
+    /// As `fit`, and where the points have come to lie where the problem does not allow them, from there to the
+    /// nearest ends that it does.
+    fn fit_as_required(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        let (merit, end) = self.fit(problem, start, effort)?;
+        if !strayed(problem, &end) {
+            return Some((merit, end));
+        }
+        let mut back = led_back(problem, &end);
+        if back.len() > 1 {
+            // The more promising one first.
+            let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
+            for start in back {
+                tried.extend(self.fit(problem, start, SHORT_FIT));
+            }
+            tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
+            by_merit(&mut tried, LED_BACK);
+            back = tried.into_iter().map(|(_, start)| start).collect();
+        }
+        for start in back {
+            let again = self.fit(problem, start, effort).filter(|(_, end)| !strayed(problem, end));
+            if again.is_some() {
+                return again;
+            }
+        }
+        // Where that fails, an end that the referee will refuse.
+        Some((merit, end))
+    }
+}
+
+pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ends.truncate(keep);
+}
+
+/// A round: its ends on the explored points, and on a sparse target what became of them. `found` is the first round
+/// with an exact answer; those after it are not read and may stop.
+pub(super) fn round(
+    setup: &Setup<'_>,
+    Place { stream: of_search, index }: Place,
+    allowance: u64,
+    known: &Known<'_>,
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> Round {
+    let mut round = Round {
+        draws: 0,
+        cost: Cost::default(),
+        leaders: Vec::new(),
+        finished: Vec::new(),
+        independent: known.near_ends.is_empty() || index.is_multiple_of(2),
+    };
+    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    let beaten = || found.load(Ordering::Relaxed) < of_search;
+    if beaten() {
+        return round;
+    }
+    let explored = setup.explored();
+    let dense = setup.finishes_apart();
+    let n = explored.task().len() as u64;
+    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    let mut draws_taken = 0;
+    let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
+        draws_taken += 1;
+        let Some(mut start) = start else { return };
+        spender.cost.evaluations += 1;
+        spender.cost.positions += n;
+        if let Some(promise) = promise(explored, &mut start) {
+            drawn.push((promise, start));
+        }
+    };
+    // Of three independent rounds two take matches, as long as there are any.
+    let turn = of_search as usize / 2;
+    let first = (turn - turn / 3) * MATCHED;
+    let mut draws = stream(setup.problem.spec().solve.seed, of_search);
+    if !round.independent {
+        let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
+        for i in 0..JITTERED {
+            if spender.left() == 0 {
+                break;
+            }
+            let mut other =
+                || &known.near_ends[uniform(&mut draws, 0.0, known.near_ends.len() as f64) as usize];
+            let (one, other) = (other(), other());
+            let start = if i % 2 == 1
+                && one.setting.side == other.setting.side
+                && one.setting.side == end.setting.side
+            {
+                along_a_difference(explored, [end, one, other], &mut draws)
+            } else {
+                near(explored, end, &mut draws)
+            };
+            take(&mut spender, start);
+        }
+    } else {
+        let matched = index.is_multiple_of(2) && turn % 3 < 2;
+        match setup.matches.as_ref().filter(|matches| matched && first < matches.len()) {
+            Some(matches) => {
+                for rank in first..(first + MATCHED).min(matches.len()) {
+                    if spender.left() > 0 {
+                        take(&mut spender, matches.start(setup.starts, rank));
+                    }
+                }
+            }
+            None => {
+                for _ in 0..SCREEN {
+                    if spender.left() > 0 {
+                        take(&mut spender, setup.starts.draw(&mut draws));
+                    }
+                }
+            }
+        }
+    }
+    let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
+    let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
+    by_merit(&mut drawn, shorts);
+    round.draws = draws_taken;
+    let spare = drawn.first().cloned();
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
+    for (_, start) in drawn {
+        fitted.extend(spender.fit(explored, start, SHORT_FIT));
+    }
+    by_merit(&mut fitted, middles);
+    let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
+    for (merit, start) in fitted {
+        if beaten() {
+            round.cost = spender.cost;
+            return round;
+        }
+        // Out of budget: as it stands.
+        let kept = (merit, start.clone());
+        let end = spender.fit_as_required(explored, start, MIDDLE_FIT).unwrap_or(kept);
+        middle.push(if dense { spender.at_best_places(explored, end, MIDDLE_FIT) } else { end });
+    }
+    if middle.is_empty() {
+        middle.extend(spare);
+    }
+    by_merit(&mut middle, middles);
+    round.leaders = middle;
+    if !dense {
+        let best = round.explored().min(known.bar);
+        for (merit, start) in &round.leaders {
+            if beaten() {
+                break;
+            }
+            // A better one has been finished, in this round or before it.
+            if setup.is_worth_finishing(*merit, best)
+                && let Some(finished) = finish(setup, (*merit, start), &mut spender)
+            {
+                let exact = finished.exact;
+                round.finished.push(finished);
+                if exact {
+                    found.fetch_min(of_search, Ordering::Relaxed);
+                    break;
+                }
+            }
+        }
+    }
+    round.cost = spender.cost;
+    round
+}
+
+/// An end on the explored points fitted to all of them; `None` where its points cannot be taken over.
+fn finish(
+    setup: &Setup<'_>,
+    (explored, start): (f64, &Start),
+    spender: &mut Spender<'_>,
+) -> Option<Finished> {
+    let mut start = match setup.coarse {
+        None => start.clone(),
+        Some(coarse) => coarse.refine(setup.problem, start)?,
+    };
+    let fitted = spender.fit_as_required(setup.problem, start.clone(), LAST_FIT);
+    let (merit, start) = match fitted {
+        Some(end) => end,
+        // Out of budget: as it stands, by its error on all points.
+        None => (promise(setup.problem, &mut start)?, start),
+    };
+    let (merit, start) = if setup.finishes_apart() {
+        spender.at_best_places(setup.problem, (merit, start), LAST_FIT)
+    } else {
+        (merit, start)
+    };
+    let mut end = End { start, merit, verdict: None };
+    let mut exact = false;
+    if setup.single && merit <= setup.exact {
+        let verdict = judged(setup.problem, &end.start);
+        exact = verdict.as_ref().is_some_and(|c| c.accepted && searched(setup.problem, c) <= setup.exact);
+        end.verdict = Some(verdict);
+    }
+    Some(Finished { explored, end, exact })
+}
+
+/// The ends of rounds on the explored points that can still matter and are not among the `finished` (merits on the
+/// explored points and on all), each once, best first.
+pub(super) fn unfinished<'a>(
+    setup: &Setup<'_>,
+    rounds: &'a [Round],
+    bar: f64,
+    finished: &[(f64, f64)],
+) -> Vec<(f64, &'a Start)> {
+    let best = rounds.iter().map(Round::explored).fold(bar, f64::min);
+    let mut out: Vec<(f64, &Start)> = Vec::new();
+    for (merit, start) in rounds.iter().flat_map(|round| &round.leaders) {
+        let met = finished.iter().any(|(explored, _)| is_same(*explored, *merit))
+            || out.iter().any(|(other, _)| is_same(*other, *merit));
+        if !met && setup.is_worth_finishing(*merit, best) {
+            out.push((*merit, start));
+        }
+    }
+    out.sort_by(|one, other| one.0.total_cmp(&other.0));
+    out
+}
+
+/// Whether two merits on the explored points are of one end.
+pub(super) fn is_same(one: f64, other: f64) -> bool {
+    (one - other).abs() <= SAME_OPTIMUM * other
+}
+
+/// Finishes one of them within its allowance, unless one before it was exact.
+pub(super) fn finished(
+    setup: &Setup<'_>,
+    (index, end): (u64, (f64, &Start)),
+    allowance: u64,
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> (Option<Finished>, Cost) {
+    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    if found.load(Ordering::Relaxed) < index {
+        return (None, spender.cost);
+    }
+    let done = finish(setup, end, &mut spender);
+    if done.as_ref().is_some_and(|done| done.exact) {
+        found.fetch_min(index, Ordering::Relaxed);
+    }
+    (done, spender.cost)
+}
