@@ -28,7 +28,7 @@
 //! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage can do better | task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
-//! | [`live`] | answers that follow a target under the hand: warm starts, same referee | assess, problem, record, search |
+//! | [`live`] | answers that follow a target under the hand: warm starts, same referee; all linkages through nine points | assess, exact, problem, record, search |
 //! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
 //! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
 //! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | problem, problem_file, record, search, run, published |
@@ -46,7 +46,7 @@
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | [`given`], [`measured`] | a result, a candidate or a linkage that is to be compared; its figures, by the referee | assess, linkage, linkage_file, problem, problem_file, record, report, results_folder, run, search, task, verify |
 //! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint |
-//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, linkage, linkage_file, name |
+//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
 pub mod analysis;

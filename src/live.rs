@@ -5,6 +5,8 @@
 //! [referee](crate::task::referee) as every other answer, and is ranked by the same rules. Nothing here reads a clock:
 //! the same moves give the same candidates.
 
+pub mod nine;
+
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::record::Candidate;

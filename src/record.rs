@@ -339,7 +339,7 @@ pub struct Conflict {
 }
 
 /// A change of the problem after which something acceptable is found.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Relaxation {
     /// The keys to set.
     pub set: Vec<Change>,
@@ -350,7 +350,7 @@ pub struct Relaxation {
 }
 
 /// A key of the problem file with another value.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Change {
     /// The key, as in `--set KEY=VALUE`.
     pub key: String,
@@ -361,7 +361,7 @@ pub struct Change {
 }
 
 /// A value of a problem file's key. It is displayed as it is typed in `--set KEY=VALUE`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum TypedValue {
     /// A number.

@@ -248,6 +248,46 @@ impl JsonSchema for Bounds {
     }
 }
 
+/// One number for all points, or a list of one for each.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum OneOrEach {
+    One(f64),
+    Each(Vec<f64>),
+}
+
+impl<'de> Deserialize<'de> for OneOrEach {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrEachVisitor;
+        impl<'de> Visitor<'de> for OneOrEachVisitor {
+            type Value = OneOrEach;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number for all points, or a list of one for each")
+            }
+            visit_numbers!(OneOrEach::One);
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<OneOrEach, A::Error> {
+                let mut list = Vec::new();
+                while let Some(Number(value)) = seq.next_element()? {
+                    list.push(value);
+                }
+                Ok(OneOrEach::Each(list))
+            }
+        }
+        deserializer.deserialize_any(OneOrEachVisitor)
+    }
+}
+
+impl JsonSchema for OneOrEach {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "OneOrEach".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({"anyOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}}]})
+    }
+}
+
 /// A table and nothing else: serde's own structs would take a list as their fields in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct OnlyTable<T>(pub T);

@@ -25,7 +25,7 @@ pub fn run(options: &Studio) -> Ended {
         Some((path, Ok(problem))) => match Ask::of(&problem) {
             Ok(ask) => Some(ask),
             Err(why) => {
-                terminal::complain(&format!("{}: {why}", path.display()));
+                terminal::complain(&escaped(&format!("{}: {why}", path.display())));
                 return Ended::Refused;
             }
         },

@@ -90,7 +90,7 @@ pub struct PathSpec {
 }
 
 /// Points as they were digitised, and what made the target's points of them: see [`crate::resampling`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RawPoints {
     /// As they were given.
     pub points: Vec<[f64; 2]>,
@@ -117,7 +117,7 @@ impl RawPoints {
 }
 
 /// Prescribed crank angles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TimingSpec {
     /// One a point, degrees, counter-clockwise positive.
     pub crank_deg: Vec<f64>,

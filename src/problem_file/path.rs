@@ -8,6 +8,7 @@ use crate::record::Unit;
 use crate::resampling::MAX_SMOOTHED;
 use crate::task::{AngleOffset, PathTask, TaskError};
 use crate::toml_text::TomlText;
+use crate::toml_values::OneOrEach;
 
 /// What `[task.path]` says.
 pub(super) struct PathRead {
@@ -38,23 +39,46 @@ pub(super) fn path_of(
         Source::Csv(csv) => (csv.crank_deg.take(), csv.weight.take(), csv.tolerance.take()),
         Source::File | Source::Svg(_) => (None, None, None),
     };
-    let (csv_crank, weight, csv_tolerance) = columns;
+    let (csv_crank, csv_weight, csv_tolerance) = columns;
     let beside = [
         ("crank angles", csv_crank.is_some() || path.timing.is_some()),
-        ("weights", weight.is_some()),
-        ("tolerances", csv_tolerance.is_some() && !tolerance_is_set),
+        ("weights", csv_weight.is_some() || path.weight.is_some()),
+        (
+            "tolerances",
+            csv_tolerance.is_some() && !tolerance_is_set
+                || matches!(path.tolerance, Some(OneOrEach::Each(_))),
+        ),
     ];
     let raw = raw_of(toml, &path, &mut target, beside)?;
     let n = target.points.len();
-    let tolerance = match (path.tolerance, csv_tolerance) {
+    let tolerance = match (&path.tolerance, csv_tolerance) {
         (Some(_), Some(_)) if !tolerance_is_set => {
             return Err(twice(toml, "task.path.tolerance", "tolerance", &path));
         }
-        (Some(t), _) if t.0 < 0.0 => {
-            let message = format!("tolerance = {}: a distance cannot be negative", t.0);
-            return Err(Box::new(toml.at("task.path.tolerance", message).with_help("write 0 or more")));
+        (Some(OneOrEach::One(t)), _) => {
+            not_negative(toml, "task.path.tolerance", *t)?;
+            Some(vec![*t; n])
         }
-        (Some(t), _) => Some(vec![t.0; n]),
+        (Some(OneOrEach::Each(list)), _) => {
+            one_each(toml, "task.path.tolerance", list.len(), n, "tolerance")?;
+            for (j, t) in list.iter().enumerate() {
+                not_negative(toml, &format!("task.path.tolerance.{j}"), *t)?;
+            }
+            Some(list.clone())
+        }
+        (None, column) => column,
+    };
+    let weight = match (&path.weight, csv_weight) {
+        (Some(_), Some(_)) => return Err(twice(toml, "task.path.weight", "weight", &path)),
+        (Some(list), None) => {
+            one_each(toml, "task.path.weight", list.len(), n, "weight")?;
+            if let Some(j) = list.iter().position(|w| w.0 <= 0.0) {
+                let message = format!("weight = {}: a weight is positive", list[j].0);
+                let help = "write a number above 0; leave the point out to ignore it";
+                return Err(Box::new(toml.at(&format!("task.path.weight.{j}"), message).with_help(help)));
+            }
+            Some(list.iter().map(|w| w.0).collect())
+        }
         (None, column) => column,
     };
     let offset = path.timing.as_ref().map_or(AngleOffset::default(), |t| t.0.offset);
@@ -70,11 +94,8 @@ pub(super) fn path_of(
         }
         (None, None) => None,
     };
-    if let Some(list) = crank_deg.as_ref().filter(|list| list.len() != n) {
-        let message = format!("{} and {}", counted(n, "point"), counted(list.len(), "crank angle"));
-        return Err(Box::new(
-            toml.at("task.path.timing.crank_deg", message).with_help("give one crank angle for each point"),
-        ));
+    if let Some(list) = &crank_deg {
+        one_each(toml, "task.path.timing.crank_deg", list.len(), n, "crank angle")?;
     }
     let timing = crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset });
     let points = std::mem::take(&mut target.points);
@@ -156,6 +177,30 @@ fn extent(points: &[[f64; 2]]) -> f64 {
 /// "3 points".
 pub(super) fn counted(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+/// Refuses a list of another length than there are points.
+fn one_each(
+    toml: &TomlText<'_>,
+    key: &str,
+    values: usize,
+    points: usize,
+    what: &str,
+) -> Result<(), Box<Diagnostic>> {
+    if values == points {
+        return Ok(());
+    }
+    let message = format!("{} and {}", counted(points, "point"), counted(values, what));
+    Err(Box::new(toml.at(key, message).with_help(format!("give one {what} for each point"))))
+}
+
+/// Refuses a negative tolerance.
+fn not_negative(toml: &TomlText<'_>, key: &str, tolerance: f64) -> Result<(), Box<Diagnostic>> {
+    if tolerance >= 0.0 {
+        return Ok(());
+    }
+    let message = format!("tolerance = {tolerance}: a distance cannot be negative");
+    Err(Box::new(toml.at(key, message).with_help("write 0 or more")))
 }
 
 /// The same thing in the problem file and in the points file.

@@ -8,7 +8,7 @@ use crate::record::Unit;
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
 use crate::solve::genetic::GeneticParameters;
 use crate::task::AngleOffset;
-use crate::toml_values::{BoundedXY, Bounds, Corners, Count, Number, OneOrMore, OnlyTable, XY};
+use crate::toml_values::{BoundedXY, Bounds, Corners, Count, Number, OneOrEach, OneOrMore, OnlyTable, XY};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -74,8 +74,10 @@ pub(crate) struct RawPath {
     pub smooth: Option<Number>,
     /// Whether the target is a closed curve; where silent, false, of a drawing as it is drawn.
     pub closed: Option<bool>,
-    /// The largest error accepted at any point; where silent, any.
-    pub tolerance: Option<Number>,
+    /// The largest error accepted, 0 or more: a number for every point, or a list of one a point; where silent, any.
+    pub tolerance: Option<OneOrEach>,
+    /// Weights of the squared errors, above 0, one a point; where silent, all points count alike.
+    pub weight: Option<Vec<Number>>,
     /// Prescribed crank angles; where silent, the timing is free: each point is met at whatever angle suits it.
     pub timing: Option<OnlyTable<RawTiming>>,
 }

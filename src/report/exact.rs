@@ -42,7 +42,7 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
 }
 
 /// How many solutions there are, of what kind, how they were found, and what is proved.
-pub(super) fn sentences(exact: &ExactRecord) -> [String; 4] {
+pub fn sentences(exact: &ExactRecord) -> [String; 4] {
     [found(exact), real(&exact.census), paths(&exact.census), proof(exact)]
 }
 
@@ -151,7 +151,7 @@ fn proof(exact: &ExactRecord) -> String {
 }
 
 /// What a class can do, by the best of its mechanisms.
-pub(super) fn ability(linkage: &ExactLinkage) -> &'static str {
+pub fn ability(linkage: &ExactLinkage) -> &'static str {
     match (linkage.free_of_defects, linkage.in_order, linkage.one_circuit) {
         (true, ..) => "free of defects",
         (_, true, _) => "in order",

@@ -201,7 +201,14 @@ fn second_search(
     let show = |found: &[Candidate], evaluations: u64| {
         let least = found.iter().map(|c| c.error.sum_sq).min_by(f64::total_cmp);
         let (best_sum_sq, accepted) = (least, least.is_some());
-        observer(&Progress { phase: "buildable", evaluations, budget: allowance, best_sum_sq, accepted });
+        observer(&Progress {
+            phase: "buildable",
+            evaluations,
+            budget: allowance,
+            best_sum_sq,
+            accepted,
+            hits: None,
+        });
     };
     show(&found, spent.objective);
     while hits < HITS && quiet < QUIET && spent.objective.max(draws) < until && !budget.stopped() {

@@ -200,6 +200,7 @@ impl Inquiry<'_> {
             budget: self.allowance,
             best_sum_sq: None,
             accepted: false,
+            hits: None,
         });
         let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
         // As a run does: a cognate may take its candidate's place.

@@ -179,7 +179,14 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
     let target = target(problem)?;
     let progress = |ended: usize, of: usize| {
         let (evaluations, budget) = (ended as u64, of as u64);
-        observer(&Progress { phase: NAME, evaluations, budget, best_sum_sq: None, accepted: false });
+        observer(&Progress {
+            phase: NAME,
+            evaluations,
+            budget,
+            best_sum_sq: None,
+            accepted: false,
+            hits: None,
+        });
     };
     let solved = exact::solve(&target, &Options::default(), &progress, budget.cancel);
     let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();

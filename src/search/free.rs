@@ -28,7 +28,7 @@ use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched};
 use super::starts::{Start, Starts};
-use super::{Budget, Observer, Progress, repeats};
+use super::{Budget, HitsSoFar, Observer, Progress, repeats};
 use crate::linkage::dot;
 use crate::problem::Problem;
 use crate::record::{Candidate, Evaluations, Reason};
@@ -340,26 +340,30 @@ pub(super) fn search(
             local.reason = reason;
             break;
         }
+        let within = |error: f64, part: f64| {
+            // An end that lies lower has been refused, and says nothing of this one.
+            let near = (part * error).max(exact);
+            best_merits.iter().filter(|merit| (**merit - error).abs() <= near).count()
+        };
+        let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
         observer(&Progress {
             phase: "least-squares",
             evaluations: local.evaluations.objective,
             budget: limit,
             best_sum_sq: best.as_ref().or(shown(&ends)).map(|c| c.error.sum_sq),
             accepted: best.as_ref().is_some_and(|b| b.accepted),
+            hits: best
+                .as_ref()
+                .filter(|b| b.accepted)
+                .map(|b| HitsSoFar { came: within(searched(problem, b), SAME_OPTIMUM), wanted: hits.same }),
         });
         if let Some(best) = &best {
             let error = searched(problem, best);
             let is_exact = error <= exact;
-            // An end that lies lower has been refused, and says nothing of this one.
-            let within = |part: f64| {
-                let near = (part * error).max(exact);
-                best_merits.iter().filter(|merit| (**merit - error).abs() <= near).count()
-            };
-            let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
             let is_noise = coarse.is_some() && is_noise(problem, &ends);
-            let believed = within(SAME_OPTIMUM) >= hits.same
-                || within(NEARLY) >= hits.near
-                || (is_noise && within(IN_NOISE) >= NOISE_HITS);
+            let believed = within(error, SAME_OPTIMUM) >= hits.same
+                || within(error, NEARLY) >= hits.near
+                || (is_noise && within(error, IN_NOISE) >= NOISE_HITS);
             let least = match &coarse {
                 _ if is_exact => 0,
                 None => LEAST_BATCHES,

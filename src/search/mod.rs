@@ -78,6 +78,17 @@ pub struct Progress {
     pub best_sum_sq: Option<f64>,
     /// Whether that one is acceptable.
     pub accepted: bool,
+    /// How often the best acceptable one has come back; `None` where a search does not count that.
+    pub hits: Option<HitsSoFar>,
+}
+
+/// How often the best answer has come from independent rounds of starts, and how often it has to come to be believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HitsSoFar {
+    /// So often it came, the round that found it included.
+    pub came: usize,
+    /// So often it has to come.
+    pub wanted: usize,
 }
 
 /// Whoever wants to know where a search stands.

@@ -14,7 +14,7 @@ use super::polish::{improve, promising, reserve};
 use super::population::{self, Population};
 use super::rank::{count_distinct, divided, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::Starts;
-use super::{Budget, Observer, Progress, SearchOutcome};
+use super::{Budget, HitsSoFar, Observer, Progress, SearchOutcome};
 use super::{continuation, free, timed};
 use crate::assess::assess;
 use crate::problem::Problem;
@@ -360,6 +360,7 @@ fn rounds(
             budget: limit,
             best_sum_sq: shown.map(|c| c.error.sum_sq),
             accepted: at.best.as_ref().is_some_and(|b| b.accepted),
+            hits: at.best.as_ref().map(|_| HitsSoFar { came: at.hits, wanted: HITS }),
         });
         if at.hits >= HITS && at.batch >= LEAST_BATCHES {
             let distinct = count_distinct(problem, &at.found, wanted);

@@ -147,6 +147,7 @@ fn search_in<F: Searched>(
             budget: evaluations,
             best_sum_sq: (sums && at.best.fitness.is_feasible()).then_some(at.best.fitness.cost),
             accepted: at.best.fitness.is_feasible(),
+            hits: None,
         });
     };
     let mut keep = |state: &dyn Fn() -> RestartsState| {

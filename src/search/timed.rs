@@ -22,7 +22,7 @@ use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round}
 use super::polish::{basins_wanted, promising};
 use super::rank::{count_distinct, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::{Start, Starts, draw_ratios, drawn_types};
-use super::{Budget, Observer, Progress};
+use super::{Budget, HitsSoFar, Observer, Progress};
 use crate::linkage::{AssemblyMode, CouplerSide, LinkageType};
 use crate::problem::design_space::{Design, DesignSpace};
 use crate::problem::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
@@ -270,6 +270,7 @@ pub fn search(
             budget: limit,
             best_sum_sq: best.as_ref().or(found.first()).map(|c| c.error.sum_sq),
             accepted: best.as_ref().is_some_and(|b| b.accepted),
+            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: super::belief::HITS }),
         });
         let explored = !at.binding || at.binding_waves >= BINDING_WAVES;
         let enough = wanted == 1 || at.wave >= LEAST_WAVES;

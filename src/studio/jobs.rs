@@ -7,7 +7,7 @@
 //! beside the folders of results, until it has ended: so one that was broken off can go on.
 
 use super::job_messages::{JobAsk, JobProgress};
-use super::messages::MOST_POINTS;
+use super::asked::MOST_POINTS;
 use super::shelf::Shelf;
 use crate::name;
 use crate::problem::Problem;
@@ -129,7 +129,7 @@ impl JobAsk {
     pub fn problem(&self) -> Result<ProblemFile, String> {
         let text = match (&self.ask, &self.problem) {
             // Read as every edit is, so that its limits hold.
-            (Some(ask), None) => ask.problem().map(|_| ask.problem_text())?,
+            (Some(ask), None) => ask.problem().and_then(|_| ask.problem_text())?,
             (None, Some(text)) => text.clone(),
             _ => return Err("give either `ask` or `problem`".to_owned()),
         };

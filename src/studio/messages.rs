@@ -1,19 +1,21 @@
 //! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
 
+use super::reading::{Reading, Text};
+use crate::assess::assess;
 use crate::linkage::{LinkageType, NaturalCoordinates};
-use crate::problem::spec::ProblemSpec;
-use crate::problem_file::{self, ProblemFile};
-use crate::record::{Candidate, Unit};
+use crate::problem::Problem;
+use crate::problem::spec::{
+    DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec, TransmissionOver,
+};
+use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation, Unit};
+use crate::report::exact;
 use crate::report::html::Drive;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use std::fmt::Write;
-
-/// The most points of a target in the studio.
-pub const MOST_POINTS: usize = 1000;
+use std::collections::BTreeMap;
 
 /// A target and what its linkage must satisfy, as it stands in a tab. All lengths are in `unit`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ask {
     /// Counts the tab's edits; the answer names the edit that it answers.
@@ -33,6 +35,18 @@ pub struct Ask {
     /// The largest error accepted at any point.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
+    /// The largest error accepted at each point, in place of `tolerance`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerances: Option<Vec<f64>>,
+    /// One positive weight a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// The crank angle at each point; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<TimingSpec>,
+    /// What `points` were before they were smoothed or resampled; not read where they no longer come from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawPoints>,
     /// The types allowed; empty: any.
     #[serde(default)]
     pub types: Vec<LinkageType>,
@@ -45,6 +59,36 @@ pub struct Ask {
     /// The box that must hold both fixed pivots: xmin, ymin, xmax, ymax.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivots_in: Option<[f64; 4]>,
+    /// The box that must hold every joint and the coupler point over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub footprint_in: Option<[f64; 4]>,
+    /// Over which motion the transmission angle is judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_over: Option<TransmissionOver>,
+    /// Whether the points must be passed in order.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub branch: OnePolicy,
+    /// How to search; `continuation`: all linkages through exactly nine points.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub method: Method,
+    /// What is minimised.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub objective: Objective,
+    /// Other keys of the problem file under `design` and `solve`, each with its value as it is typed there.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub kept: BTreeMap<String, String>,
+    /// Where the problem comes from, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
     /// Where every draw comes from.
     #[serde(default = "one")]
     pub seed: u64,
@@ -64,112 +108,13 @@ fn one() -> u64 {
     1
 }
 
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 #[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
 fn is_false(value: &bool) -> bool {
     !value
-}
-
-/// A problem that asks for more than the studio's page can hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "this problem asks for more than the studio can show (timing, weights, single tolerances, bounds of lengths, \
-     another method or objective): run it with `linkwright synth`"
-)]
-pub struct TooMuch;
-
-impl Ask {
-    /// The text of the problem file that asks the same.
-    pub fn problem_text(&self) -> String {
-        let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
-        let mut text =
-            format!("# Drawn in linkwright's studio.\nformat = 1\nname = {}\n", quoted(&self.name));
-        // Writing to a String cannot fail.
-        let _ = self.write_rest(&mut text);
-        text
-    }
-
-    fn write_rest(&self, text: &mut String) -> std::fmt::Result {
-        if let Some(unit) = self.unit {
-            writeln!(text, "unit = \"{}\"", unit.label())?;
-        }
-        writeln!(text, "\n[task.path]\npoints = [")?;
-        for [x, y] in &self.points {
-            writeln!(text, "    [{x}, {y}],")?;
-        }
-        writeln!(text, "]\nclosed = {}", self.closed)?;
-        if let Some(tolerance) = self.tolerance {
-            writeln!(text, "tolerance = {tolerance}")?;
-        }
-        writeln!(text, "\n[require]")?;
-        if !self.types.is_empty() {
-            let names: Vec<_> = self.types.iter().map(|t| format!("\"{}\"", t.name())).collect();
-            writeln!(text, "type = [{}]", names.join(", "))?;
-        }
-        if let Some(angle) = self.transmission_deg_min {
-            writeln!(text, "transmission_deg_min = {angle}")?;
-        }
-        if let Some(ratio) = self.link_ratio_max {
-            writeln!(text, "link_ratio_max = {ratio}")?;
-        }
-        if let Some([left, bottom, right, top]) = self.pivots_in {
-            writeln!(text, "pivots_in = [{left}, {bottom}, {right}, {top}]")?;
-        }
-        writeln!(text, "\n[solve]\nseed = {}", self.seed)
-    }
-
-    /// The problem that is asked, read as every problem file is.
-    ///
-    /// # Errors
-    /// What is wrong with it, in words.
-    pub fn problem(&self) -> Result<ProblemFile, String> {
-        let n = self.points.len();
-        if !(3..=MOST_POINTS).contains(&n) {
-            return Err(format!("a target has 3 to {MOST_POINTS} points here, and this one has {n}"));
-        }
-        if self.seed > i64::MAX as u64 {
-            return Err(format!("the seed is at most {}", i64::MAX));
-        }
-        problem_file::parse("drawing", &self.problem_text(), None, &[]).map_err(|e| e.message.clone())
-    }
-
-    /// What to ask for a problem.
-    ///
-    /// # Errors
-    /// [`TooMuch`] where the problem has what an `Ask` cannot say.
-    pub fn of(problem: &ProblemFile) -> Result<Ask, TooMuch> {
-        let spec = &problem.spec;
-        let path = &spec.task.path;
-        let tolerance = path.tolerance.as_ref().and_then(|all| all.first().copied());
-        let ask = Ask {
-            version: 0,
-            name: problem.name.clone(),
-            unit: problem.unit,
-            points: path.points.clone(),
-            closed: path.closed,
-            tolerance,
-            types: spec.require.types.clone(),
-            transmission_deg_min: spec.require.transmission_deg_min,
-            link_ratio_max: Some(spec.require.link_ratio_max),
-            pivots_in: spec.require.pivots_in,
-            seed: spec.solve.seed,
-            moving: false,
-            fresh: false,
-        };
-        let same = |again: &ProblemSpec| {
-            again.task.path.points == path.points
-                && again.task.path.tolerance == path.tolerance
-                && again.task.path.weight == path.weight
-                && again.task.path.timing == path.timing
-                && again.design == spec.design
-                && again.require == spec.require
-                && again.solve.method == spec.solve.method
-                && again.solve.objective == spec.solve.objective
-        };
-        match ask.problem() {
-            Ok(again) if same(&again.spec) => Ok(ask),
-            _ => Err(TooMuch),
-        }
-    }
 }
 
 /// What the studio is doing for a tab.
@@ -199,8 +144,45 @@ pub struct Answer {
     /// How far the search is, 0 to 1 of its budget; most end before it is used up.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<f64>,
-    /// The linkages, better first.
+    /// The linkages, better first; in exact mode all real ones through the nine points.
     pub candidates: Vec<Shown>,
+    /// In exact mode: how many linkages there are through the nine points, and of what kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nine: Option<Counted>,
+    /// Where nothing is acceptable: the changes that help, nearest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub relaxations: Vec<Relaxation>,
+}
+
+/// The linkages through nine points, counted.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Counted {
+    /// Solutions up to cognates, complex ones included.
+    pub classes: usize,
+    /// Those that are linkages.
+    pub real: usize,
+    /// Of these, those that pass all points on one circuit.
+    pub one_circuit: usize,
+    /// Of these, in order.
+    pub in_order: usize,
+    /// Of these, on one branch.
+    pub free_of_defects: usize,
+    /// The same and more in words.
+    pub said: Vec<String>,
+}
+
+impl Counted {
+    pub(super) fn of(exact: &ExactRecord) -> Counted {
+        let census = &exact.census;
+        Counted {
+            classes: census.classes,
+            real: census.real,
+            one_circuit: census.one_circuit,
+            in_order: census.in_order,
+            free_of_defects: census.free_of_defects,
+            said: super::status::census(exact),
+        }
+    }
 }
 
 /// A linkage with its figures, ready to be played.
@@ -233,6 +215,25 @@ pub struct Shown {
     pub accepted: bool,
     /// The requirements that are not met, by their keys, and the defects.
     pub unmet: Vec<String>,
+    /// Through nine points: what the best of the curve's six mechanisms can do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ability: Option<String>,
+    /// Through nine points: one exact linkage is proved to stand this near.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified_within: Option<f64>,
+}
+
+impl Shown {
+    /// A real linkage through nine points, judged; `None` where it cannot be.
+    pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
+        let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
+        Some(Shown {
+            rank,
+            ability: Some(exact::ability(linkage).into()),
+            certified_within: linkage.certified.map(|certified| certified.radius),
+            ..Shown::from(&judged)
+        })
+    }
 }
 
 impl From<&Candidate> for Shown {
@@ -252,6 +253,8 @@ impl From<&Candidate> for Shown {
             link_ratio: candidate.link_ratio,
             accepted: candidate.accepted,
             unmet: missed.collect(),
+            ability: None,
+            certified_within: candidate.certified.map(|certified| certified.radius),
         }
     }
 }
@@ -276,5 +279,7 @@ pub fn schemas() -> serde_json::Value {
         "Ask": schemars::schema_for!(Ask).to_value(),
         "Answer": schemars::schema_for!(Answer).to_value(),
         "LinkageAsk": schemars::schema_for!(LinkageAsk).to_value(),
+        "Text": schemars::schema_for!(Text).to_value(),
+        "Reading": schemars::schema_for!(Reading).to_value(),
     })
 }

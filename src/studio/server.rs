@@ -5,6 +5,7 @@ use super::connection::Limited;
 use super::guard::{Guard, MOST_BYTES, guarded};
 use super::jobs::Jobs;
 use super::messages::{Ask, LinkageAsk, schemas};
+use super::reading::{self, Text};
 use super::tab::{Mailbox, Searches, Told, work};
 use crate::linkage::FourBar;
 use crate::{linkage_file, name};
@@ -160,6 +161,7 @@ fn routes(house: Arc<House>) -> Router {
         .route("/schemas.json", get(|| async { json(schemas().to_string()) }))
         .route("/problem.toml", post(problem))
         .route("/linkage.toml", post(linkage))
+        .route("/read", post(read))
         .route(LIVE, get(live))
         .merge(api::routes())
         .layer(from_fn_with_state(Arc::clone(&house), known));
@@ -231,10 +233,24 @@ fn toml(text: String) -> Response {
 async fn problem(body: Bytes) -> Response {
     match serde_json::from_slice::<Ask>(&body) {
         Err(e) => refused(format!("this is no edit: {e}")),
-        Ok(ask) => match ask.problem() {
+        Ok(ask) => match ask.problem().and_then(|_| ask.problem_text()) {
             Err(why) => refused(why),
-            Ok(_) => toml(ask.problem_text()),
+            Ok(text) => toml(text),
         },
+    }
+}
+
+/// A target or a problem of a text that was pasted or dropped.
+async fn read(body: Bytes) -> Response {
+    let text: Text = match serde_json::from_slice(&body) {
+        Err(e) => return refused(format!("this is no text with its kind: {e}")),
+        Ok(text) => text,
+    };
+    // A drawing may take its time: the tabs' messages do not wait for it.
+    match tokio::task::spawn_blocking(move || reading::read(&text)).await {
+        Ok(Ok(reading)) => serde_json::to_string(&reading).map_or_else(|e| refused(e.to_string()), json),
+        Ok(Err(why)) => refused(why),
+        Err(_) => refused("this text cannot be read: please report it as a bug of linkwright"),
     }
 }
 

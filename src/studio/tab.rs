@@ -4,14 +4,16 @@
 //! the one before. Every tab has at most one search, and all searches together as many threads as there are cores.
 
 use super::details::Finished;
-use super::messages::{Answer, Ask, Doing, Shown};
+use super::messages::{Answer, Ask, Counted, Doing, Shown};
+use super::status::{ended, under_way};
+use crate::live::nine::Nine;
 use crate::live::{Session, first_look};
 use crate::problem::Problem;
+use crate::problem::spec::Method;
 use crate::problem_file::ProblemFile;
-use crate::record::{Candidate, Record};
-use crate::report::{price, table};
+use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::run::{Context, Job, run};
-use crate::search::{Budget, Progress};
+use crate::search::{Budget, HitsSoFar, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -47,9 +49,11 @@ struct News {
 }
 
 enum What {
-    Progress(f64),
+    /// How far it is, and what it is doing.
+    Progress(f64, String),
     First(Vec<Candidate>),
-    Finished(Box<Record>),
+    /// What was found, and how often the best of it came back.
+    Finished(Box<Record>, Option<HitsSoFar>),
     Failed(String),
     /// The search's thread is about to end.
     Left,
@@ -74,8 +78,8 @@ impl Mailbox {
 
     fn tell(&self, edit: u64, what: What) {
         let mut waiting = self.lock();
-        if let What::Progress(_) = what {
-            waiting.news.retain(|news| !matches!(news.what, What::Progress(_)));
+        if let What::Progress(..) = what {
+            waiting.news.retain(|news| !matches!(news.what, What::Progress(..)));
         }
         waiting.news.push(News { edit, what });
         self.bell.notify_one();
@@ -149,6 +153,11 @@ struct Tab {
     told: watch::Sender<Told>,
     searches: Arc<Searches>,
     session: Session,
+    nine: Nine,
+    /// In exact mode: all real linkages through the nine points.
+    exact: Option<(Counted, Vec<Shown>)>,
+    /// What would help where nothing is acceptable.
+    helps: Vec<Relaxation>,
     current: Option<Current>,
     /// Counts edits, whatever version they say that they are.
     edits: u64,
@@ -161,7 +170,19 @@ struct Tab {
 /// Works for a tab until its mailbox is closed.
 pub(super) fn work(mail: Arc<Mailbox>, told: watch::Sender<Told>, searches: Arc<Searches>) {
     let session = Session::new();
-    let mut tab = Tab { mail, told, searches, session, current: None, edits: 0, begin: None, running: None };
+    let mut tab = Tab {
+        mail,
+        told,
+        searches,
+        session,
+        nine: Nine::new(),
+        exact: None,
+        helps: Vec::new(),
+        current: None,
+        edits: 0,
+        begin: None,
+        running: None,
+    };
     loop {
         // A search that was cancelled has to end before the next begins.
         let until = tab.begin.filter(|_| tab.running.is_none());
@@ -188,8 +209,12 @@ impl Tab {
     }
 
     fn tell(&self, version: u64, doing: Doing, said: String, progress: Option<f64>) {
-        let candidates: Vec<Shown> = self.session.candidates().iter().map(Shown::from).collect();
-        let answer = Answer { version, doing, said, progress, candidates };
+        let (nine, candidates) = match &self.exact {
+            Some((counted, shown)) => (Some(counted.clone()), shown.clone()),
+            None => (None, self.session.candidates().iter().map(Shown::from).collect()),
+        };
+        let relaxations = self.helps.clone();
+        let answer = Answer { version, doing, said, progress, candidates, nine, relaxations };
         if let Ok(text) = serde_json::to_string(&answer) {
             self.told.send_replace(Some(text.into()));
         }
@@ -199,6 +224,7 @@ impl Tab {
     fn take(&mut self, text: &str) {
         self.cancel();
         self.edits += 1;
+        self.helps.clear();
         let ask: Ask = match serde_json::from_str(text) {
             Ok(ask) => ask,
             Err(e) => {
@@ -216,21 +242,40 @@ impl Tab {
                 if ask.fresh {
                     self.session.clear();
                 }
-                let never = AtomicBool::new(false);
-                self.session.follow(&current.problem, &Budget::new(&never, None));
+                self.follow(&current.problem);
                 self.current = Some(current);
                 self.begin = Some(Instant::now() + if ask.moving { REST } else { Duration::ZERO });
-                let said = match self.session.candidates().first() {
-                    None => "Looking for the first linkages.".into(),
-                    Some(_) => "The linkages follow your hand; the search goes on when it rests.".into(),
+                let said = match (&self.exact, self.session.candidates().first()) {
+                    (Some(_), _) => {
+                        "All linkages through the nine points follow your hand; proofs when it rests.".into()
+                    }
+                    (None, None) => "Looking for the first linkages.".into(),
+                    (None, Some(_)) => {
+                        "The linkages follow your hand; the search goes on when it rests.".into()
+                    }
                 };
                 self.tell(ask.version, Doing::Following, said, None);
             }
         }
     }
 
+    /// Brings what is there to a problem: all linkages through nine points, or the few that follow the hand.
+    fn follow(&mut self, problem: &Problem) {
+        let never = AtomicBool::new(false);
+        self.exact = None;
+        if problem.spec().solve.method == Method::Continuation {
+            if let Some(exact) = self.nine.follow(problem, &never) {
+                self.exact = Some(all_of(problem, &exact.record));
+            }
+        } else {
+            self.nine = Nine::new();
+            self.session.follow(problem, &Budget::new(&never, None));
+        }
+    }
+
     fn refuse(&mut self, version: u64, why: String) {
         self.current = None;
+        self.exact = None;
         self.session.clear();
         self.tell(version, Doing::Refused, why, None);
     }
@@ -253,7 +298,7 @@ impl Tab {
         let (one, threads) = OneSearch::new(&self.searches);
         let (mail, token, edit) = (Arc::clone(&self.mail), Arc::clone(&cancel), self.edits);
         let problem = current.problem.clone();
-        let first = self.session.candidates().is_empty();
+        let first = self.session.candidates().is_empty() && self.exact.is_none();
         let thread = std::thread::Builder::new().name("search".into()).spawn(move || {
             let _one = one;
             let searched = catch_unwind(AssertUnwindSafe(|| {
@@ -286,14 +331,18 @@ impl Tab {
         let version = current.version;
         let searching = "Searching for better ones.".to_owned();
         match news.what {
-            What::Progress(part) => self.tell(version, Doing::Searching, searching, Some(part)),
+            What::Progress(part, said) => self.tell(version, Doing::Searching, said, Some(part)),
             What::First(found) => {
                 self.session.join(&current.problem, found);
                 self.tell(version, Doing::Searching, searching, Some(0.0));
             }
-            What::Finished(record) => {
-                let said = ended(&record);
+            What::Finished(record, hits) => {
+                let said = ended(&record, hits);
                 self.searches.finished.keep(&record);
+                if let Some(exact) = record.exact.as_ref().filter(|_| self.exact.is_some()) {
+                    self.exact = Some(all_of(&current.problem, exact));
+                }
+                self.helps = record.relaxations;
                 self.session.join(&current.problem, record.candidates);
                 self.tell(version, Doing::Done, said, None);
             }
@@ -301,6 +350,12 @@ impl Tab {
             What::Left => {}
         }
     }
+}
+
+/// All real linkages of an exact solution, ready to be shown.
+fn all_of(problem: &Problem, exact: &ExactRecord) -> (Counted, Vec<Shown>) {
+    let shown = |(rank, linkage)| Shown::exact(problem, rank, linkage);
+    (Counted::of(exact), (1..).zip(&exact.linkages).filter_map(shown).collect())
 }
 
 /// Searches: a first look where nothing is there yet, then a whole run, the same as on the command line.
@@ -323,30 +378,26 @@ fn searched(
         }
     }
     let last = Mutex::new(Instant::now());
+    let hits = Mutex::new(None);
     let observer = |progress: &Progress| {
+        if progress.hits.is_some() {
+            *hits.lock().unwrap_or_else(PoisonError::into_inner) = progress.hits;
+        }
         let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
         if last.elapsed() >= TELL_EVERY {
             *last = Instant::now();
             let part = progress.evaluations as f64 / progress.budget.max(1) as f64;
-            tell(What::Progress(part.min(1.0)));
+            tell(What::Progress(part.min(1.0), under_way(progress)));
         }
     };
     match pool.install(|| run(job, &Context { cancel, observer: &observer })) {
         // What was cancelled is not what was asked.
         Ok(_) if cancel.load(Ordering::Relaxed) => {}
-        Ok(finished) => tell(What::Finished(Box::new(finished.record))),
+        Ok(finished) => {
+            let hits = *hits.lock().unwrap_or_else(PoisonError::into_inner);
+            tell(What::Finished(Box::new(finished.record), hits));
+        }
         Err(e) => tell(What::Failed(e.to_string())),
-    }
-}
-
-/// How a search ended, in words: how sure it is, and where nothing is acceptable what stands in the way.
-fn ended(record: &Record) -> String {
-    let help = price::relaxations(record, usize::MAX);
-    let end = table::ending_sentences(record);
-    match record.candidates.first() {
-        None => format!("Nothing was found. {end}"),
-        Some(_) if help.trim().is_empty() => end,
-        Some(_) => format!("{}\n{end}", help.trim()),
     }
 }
 
@@ -359,7 +410,7 @@ mod tests {
         let mail = Mailbox::default();
         for i in 0..1000 {
             mail.put(format!("{i}"));
-            mail.tell(1, What::Progress(f64::from(i)));
+            mail.tell(1, What::Progress(f64::from(i), String::new()));
         }
         let (edit, news) = mail.wait(None).expect("open");
         assert_eq!((edit.as_deref(), news.len()), (Some("999"), 1));

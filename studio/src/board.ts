@@ -1,11 +1,14 @@
 // The board: the target under the hand, the linkage over it.
 
 import { figure, pathThrough, px, roundLength, setAll, shape } from "../../src/report/html/player/svg.mjs";
+import { type BoxKind, type Corner, between, boxShapes, cornerOf, inWords as cornerInWords, nextCorner, resized } from "./boxes";
 import { Figure, type Moving } from "./figures";
-import type { Point, Task } from "./messages";
+import type { Box, Point, Task } from "./messages";
 import { ofStroke } from "./target";
+import { boxOf, toleranceAt } from "./task";
+import type { Underlay } from "./underlay";
 
-export type Tool = "draw" | "points";
+export type Tool = "draw" | "points" | BoxKind | "photo-move" | "photo-scale";
 
 export interface Hand {
   /** A new target was drawn. */
@@ -17,18 +20,23 @@ export interface Hand {
   /** A point is added. */
   add(at: Point): void;
   remove(index: number): void;
-  /** A corner of the pivot box moves. */
-  box(box: [number, number, number, number], last: boolean): void;
+  /** A box of the requirements is drawn, or a corner of it moves; null removes it. */
+  box(kind: BoxKind, box: Box | null, last: boolean): void;
+  /** The circle of a tolerance is made larger or smaller. */
+  tolerance(index: number, radius: number, last: boolean): void;
+  /** The photograph was clicked at an end of a known length. */
+  marked(): void;
 }
 
 export class Board {
-  readonly svg = shape("svg", { class: "stage board", tabindex: 0, role: "application", "aria-label": "The target. Comma and full stop choose a point, the arrow keys move it, Delete removes it." });
+  readonly svg = shape("svg", { class: "stage board", tabindex: 0, role: "application", "aria-label": "The target. Comma and full stop choose a point, B a corner of a box; the arrow keys move it, Delete removes it; square brackets change the tolerance." });
   private back = shape("g");
   private pins = shape("g", { class: "pinned" });
   private mechanism = new Figure();
   private marks = shape("g");
   private stroke = shape("path", { class: "stroke" });
   private boxGroup = shape("g");
+  private sketch = shape("rect", { class: "pivot-box", visibility: "hidden" });
   private scaleBar = shape("g");
   private ghosts: Figure[] = [];
   private width = 600;
@@ -37,15 +45,19 @@ export class Board {
   private task: Task | null = null;
   private moving: Moving | null = null;
   private pinned: Moving[] = [];
+  private corner: Corner | null = null;
+  /** Whether the view was chosen by hand. */
+  touched = false;
   tool: Tool = "draw";
   selected = -1;
 
-  constructor(private place: HTMLElement, private hand: Hand, private say: (text: string) => void) {
-    this.svg.append(this.back, this.boxGroup, this.pins, this.mechanism.group, this.marks, this.stroke, this.scaleBar);
+  constructor(private place: HTMLElement, private hand: Hand, private say: (text: string) => void, private underlay: Underlay) {
+    this.svg.append(this.underlay.group, this.back, this.boxGroup, this.sketch, this.pins, this.mechanism.group, this.marks, this.stroke, this.scaleBar);
     place.append(this.svg);
     this.svg.addEventListener("pointerdown", (event: PointerEvent) => this.down(event));
     this.svg.addEventListener("wheel", (event: WheelEvent) => {
       event.preventDefault();
+      this.touched = true;
       this.zoom(Math.exp(-event.deltaY / 400), this.at(event));
     }, { passive: false });
     this.svg.addEventListener("keydown", (event: KeyboardEvent) => this.key(event));
@@ -86,8 +98,8 @@ export class Board {
     const points = this.task?.points ?? [];
     const box = this.moving?.box() ?? [Infinity, Infinity, -Infinity, -Infinity];
     const all: Point[] = [...points, [box[0], box[1]], [box[2], box[3]]];
-    const pivots = this.task?.pivots_in;
-    if (pivots) all.push([pivots[0], pivots[1]], [pivots[2], pivots[3]]);
+    for (const kept of [this.task?.pivots_in, this.task?.footprint_in]) if (kept) all.push([kept[0], kept[1]], [kept[2], kept[3]]);
+    this.touched = false;
     const finite = all.filter((p) => p.every(Number.isFinite));
     if (finite.length === 0) return;
     const [xs, ys] = [finite.map((p) => p[0]), finite.map((p) => p[1])];
@@ -98,11 +110,31 @@ export class Board {
     this.draw();
   }
 
+  /** Whether the whole linkage is in view. */
+  get holdsAll(): boolean {
+    const box = this.moving?.box();
+    if (!box || !box.every(Number.isFinite)) return true;
+    const [[left, top], [right, bottom]] = [this.toPixel([box[0], box[3]]), this.toPixel([box[2], box[1]])];
+    return left > 4 && top > 4 && right < this.width - 4 && bottom < this.height - 4;
+  }
+
+  /** What is in view. */
+  get window(): Box {
+    const [left, top] = this.toPlane([0, 0]);
+    const [right, bottom] = this.toPlane([this.width, this.height]);
+    return [left, bottom, right, top];
+  }
+
   show(task: Task, moving: Moving | null, pinned: Moving[]) {
     this.task = task;
     this.moving = moving;
     this.pinned = pinned;
     if (this.selected >= task.points.length) this.selected = -1;
+    if (this.corner && !task[this.corner.kind]) this.corner = null;
+    this.draw();
+  }
+
+  redraw() {
     this.draw();
   }
 
@@ -117,15 +149,24 @@ export class Board {
     const spots = task.points.map(this.toPixel);
     const closedLine = task.closed && spots.length > 2 ? [...spots, spots[0]] : spots;
     const many = spots.length > 24;
-    const tolerance = (task.tolerance ?? 0) * this.view.scale;
-    const circles = tolerance > 3 ? spots.map(([cx, cy]) => shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(tolerance) })) : [];
+    this.underlay.draw(this.toPixel);
+    const radii = spots.map((_, i) => (toleranceAt(task, i) ?? 0) * this.view.scale);
+    const circles = spots.flatMap(([cx, cy], i) => (radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : []));
     this.back.replaceChildren(...circles, shape("path", { class: "target-line", d: pathThrough(closedLine) }));
-    this.marks.replaceChildren(...spots.flatMap(([x, y], i) => {
+    const marks = spots.flatMap(([x, y], i) => {
       const [cx, cy] = [px(x), px(y)];
       const chosen = i === this.selected;
       const dot = shape("circle", { class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`, cx, cy, r: chosen ? 6.5 : many ? 3.4 : 5 });
       return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i })];
-    }));
+    });
+    // The rim of a circle can be drawn outwards and inwards where it does not lie on the point itself; the chosen one's lies on top.
+    const rims = spots.flatMap(([x, y], i) => {
+      if (!(i === this.selected || !many) || radii[i] <= 8) return [];
+      return [shape("circle", { class: "rim", cx: px(x + radii[i] * Math.SQRT1_2), cy: px(y - radii[i] * Math.SQRT1_2), r: 5, "data-rim": i })];
+    });
+    const top = rims.findIndex((rim) => rim.getAttribute("data-rim") === String(this.selected));
+    if (top >= 0) rims.push(...rims.splice(top, 1));
+    this.marks.replaceChildren(...marks, ...rims);
     while (this.ghosts.length < this.pinned.length) this.ghosts.push(new Figure(0.8));
     this.pins.replaceChildren(...this.pinned.map((_, i) => this.ghosts[i].group));
     this.pinned.forEach((moving, i) => this.ghosts[i].show(moving, this.toPixel));
@@ -140,16 +181,7 @@ export class Board {
   }
 
   private drawBox() {
-    const box = this.task?.pivots_in;
-    if (!box) return this.boxGroup.replaceChildren();
-    const [left, top] = this.toPixel([box[0], box[3]]);
-    const [right, bottom] = this.toPixel([box[2], box[1]]);
-    const corners: [number, number, string][] = [[left, bottom, "01"], [right, bottom, "21"], [right, top, "23"], [left, top, "03"]];
-    return this.boxGroup.replaceChildren(
-      shape("rect", { class: "pivot-box", x: px(left), y: px(top), width: px(right - left), height: px(bottom - top) }),
-      shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, ["pivots in here"]),
-      ...corners.map(([x, y, name]) => shape("rect", { class: "corner", x: px(x - 6), y: px(y - 6), width: 12, height: 12, "data-corner": name })),
-    );
+    this.boxGroup.replaceChildren(...(this.task ? boxShapes(this.task, this.toPixel, this.corner) : []));
   }
 
   private down(event: PointerEvent) {
@@ -161,7 +193,15 @@ export class Board {
     this.svg.focus({ preventScroll: true });
     this.svg.setPointerCapture(event.pointerId);
     if (event.shiftKey) return this.follow(this.pan(event));
+    const rim = target.getAttribute("data-rim");
+    if (this.tool === "photo-move" && this.underlay.there) return this.follow(this.moveUnderlay(event));
+    if (this.tool === "photo-scale" && this.underlay.there) {
+      this.underlay.mark(this.at(event));
+      return this.hand.marked();
+    }
+    if (this.tool === "pivots_in" || this.tool === "footprint_in") return this.follow(this.sketchBox(this.tool, this.at(event)));
     if (corner) return this.follow(this.resize(corner));
+    if (rim !== null) return this.follow(this.widen(Number(rim)));
     if (point !== null) return this.follow(this.carry(Number(point), this.at(event)));
     if (this.tool === "points") {
       this.hand.add(this.at(event));
@@ -183,6 +223,7 @@ export class Board {
 
   private pan(start: PointerEvent) {
     const held = this.at(start);
+    this.touched = true;
     return (event: PointerEvent) => {
       const now = this.at(event);
       this.view.x += held[0] - now[0];
@@ -201,16 +242,47 @@ export class Board {
     };
   }
 
-  private resize(corner: string) {
+  private resize(name: string) {
     this.hand.grasp();
-    const [i, j] = [Number(corner[0]), Number(corner[1])];
+    const [kind, corner] = name.split(":") as [BoxKind, string];
+    this.corner = { kind, corner: Number(corner) };
     return (event: PointerEvent, last: boolean) => {
-      const box = [...(this.task?.pivots_in ?? [0, 0, 1, 1])] as [number, number, number, number];
-      const [x, y] = this.at(event).map((value) => Number(value.toPrecision(4)));
-      const least = 12 / this.view.scale;
-      box[i] = i === 0 ? Math.min(x, box[2] - least) : Math.max(x, box[0] + least);
-      box[j] = j === 1 ? Math.min(y, box[3] - least) : Math.max(y, box[1] + least);
-      this.hand.box(box, last);
+      const box = this.task?.[kind];
+      if (box) this.hand.box(kind, resized(box, Number(corner), this.at(event), 12 / this.view.scale), last);
+    };
+  }
+
+  private sketchBox(kind: BoxKind, from: Point) {
+    return (event: PointerEvent, last: boolean) => {
+      const box = between(from, this.at(event), 12 / this.view.scale);
+      setAll(this.sketch, { visibility: box && !last ? "visible" : "hidden" });
+      if (box) {
+        const [left, top] = this.toPixel([box[0], box[3]]);
+        setAll(this.sketch, { x: px(left), y: px(top), width: px((box[2] - box[0]) * this.view.scale), height: px((box[3] - box[1]) * this.view.scale) });
+      }
+      if (!last) return;
+      if (box) {
+        this.hand.grasp();
+        this.hand.box(kind, box, true);
+      } else this.say("Drag from one corner of the box to the opposite one.");
+    };
+  }
+
+  private widen(index: number) {
+    this.selected = index;
+    this.hand.grasp();
+    return (event: PointerEvent, last: boolean) => {
+      const [centre, now] = [this.task?.points[index] ?? [0, 0], this.at(event)];
+      this.hand.tolerance(index, Math.hypot(now[0] - centre[0], now[1] - centre[1]), last);
+    };
+  }
+
+  private moveUnderlay(start: PointerEvent) {
+    const [from, placed] = [this.at(start), this.underlay.placed];
+    this.hand.grasp();
+    return (event: PointerEvent, last: boolean) => {
+      const now = this.at(event);
+      if (placed) this.underlay.place({ x: placed.x + now[0] - from[0], y: placed.y + now[1] - from[1] }, last);
     };
   }
 
@@ -230,24 +302,53 @@ export class Board {
     const { task } = this;
     if (!task || event.ctrlKey || event.metaKey || event.altKey) return;
     const n = task.points.length;
+    const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] }[event.key];
+    const step = (event.shiftKey ? 20 : 4) / this.view.scale;
     if (event.key === "," || event.key === ".") {
+      this.corner = null;
       this.selected = n === 0 ? -1 : (this.selected + (event.key === "." ? 1 : -1) + n) % n;
       this.draw();
       this.tellPoint();
+    } else if (event.key === "b" || event.key === "B") {
+      this.corner = nextCorner(task, this.corner) ?? nextCorner(task, null);
+      this.selected = -1;
+      this.draw();
+      this.tellCorner();
+    } else if ((event.key === "Delete" || event.key === "Backspace") && this.corner) {
+      this.hand.grasp();
+      this.hand.box(this.corner.kind, null, true);
     } else if ((event.key === "Delete" || event.key === "Backspace") && this.selected >= 0) {
       this.hand.remove(this.selected);
     } else if (event.key === "+" || event.key === "-") {
+      this.touched = true;
       this.zoom(event.key === "+" ? 1.25 : 0.8);
-    } else {
-      const way = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowDown: [0, -1], ArrowUp: [0, 1] }[event.key];
-      if (!way || this.selected < 0) return;
-      const step = (event.shiftKey ? 20 : 4) / this.view.scale;
+    } else if ((event.key === "[" || event.key === "]") && n > 0) {
+      const index = Math.max(this.selected, 0);
+      const size = boxOf(task.points) ?? [0, 0, 1, 1];
+      const now = toleranceAt(task, index) ?? 0.01 * Math.hypot(size[2] - size[0], size[3] - size[1]);
+      this.hand.grasp();
+      this.hand.tolerance(index, now * (event.key === "]" ? 1.25 : 0.8), true);
+    } else if (way && this.corner) {
+      const box = task[this.corner.kind];
+      if (!box) return;
+      const [x, y] = cornerOf(box, this.corner.corner);
+      this.hand.grasp();
+      this.hand.box(this.corner.kind, resized(box, this.corner.corner, [x + way[0] * step, y + way[1] * step], 12 / this.view.scale), true);
+      this.tellCorner();
+    } else if (way && this.selected >= 0) {
       const [x, y] = task.points[this.selected];
       this.hand.grasp();
       this.hand.drag(this.selected, [x + way[0] * step, y + way[1] * step], true);
       this.tellPoint();
-    }
+    } else return;
     event.preventDefault();
+  }
+
+  private tellCorner() {
+    const box = this.corner && this.task?.[this.corner.kind];
+    if (!this.corner || !box) return this.say("There is no box: tick one among the requirements.");
+    const [x, y] = cornerOf(box, this.corner.corner);
+    return this.say(`${cornerInWords(this.corner)} at ${figure(x, 4)}, ${figure(y, 4)}`);
   }
 
   private tellPoint() {

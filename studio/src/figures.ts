@@ -41,6 +41,19 @@ export class Moving {
   }
 }
 
+/** Linkages that were made ready before, by what they are. */
+let made = new Map<string, Moving>();
+const MOST_MADE = 400;
+
+/** A linkage made ready to move, once. */
+export function movingOf(shown: Shown, points: Point[]): Moving {
+  const key = JSON.stringify([shown, points]);
+  const moving = made.get(key) ?? new Moving(shown, points);
+  if (made.size >= MOST_MADE) made = new Map();
+  made.set(key, moving);
+  return moving;
+}
+
 /** The parts of a linkage in a drawing. */
 export class Figure {
   readonly group = shape("g", { class: "figure" });

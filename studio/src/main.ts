@@ -4,30 +4,26 @@ import { figure } from "../../src/report/html/player/svg.mjs";
 import { Board, type Tool } from "./board";
 import { Connection } from "./connection";
 import { Desk } from "./desk";
-import { Moving } from "./figures";
+import { EXAMPLES } from "./examples";
+import { Moving, movingOf } from "./figures";
+import { taskOfText, watchFiles } from "./files";
+import { Guide } from "./guide";
+import { Helps, Kept } from "./helps";
 import { Steps, remember, remembered } from "./memory";
 import type { Answer, Point, Shown, Task } from "./messages";
+import { Nine } from "./nine";
 import { Pace } from "./pace";
+import { PhotographPanel } from "./photograph";
+import { fillRequirements, listenToRequirements } from "./requirements";
 import { Strip, inWords } from "./strip";
-import { moved, ofText } from "./target";
+import { Table } from "./table";
+import { moved } from "./target";
+import { settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt } from "./task";
+import { type Placed, Underlay } from "./underlay";
 
 /** Seconds of a turn. */
 const TURN = 5;
 const MOST_PINNED = 3;
-
-/** The example: a step of a walking leg, flat below and lifted on the way back. */
-const EXAMPLE: Task = {
-  name: "walking-step",
-  unit: "mm",
-  points: [
-    [-40, 0], [-30, -1], [-20, -1.5], [-10, -1.8], [0, -2], [10, -1.8], [20, -1.5], [30, -1], [40, 0], [44, 5],
-    [42, 11], [34, 17], [22, 22], [8, 25], [-8, 25], [-22, 22], [-34, 17], [-42, 11], [-44, 5],
-  ],
-  closed: true,
-  types: ["crank-rocker", "double-crank"],
-  transmission_deg_min: 30,
-  seed: 1,
-};
 
 const TYPES: Record<string, string[]> = {
   any: [],
@@ -41,8 +37,8 @@ const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) 
 const input = (id: string) => byId<HTMLInputElement>(id);
 
 class Page {
-  private task: Task = EXAMPLE;
-  private steps = new Steps();
+  private task: Task = EXAMPLES[0][1];
+  private steps = new Steps<{ task: Task; photo: Placed | null }>();
   private version = 0;
   private answer: Answer | null = null;
   private chosen = 0;
@@ -51,6 +47,8 @@ class Page {
   private begunWith = "null";
   private shownAll: Moving[] = [];
   private fitNext = true;
+  private fitted = false;
+  private filling: ReturnType<typeof setTimeout> | undefined;
   private part = 0;
   private playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
   private status = byId("status");
@@ -59,27 +57,43 @@ class Page {
   private connection: Connection | null = null;
   private desk: Desk;
   private pace = new Pace();
+  private guide = new Guide();
+  private underlay = new Underlay(() => this.showUnderlay());
+  private photograph = new PhotographPanel(this.underlay, () => this.board, (tool) => this.use(tool), (text) => this.say(text), () => this.note());
+  private table = new Table(byId("table"), (task) => this.replace(task), (text) => this.say(text));
+  private nine = new Nine(byId("nine"), () => this.draw());
+  private helps = new Helps(byId("helps"), (make, said) => {
+    this.replace(make(this.task));
+    this.say(`Changed: ${said}.`);
+  });
+  private kept = new Kept(byId("kept"), (make) => this.replace(make(this.task)));
 
   constructor() {
     this.board = new Board(byId("board"), {
       drawn: (points, closed) => {
+        this.fitNext = true;
         this.pace.penUp();
-        this.change({ points, closed, name: "drawing" }, { fresh: true });
+        this.guide.done("draw");
+        this.replace({ ...withPoints(this.task, points, closed), name: "drawing", source: undefined }, { fresh: true });
       },
-      grasp: () => this.steps.note(this.task),
+      grasp: () => this.note(),
       drag: (index, to, last) => this.drag(index, to, last),
-      add: (at) => this.change({ points: [...this.task.points, at] }),
-      remove: (index) => this.change({ points: this.task.points.filter((_, i) => i !== index) }),
-      box: (pivots_in, last) => this.put({ ...this.task, pivots_in }, { moving: !last }),
-    }, (text) => this.say(text));
+      add: (at) => this.replace(withAdded(this.task, this.task.points.length - 1, at)),
+      remove: (index) => this.replace(withRemoved(this.task, index)),
+      box: (kind, box, last) => {
+        this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
+        if (last && this.board.tool === kind) this.use("draw");
+      },
+      tolerance: (index, radius, last) => this.put(withToleranceAt(this.task, index, radius), { moving: !last }),
+      marked: () => this.photograph.marked(),
+    }, (text) => this.say(text), this.underlay);
     this.strip = new Strip(byId("strip"), (i) => this.choose(i), (i) => this.pin(i));
     this.desk = new Desk(byId("desk"), byId("share"), {
       task: () => this.task,
       chosen: () => this.shownAll[this.chosen]?.shown ?? null,
       take: (task) => {
-        this.steps.note(this.task);
         this.fitNext = true;
-        this.put(task, { fresh: true });
+        this.replace(taskOf({ ...task, version: 0 }), { fresh: true });
       },
       keep: (shown) => this.keepShown(shown),
     });
@@ -96,8 +110,7 @@ class Page {
     }
     const given = JSON.parse(this.begunWith) as (Task & { version?: number }) | null;
     if (given && kept?.begunWith !== this.begunWith) {
-      const { version: _, ...task } = given;
-      this.task = task;
+      this.task = taskOf({ ...given, version: 0 });
       this.hints = kept?.hints ?? true;
     } else if (kept) {
       this.task = kept.task;
@@ -107,6 +120,7 @@ class Page {
     byId("hints").hidden = !this.hints;
     this.board.show(this.task, null, []);
     this.board.fit();
+    this.showUnderlay();
     this.connection = new Connection((answer) => this.hear(answer), (open, tries) => {
       document.body.dataset.connected = String(open);
       if (!open && tries > 1) this.say("The studio does not answer. Start it again with `linkwright studio` and open the address that it prints; your drawing is kept here.");
@@ -128,12 +142,38 @@ class Page {
 
   /** A change that can be undone. */
   private change(part: Partial<Task>, how: { fresh?: boolean } = {}) {
-    this.steps.note(this.task);
+    this.note();
     this.put({ ...this.task, ...part }, how);
   }
 
+  /** Another task in place of the one that stands, which can be undone. */
+  private replace(task: Task, how: { fresh?: boolean } = {}) {
+    this.note();
+    this.put(task, how);
+  }
+
   private drag(index: number, to: Point, last: boolean) {
-    this.put({ ...this.task, points: moved(this.task.points, index, to, this.task.closed) }, { moving: !last });
+    if (last) this.guide.done("drag");
+    // Nine points are precise: none takes its neighbours along.
+    this.put(withMoved(this.task, moved(this.task.points, index, to, this.task.closed)), { moving: !last });
+  }
+
+  private use(tool: Tool) {
+    this.board.tool = tool;
+    for (const button of document.querySelectorAll("[id^=tool-]")) button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
+  }
+
+  private showUnderlay() {
+    this.board?.redraw();
+    this.photograph?.show();
+  }
+
+  private async takeText(text: string, name: string) {
+    const read = await taskOfText(text, name, this.task, input("samples").valueAsNumber || undefined);
+    if (typeof read === "string") return this.say(`These are no coordinates: ${read}`);
+    this.fitNext = true;
+    this.replace(read.task, { fresh: true });
+    return this.say(`Taken: ${read.said}.`);
   }
 
   /** Takes a task: shown, remembered, sent. */
@@ -143,9 +183,14 @@ class Page {
     if (how.fresh) {
       this.chosen = 0;
       this.answer = null;
+      this.fitted = false;
+      this.board.touched = false;
     }
     this.draw();
-    this.fill();
+    // The controls can wait for a hand that moves; what is drawn cannot.
+    clearTimeout(this.filling);
+    if (how.moving) this.filling = setTimeout(() => this.fill(), 100);
+    else this.fill();
     this.keep();
     document.body.dataset.asked = String(this.version);
     if (task.points.length < 3) {
@@ -167,39 +212,53 @@ class Page {
     }
     this.answer = answer;
     this.pace.answered(answer, this.version);
+    this.nine.hear(answer);
     if (this.chosen < this.count() || this.chosen >= this.shownAll.length) this.chosen = Math.min(this.chosen, Math.max(answer.candidates.length - 1, 0));
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
     this.draw();
     if (answer.candidates.length > 0 && this.fitNext) {
-      this.fitNext = false;
-      this.board.fit();
+      // Until the search has ended a better one may stand elsewhere; a view that was chosen by hand stays.
+      this.fitNext = answer.doing !== "done" && !this.board.touched;
+      if (!this.board.touched && (!this.fitted || !this.board.holdsAll)) this.board.fit();
+      this.fitted = this.fitNext;
     }
     const best = answer.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
-    const head = best ? `Best: rms ${figure(best.rms, 3)}${unit}, ${inWords(best)}. ` : "";
+    const near = best?.ability ? "exactly through the points" : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
+    const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     this.desk.changed(answer.doing === "done");
     this.say(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
   }
 
+  /** The candidates that are shown: of many through nine points those that were chosen. */
+  private candidates() {
+    return this.nine.filtered(this.answer?.candidates ?? []);
+  }
+
   private count() {
-    return this.answer?.candidates.length ?? 0;
+    return this.candidates().length;
   }
 
   private draw() {
-    const candidates = this.answer?.candidates ?? [];
+    const candidates = this.candidates();
     const { points } = this.task;
-    this.shownAll = [...candidates, ...this.pinned].map((shown) => new Moving(shown, points));
+    this.shownAll = [...candidates, ...this.pinned].map((shown) => movingOf(shown, points));
     const pins = this.shownAll.slice(candidates.length);
     const shown = this.shownAll[this.chosen] ?? null;
     this.board.show(this.task, shown, pins.filter((one) => one !== shown));
     this.strip.show(this.shownAll, candidates.length, this.chosen, this.task.unit, points, this.task.closed);
     byId("nothing").hidden = this.shownAll.length > 0;
-    byId<HTMLButtonElement>("undo").disabled = !this.steps.canUndo;
-    byId<HTMLButtonElement>("redo").disabled = !this.steps.canRedo;
+    this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
+    this.showSteps();
     byId<HTMLButtonElement>("linkage-file").disabled = !shown;
     this.board.pose(this.part);
-    this.strip.pose(this.part);
+    this.strip.pose(this.part, true);
+  }
+
+  private showSteps() {
+    byId<HTMLButtonElement>("undo").disabled = !this.steps.canUndo;
+    byId<HTMLButtonElement>("redo").disabled = !this.steps.canRedo;
   }
 
   private choose(index: number) {
@@ -222,7 +281,8 @@ class Page {
       this.pinned = this.pinned.filter((_, i) => i !== index - found);
       if (this.chosen >= found) this.chosen = 0;
     } else if (this.answer) {
-      return this.keepShown(this.answer.candidates[index]);
+      this.guide.done("pin");
+      return this.keepShown(this.candidates()[index]);
     }
     this.keep();
     this.draw();
@@ -247,16 +307,17 @@ class Page {
       if (document.activeElement !== field) field.value = value === undefined ? "" : String(value);
     };
     input("closed").checked = task.closed;
-    set("tolerance", task.tolerance);
     set("transmission", task.transmission_deg_min);
     set("ratio", task.link_ratio_max);
-    input("pivots").checked = task.pivots_in !== undefined;
-    byId("box-numbers").hidden = task.pivots_in === undefined;
-    ["left", "bottom", "right", "top"].forEach((id, i) => set(id, task.pivots_in?.[i]));
     const key = Object.keys(TYPES).find((name) => TYPES[name].join() === task.types.join());
     byId<HTMLSelectElement>("type").value = key ?? "as-given";
     byId("as-given").hidden = key !== undefined;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
+    const example = EXAMPLES.findIndex(([, one]) => one.name === task.name);
+    byId<HTMLSelectElement>("example-choice").value = example < 0 ? "" : String(example);
+    fillRequirements(task);
+    this.kept.show(task);
+    this.table.show(task);
     const text = byId<HTMLTextAreaElement>("coordinates");
     if (document.activeElement !== text) text.value = task.points.map((p) => p.join(", ")).join("\n");
     byId("point-count").textContent = String(task.points.length);
@@ -264,20 +325,23 @@ class Page {
 
   private listen() {
     const click = (id: string, act: () => void) => byId(id).addEventListener("click", act);
-    for (const tool of ["draw", "points"] as Tool[]) {
-      click(`tool-${tool}`, () => {
-        this.board.tool = tool;
-        for (const other of ["draw", "points"]) byId(`tool-${other}`).setAttribute("aria-pressed", String(other === tool));
-      });
+    for (const tool of ["draw", "points", "pivots_in", "footprint_in", "photo-move", "photo-scale"] as Tool[]) {
+      // Pressed again, a tool is laid down.
+      click(`tool-${tool}`, () => this.use(this.board.tool === tool ? "draw" : tool));
     }
     click("undo", () => this.back("undo"));
     click("redo", () => this.back("redo"));
-    click("clear", () => this.change({ points: [] }, { fresh: true }));
-    click("example", () => {
-      this.steps.note(this.task);
+    click("clear", () => this.replace(withPoints(this.task, [], this.task.closed), { fresh: true }));
+    const choice = byId<HTMLSelectElement>("example-choice");
+    choice.replaceChildren(new Option("choose one", ""), ...EXAMPLES.map(([name], i) => new Option(name, String(i))));
+    const example = () => {
       this.fitNext = true;
-      this.put(EXAMPLE, { fresh: true });
-    });
+      this.replace(EXAMPLES[Number(choice.value || 0)][1], { fresh: true });
+    };
+    click("example", example);
+    choice.addEventListener("change", example);
+    listenToRequirements(() => this.task, (task) => this.replace(task), () => this.board.fit());
+    watchFiles(byId("board"), input("file"), (text, name) => void this.takeText(text, name), (file) => void this.photograph.take(file));
     click("fit", () => this.board.fit());
     click("nearer", () => this.board.zoom(1.25));
     click("farther", () => this.board.zoom(0.8));
@@ -297,7 +361,7 @@ class Page {
       const name = `${this.task.name}-${this.chosen + 1}`.slice(-64);
       if (shown) void this.save("/linkage.toml", { name, unit: this.task.unit, linkage: shown.linkage }, name);
     });
-    input("closed").addEventListener("change", () => this.change({ closed: input("closed").checked }));
+    input("closed").addEventListener("change", () => this.replace(settled({ ...this.task, closed: input("closed").checked })));
     const number = (id: string, key: "tolerance" | "transmission_deg_min" | "link_ratio_max") => {
       input(id).addEventListener("change", () => {
         const { value, valueAsNumber } = input(id);
@@ -309,21 +373,7 @@ class Page {
     number("ratio", "link_ratio_max");
     const type = byId<HTMLSelectElement>("type");
     type.addEventListener("change", () => this.change({ types: TYPES[type.value] ?? this.task.types }));
-    input("pivots").addEventListener("change", () => {
-      this.change({ pivots_in: input("pivots").checked ? this.boxAround() : undefined });
-      if (input("pivots").checked) this.board.fit();
-    });
-    ["left", "bottom", "right", "top"].forEach((id, i) => input(id).addEventListener("change", () => {
-      const box = [...(this.task.pivots_in ?? this.boxAround())] as [number, number, number, number];
-      box[i] = input(id).valueAsNumber;
-      if (box.every(Number.isFinite)) this.change({ pivots_in: box });
-    }));
-    click("take-coordinates", () => {
-      const points = ofText(byId<HTMLTextAreaElement>("coordinates").value);
-      if (typeof points === "string") return this.say(`These are no coordinates: ${points}`);
-      this.fitNext = true;
-      return this.change({ points }, { fresh: true });
-    });
+    click("take-coordinates", () => void this.takeText(byId<HTMLTextAreaElement>("coordinates").value, ""));
     document.addEventListener("keydown", (event) => {
       const typing = (event.target as Element).closest("input, textarea, select");
       if (typing || !(event.ctrlKey || event.metaKey)) return;
@@ -338,19 +388,21 @@ class Page {
     byId("play").textContent = this.playing ? "Pause" : "Play";
   }
 
-  private back(way: "undo" | "redo") {
-    const task = way === "undo" ? this.steps.undo(this.task) : this.steps.redo(this.task);
-    if (task) this.put(task, {});
+  private now() {
+    return { task: this.task, photo: this.underlay.placed };
   }
 
-  /** A box below the target, as wide as it. */
-  private boxAround(): [number, number, number, number] {
-    const [xs, ys] = [this.task.points.map((p) => p[0]), this.task.points.map((p) => p[1])];
-    if (xs.length === 0) return [-50, -50, 50, 0];
-    const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const size = Math.max(right - left, high - low, 1e-6);
-    const round = (value: number) => Number(value.toPrecision(3));
-    return [round(left - 0.3 * size), round(low - 1.2 * size), round(right + 0.3 * size), round(low - 0.1 * size)];
+  /** Notes what stands before a change, so that it can be undone. */
+  private note() {
+    this.steps.note(this.now());
+    this.showSteps();
+  }
+
+  private back(way: "undo" | "redo") {
+    const then = way === "undo" ? this.steps.undo(this.now()) : this.steps.redo(this.now());
+    if (!then) return;
+    if (then.photo) this.underlay.place(then.photo);
+    this.put(then.task, {});
   }
 
   private async save(path: string, what: unknown, name: string) {

@@ -29,13 +29,13 @@ export function remember(what: Remembered) {
   }
 }
 
-/** The steps back and forth between tasks. */
-export class Steps {
+/** The steps back and forth between states. */
+export class Steps<State> {
   private back: string[] = [];
   private forth: string[] = [];
 
-  /** Notes the task as it was before a change. */
-  note(before: Task) {
+  /** Notes the state as it was before a change. */
+  note(before: State) {
     const text = JSON.stringify(before);
     if (this.back[this.back.length - 1] === text) return;
     this.back.push(text);
@@ -43,11 +43,11 @@ export class Steps {
     this.forth = [];
   }
 
-  undo(now: Task): Task | null {
+  undo(now: State): State | null {
     return this.step(this.back, this.forth, now);
   }
 
-  redo(now: Task): Task | null {
+  redo(now: State): State | null {
     return this.step(this.forth, this.back, now);
   }
 
@@ -59,10 +59,10 @@ export class Steps {
     return this.forth.length > 0;
   }
 
-  private step(from: string[], to: string[], now: Task): Task | null {
+  private step(from: string[], to: string[], now: State): State | null {
     const text = from.pop();
     if (text === undefined) return null;
     to.push(JSON.stringify(now));
-    return JSON.parse(text) as Task;
+    return JSON.parse(text) as State;
   }
 }

@@ -2,17 +2,35 @@
 
 export type Point = [number, number];
 
+/** xmin, ymin, xmax, ymax. */
+export type Box = [number, number, number, number];
+
 export interface Ask {
   version: number;
   name: string;
   unit?: string;
+  source?: string;
   points: Point[];
   closed: boolean;
   tolerance?: number;
+  tolerances?: number[];
+  weights?: number[];
+  timing?: { crank_deg: number[]; offset: "free" | "fixed" | "ground" };
+  raw?: { points: Point[]; smooth?: number; samples?: number };
   types: string[];
   transmission_deg_min?: number;
   link_ratio_max?: number;
-  pivots_in?: [number, number, number, number];
+  transmission_over?: "cycle" | "used";
+  pivots_in?: Box;
+  footprint_in?: Box;
+  order?: "required" | "any";
+  direction?: "any" | "ccw" | "cw";
+  circuit?: "one" | "any";
+  branch?: "one" | "any";
+  method?: string;
+  objective?: "sum-of-squares" | "max-deviation";
+  /** Other keys of the problem file, as they are typed there. */
+  kept?: Record<string, string>;
   seed: number;
   moving?: boolean;
   fresh?: boolean;
@@ -35,6 +53,33 @@ export interface Shown {
   link_ratio: number;
   accepted: boolean;
   unmet: string[];
+  ability?: string;
+  certified_within?: number;
+}
+
+/** The linkages through nine points, counted. */
+export interface Counted {
+  classes: number;
+  real: number;
+  one_circuit: number;
+  in_order: number;
+  free_of_defects: number;
+  said: string[];
+}
+
+export type Value = number | number[] | number[][] | string | string[];
+
+/** Changes of the problem after which something acceptable was found. */
+export interface Relaxation {
+  set: { key: string; from: Value; to: Value }[];
+  rms: number;
+}
+
+/** A text that was read: see `POST /read`. */
+export interface Reading {
+  ask: Ask;
+  whole: boolean;
+  warnings: string[];
 }
 
 export interface Answer {
@@ -43,4 +88,6 @@ export interface Answer {
   said: string;
   progress?: number;
   candidates: Shown[];
+  nine?: Counted;
+  relaxations?: Relaxation[];
 }

@@ -11,16 +11,31 @@ const WORDS: Record<string, string> = {
   transmission_deg_min: "transmission angle",
   link_ratio_max: "link ratio",
   pivots_in: "pivots",
+  footprint_in: "space",
+  direction: "direction of the crank",
   tolerance: "tolerance",
   order: "order of the points",
   branch: "toggle between the points",
   circuit: "two circuits",
 };
 
-export const inWords = (shown: Shown) => (shown.accepted ? "meets everything" : `not met: ${shown.unmet.map((key) => WORDS[key] ?? key).join(", ") || "a defect"}`);
+const word = (key: string) => WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, "place of $1").replace(/^design\./, "bounds of ");
+
+export const inWords = (shown: Shown) => (shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`);
+
+/** How near it comes: to the last digit where it is one of the linkages through nine points. */
+export function nearness(shown: Shown, unit: string | undefined): string {
+  const length = unit ? ` ${unit}` : "";
+  if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
+  return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
+}
 
 /** One card of the strip. */
 class Card {
+  seen = true;
+  private moving: Moving | null = null;
+  private points: Point[] | null = null;
+  private key = "";
   private picture = new Figure(0.55);
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
   private target = shape("path", { class: "target-line" });
@@ -39,6 +54,9 @@ class Card {
 
   show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
     const { shown } = moving;
+    const key = JSON.stringify([name, unit, chosen, pinned, closed]);
+    if (moving === this.moving && points === this.points && key === this.key) return;
+    [this.moving, this.points, this.key] = [moving, points, key];
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
     const scale = Math.min((W - 16) / w, (H - 16) / h);
@@ -46,9 +64,8 @@ class Card {
     const line = points.map(toward);
     setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
-    const length = unit ? ` ${unit}` : "";
     this.title.textContent = name;
-    this.figures.textContent = `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}; ${shown.type}, ${figure(shown.transmission_deg, 3)}°`;
+    this.figures.textContent = `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`;
     this.verdict.textContent = inWords(shown);
     this.verdict.classList.toggle("good", shown.accepted);
     setAll(this.pick, { "aria-pressed": String(chosen) });
@@ -64,6 +81,13 @@ class Card {
 export class Strip {
   private cards: Card[] = [];
   private count = 0;
+  /** Only what is in sight moves. */
+  private sight = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      const card = this.cards.find((one) => one.node === entry.target);
+      if (card) card.seen = entry.isIntersecting;
+    }
+  });
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
@@ -71,7 +95,9 @@ export class Strip {
   show(all: Moving[], found: number, chosen: number, unit: string | undefined, points: Point[], closed: boolean) {
     while (this.cards.length < all.length) {
       const i = this.cards.length;
-      this.cards.push(new Card(() => this.pick(i), () => this.pin(i)));
+      const card = new Card(() => this.pick(i), () => this.pin(i));
+      this.cards.push(card);
+      this.sight.observe(card.node);
     }
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
@@ -81,9 +107,10 @@ export class Strip {
       this.list.replaceChildren(...this.cards.slice(0, all.length).map((card) => card.node));
     }
     this.count = all.length;
+    this.list.classList.toggle("many", all.length > 12);
   }
 
-  pose(part: number) {
-    for (let i = 0; i < this.count; i += 1) this.cards[i].pose(part);
+  pose(part: number, all = false) {
+    for (let i = 0; i < this.count; i += 1) if (all || this.cards[i].seen) this.cards[i].pose(part);
   }
 }

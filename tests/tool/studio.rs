@@ -299,6 +299,24 @@ fn bodies_that_are_wrong_or_huge_are_refused() {
         "t1": 1, "t2": -1}});
     let reply = studio.posts(&cookie, "/linkage.toml", linkage.to_string().as_bytes());
     assert!(reply.status() == 200 && reply.0.contains("[linkage]"), "{}", reply.0);
+    // Texts to be read: no file is opened, nothing wrong hangs or breaks.
+    for body in [
+        "{}",
+        "{\"kind\": \"csv\"}",
+        "{\"kind\": \"exe\", \"text\": \"\"}",
+        "{\"kind\": \"csv\", \"text\": \"x,y\\n1,nan\\n\"}",
+        "{\"kind\": \"problem\", \"text\": \"format = 1\\n[task.path]\\nfile = '/etc/passwd'\"}",
+        "{\"kind\": \"svg\", \"text\": \"<!DOCTYPE x [<!ENTITY a 'b'>]><svg>&a;</svg>\"}",
+    ] {
+        let reply = studio.posts(&cookie, "/read", body.as_bytes());
+        assert_eq!(reply.status(), 422, "{body}: {}", reply.0);
+    }
+    let deep = json!({"kind": "svg", "text": "<g>".repeat(60_000)}).to_string();
+    assert_eq!(studio.posts(&cookie, "/read", deep.as_bytes()).status(), 422);
+    let csv =
+        json!({"kind": "csv", "name": "a.csv", "text": "x,y,crank_deg\n0,0,1\n1,1,2\n2,0,3\n"}).to_string();
+    let reply = studio.posts(&cookie, "/read", csv.as_bytes());
+    assert!(reply.status() == 200 && reply.0.contains("crank_deg"), "{}", reply.0);
     studio.is_well(&cookie);
 }
 
@@ -334,6 +352,41 @@ fn a_tab_gets_linkages_they_follow_and_nonsense_in_between_is_said_to_be_so() {
     assert!(other.hears().is_none());
     tab.send(&egg(5, 16, 0.0).to_string());
     tab.hears_that(|a| a["version"] == 5);
+    studio.is_well(&cookie);
+}
+
+#[test]
+fn nine_points_give_every_linkage_and_all_of_them_move_along() {
+    let studio = Studio::start(&["--port", "18468"]);
+    let cookie = studio.cookie();
+    let mut tab = studio.tab(&cookie);
+    let ask = |version: u64, by: f64| {
+        let points = [[0, 0], [11, -6], [24, -8], [37, -4], [45, 6], [42, 19], [30, 27], [14, 25], [3, 14]];
+        let mut points = points.map(|p| p.map(f64::from));
+        points[3][1] += by;
+        json!({"version": version, "points": points, "closed": true, "method": "continuation"})
+    };
+    tab.send(&ask(1, 0.0).to_string());
+    let first = tab.hears_that(|a| a["version"] == 1 && a["nine"].is_object());
+    let counted = |a: &Value| (a["nine"]["classes"].as_u64(), a["nine"]["real"].as_u64());
+    assert!(counted(&first).0 == Some(1442), "{}", first["nine"]);
+    assert_eq!(first["candidates"].as_array().map(|c| c.len() as u64), counted(&first).1);
+    assert!(first["candidates"][0]["ability"].is_string());
+    // The same counts with proofs when the run has ended.
+    let done = tab.hears_that(|a| a["version"] == 1 && a["doing"] == "done");
+    assert_eq!(counted(&done), counted(&first));
+    assert!(done["nine"]["said"].to_string().contains("Proved"), "{}", done["nine"]);
+    let mut moved = ask(2, 0.3);
+    moved["moving"] = json!(true);
+    tab.send(&moved.to_string());
+    let followed = tab.hears_that(|a| a["version"] == 2);
+    assert!(followed["doing"] == "following" && counted(&followed).0 == Some(1442), "{}", followed["nine"]);
+    // Eight points have no such list.
+    let mut eight = egg(3, 8, 5.0);
+    eight["method"] = json!("continuation");
+    tab.send(&eight.to_string());
+    let refused = tab.hears_that(|a| a["doing"] == "refused");
+    assert!(refused["said"].as_str().is_some_and(|said| said.contains("9 points")), "{refused}");
     studio.is_well(&cookie);
 }
 
@@ -402,7 +455,7 @@ fn ctrl_c_ends_it_cleanly_with_a_search_on() {
 }
 
 #[test]
-fn a_problem_begins_and_one_that_the_page_cannot_hold_is_refused() {
+fn a_problem_begins_with_all_that_it_says_and_one_of_too_many_points_is_refused() {
     let root = crate::common::root();
     let problem = root.join("problems/examples/pivot-box.toml");
     let studio = Studio::start(&["--port", "18466", &problem.display().to_string()]);
@@ -419,7 +472,21 @@ fn a_problem_begins_and_one_that_the_page_cannot_hold_is_refused() {
     assert_eq!((again.spec, again.name, again.unit), (before.spec, before.name, before.unit));
     let schemas = studio.asks("GET", "/schemas.json", &[("Cookie", &cookie)], b"").0;
     assert!(schemas.contains("transmission_deg_min") && schemas.contains("half_width_deg"));
-    for (file, says) in [("problems/literature/e5.toml", "the studio"), ("problems/none.toml", "none.toml")] {
+    let timed =
+        Studio::start(&["--port", "18467", &root.join("problems/literature/e5.toml").display().to_string()]);
+    let cookie = timed.cookie();
+    let reply = timed.asks("GET", "/beginning.json", &[("Cookie", &cookie)], b"");
+    let ask: Value = serde_json::from_str(reply.0.split("\r\n\r\n").nth(1).expect("a body")).expect("JSON");
+    let before = crate::common::load(&root.join("problems/literature/e5.toml"), &[]).spec;
+    assert_eq!(ask["timing"]["crank_deg"].as_array().map(Vec::len), Some(before.task.path.points.len()));
+    assert!(ask["kept"]["design.a"].is_string(), "{ask}");
+    let text = timed.posts(&cookie, "/problem.toml", ask.to_string().as_bytes()).0;
+    assert_eq!(crate::common::parse(text.split("\r\n\r\n").nth(1).expect("a body")).spec, before);
+    let folder = tempfile::tempdir().expect("a folder");
+    let many = folder.path().join("many.csv");
+    std::fs::write(&many, format!("x,y\n{}", "0,0\n1,1\n".repeat(600))).expect("written");
+    let many = many.display().to_string();
+    for (file, says) in [(many.as_str(), "1200 points"), ("problems/none.toml", "none.toml")] {
         let output = Command::new(env!("CARGO_BIN_EXE_linkwright"))
             .args(["studio", "--no-open", file])
             .current_dir(root)

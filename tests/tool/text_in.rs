@@ -241,6 +241,37 @@ fn a_points_file_gives_points_timing_weights_and_tolerances() {
 }
 
 #[test]
+fn tolerances_and_weights_of_points_can_stand_beside_them() {
+    let text = format!("{PLAIN}tolerance = [0.1, 0]\nweight = [1, 2.5]\n");
+    let path = parsed(&text).spec.task.path;
+    assert_eq!((path.tolerance, path.weight), (Some(vec![0.1, 0.0]), Some(vec![1.0, 2.5])));
+    // What is typed takes its place, for all points.
+    let typed = [("task.path.tolerance".into(), "0.3".into())];
+    let path = problem_file::parse("arm.toml", &text, None, &typed).unwrap().spec.task.path;
+    assert_eq!(path.tolerance, Some(vec![0.3; 2]));
+    for (lines, line, says) in [
+        ("tolerance = [0.1]", 4, "2 points and 1 tolerance"),
+        ("tolerance = []", 4, "2 points and 0 tolerances"),
+        ("tolerance = [0.1, -2]", 4, "tolerance = -2: a distance cannot be negative"),
+        ("tolerance = \"small\"", 4, "a number for all points, or a list of one for each"),
+        ("tolerance = [1, nan]", 4, "nan is not a number"),
+        ("weight = [1, 2, 3]", 4, "2 points and 3 weights"),
+        ("weight = [1, 0]", 4, "weight = 0: a weight is positive"),
+        ("samples = 20\nweight = [1, 2]", 4, "the weights belong to the old ones"),
+        ("samples = 20\ntolerance = [1, 2]", 4, "the tolerances belong to the old ones"),
+    ] {
+        let refused = problem_file::parse("arm.toml", &format!("{PLAIN}{lines}\n"), None, &[]).unwrap_err();
+        assert!(refused.message.contains(says), "{lines}: {refused}");
+        assert_eq!(refused.line_column().map(|(line, _)| line), Some(line), "{lines}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.csv"), "x,y,weight\n0,0,1\n3,4,2\n").unwrap();
+    let toml = folder.path().join("p.toml");
+    std::fs::write(&toml, "format = 1\n[task.path]\nfile = \"p.csv\"\nweight = [1, 2]\n").unwrap();
+    assert!(problem_file::load(&toml, &[]).unwrap_err().message.contains("as a column of p.csv"));
+}
+
+#[test]
 fn cells_that_nobody_reads_may_be_away() {
     let read = points_file::parse("p.csv", "x,y,note\n0,0\n3,4,end\n").unwrap();
     assert_eq!(read.points, [[0.0, 0.0], [3.0, 4.0]]);

@@ -1,0 +1,110 @@
+//! Nine points that move under the hand: every real linkage through them, followed from the ones before.
+
+use crate::exact::{Completeness as Ended, Options, Reality, Solution, Solved, Target, resolve_from, solve};
+use crate::problem::Problem;
+use crate::problem::precision::precision_points;
+use crate::record::{Census, Completeness};
+use crate::search::continuation::{Exact, listed};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The solutions of nine points, kept to be followed when a point moves.
+#[derive(Clone, Debug, Default)]
+pub struct Nine {
+    solved: Option<Solved>,
+}
+
+impl Nine {
+    /// Nothing solved yet.
+    pub fn new() -> Self {
+        Nine::default()
+    }
+
+    /// All real linkages through the points of a problem, judged by its requirements, better first; from the solutions
+    /// before where there are any ([`resolve_from`]), else from the start set ([`solve`]). Nothing is certified: that is
+    /// for a run. `None` where the problem has no nine precision points, or it was cancelled.
+    pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
+        let target = Target::new(precision_points(problem).ok()?).ok()?;
+        let options = Options::default();
+        let solved = match self.solved.take() {
+            // A requirement has changed, no point.
+            Some(before) if before.target == target => before,
+            Some(before) => resolve_from(&before, &target, &options, cancel).solved,
+            None => solve(&target, &options, &|_, _| {}, cancel),
+        };
+        if cancel.load(Ordering::Relaxed) || solved.cancelled {
+            return None;
+        }
+        let real: Vec<Solution> = solved
+            .classes
+            .iter()
+            .filter(|class| class.reality == Reality::Real)
+            .map(|class| class.solution)
+            .collect();
+        let paths = &solved.census;
+        let census = Census {
+            tracked: paths.tracked,
+            finite: paths.finite,
+            classes: paths.distinct,
+            duplicate: paths.duplicates,
+            singular: paths.singular,
+            failed: paths.failed,
+            real: paths.real,
+            real_curve: paths.curve_only,
+            complex: paths.complex,
+            not_certified: paths.distinct,
+            ..Census::default()
+        };
+        let completeness = match solved.completeness() {
+            Ended::Complete => Completeness::Complete,
+            Ended::NonGeneric { .. } => Completeness::NonGeneric,
+            Ended::Incomplete { .. } => Completeness::Incomplete,
+            Ended::Cancelled => Completeness::Cancelled,
+        };
+        let exact = listed(problem, &target, census, completeness, &real);
+        // Points in special position lose classes: from there the way back is the start set.
+        self.solved = (solved.completeness() == Ended::Complete).then_some(solved);
+        Some(exact)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::parse;
+    use crate::run::{Context, Job, run};
+    use crate::search::continuation::same;
+
+    fn points(moved: f64) -> Problem {
+        let text = include_str!("../../problems/exact/crank-rocker.toml");
+        let mut spec = parse("nine", text, None, &[]).expect("a problem").spec;
+        spec.task.path.points[4][0] += moved;
+        Problem::new(spec).expect("a task")
+    }
+
+    #[test]
+    fn moved_points_have_the_linkages_that_a_run_of_their_own_finds() {
+        let cancel = AtomicBool::new(false);
+        let mut nine = Nine::new();
+        let first = nine.follow(&points(0.0), &cancel).expect("nine points");
+        assert!(first.record.census.classes == 1442 && first.record.linkages.len() > 3);
+        let moved = nine.follow(&points(0.01), &cancel).expect("nine points");
+        let job = Job { name: "n".into(), source: None, unit: None, spec: points(0.01).spec().clone() };
+        let record = run(&job, &Context { cancel: &cancel, observer: &|_| {} }).expect("it runs").record;
+        let afresh = record.exact.expect("nine points");
+        let counts = |c: &Census| (c.classes, c.real, c.one_circuit, c.in_order, c.free_of_defects);
+        assert_eq!(counts(&moved.record.census), counts(&afresh.census));
+        // Equals may stand in another order, and of six equal mechanisms another may stand first.
+        for followed in &moved.record.linkages {
+            let found = afresh.linkages.iter().find(|found| {
+                let others = found.others.iter().map(|form| &form.linkage);
+                std::iter::once(&found.linkage).chain(others).any(|form| same(form, &followed.linkage))
+            });
+            let found = found.expect("the run has it too");
+            assert_eq!((followed.accepted, followed.in_order), (found.accepted, found.in_order));
+        }
+        // Ten points are no nine.
+        let mut spec = points(0.0).spec().clone();
+        spec.task.path.points.push([9.0, 9.0]);
+        assert!(nine.follow(&Problem::new(spec).expect("a task"), &cancel).is_none());
+    }
+}

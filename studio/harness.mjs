@@ -1,0 +1,66 @@
+// A studio and a browser for tests: see .ci/check-studio.
+
+import { spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+export const program = process.env.LINKWRIGHT;
+/** Where pictures go; none are taken without it. */
+export const shots = process.env.SCREENSHOTS;
+/** A folder with the page to be tested in place of the one in the program. */
+const built = process.env.PAGE;
+
+export function browser() {
+  const local = built ? ["--disable-features=LocalNetworkAccessChecks"] : [];
+  return chromium.launch({
+    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", ...local],
+  });
+}
+
+const running = new Set();
+
+/** Ends what a failed test has left. */
+export const endAll = () => running.forEach((child) => child.kill());
+
+/** A studio of its own; its address, and how to end it. */
+export async function studio(...options) {
+  const child = spawn(program, ["studio", "--no-open", ...options], { stdio: ["ignore", "pipe", "ignore"] });
+  running.add(child);
+  child.once("exit", () => running.delete(child));
+  const address = await new Promise((tell, fail) => {
+    child.stdout.once("data", (text) => tell(String(text).trim()));
+    child.once("exit", (code) => fail(new Error(`the studio ended with ${code}`)));
+  });
+  return { address, child, end: () => new Promise((ended) => { child.once("exit", ended); child.kill("SIGINT"); }) };
+}
+
+/** A page of it, watched: what the console says is kept. */
+export async function opened(browser, address, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
+  if (built) {
+    const headers = { "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:" };
+    for (const [path, file, contentType] of [["/app.js", "app.js", "text/javascript"], ["/style.css", "style.css", "text/css"], ["/", "index.html", "text/html; charset=utf-8"]]) {
+      await context.route((url) => url.pathname === path && !url.search, (route) => route.fulfill({ body: readFileSync(`${built}/${file}`), contentType, headers }));
+    }
+  }
+  const page = await context.newPage();
+  await page.goto(address);
+  if (built) await page.goto(new URL("/", address).href);
+  const said = [];
+  page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
+  page.on("pageerror", (error) => said.push(`error: ${error.message}`));
+  await page.waitForSelector("#strip li");
+  return { page, said, context };
+}
+
+export const status = (page) => page.locator("#status").textContent();
+
+/** Waits until the last edit is answered and this is done for it. */
+export const doing = (page, what) => page.waitForFunction((what) => document.body.dataset.doing === what && document.body.dataset.answered === document.body.dataset.asked, what, { timeout: 90_000 });
+
+/** The problem file that the page saves. */
+export async function problemText(page) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Problem file" }).click()]);
+  return readFileSync(await download.path(), "utf8");
+}

@@ -1,0 +1,68 @@
+// The boxes of the requirements, drawn: for the fixed pivots, and for everything that moves.
+
+import { px, shape } from "../../src/report/html/player/svg.mjs";
+import type { Box, Point, Task } from "./messages";
+
+export type BoxKind = "pivots_in" | "footprint_in";
+export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
+
+const SAYS: Record<BoxKind, string> = { pivots_in: "fixed pivots in here", footprint_in: "everything in here" };
+/** Which numbers of a box each corner holds, in the order in which keys go through them. */
+const CORNERS: [number, number][] = [[0, 1], [2, 1], [2, 3], [0, 3]];
+const NAMES = ["lower left", "lower right", "upper right", "upper left"];
+
+export interface Corner {
+  kind: BoxKind;
+  corner: number;
+}
+
+/** A box with one of its corners elsewhere, never narrower than `least`. */
+export function resized(box: Box, corner: number, to: Point, least: number): Box {
+  const [i, j] = CORNERS[corner];
+  const [x, y] = to.map((value) => Number(value.toPrecision(4)));
+  const next = [...box] as Box;
+  next[i] = i === 0 ? Math.min(x, box[2] - least) : Math.max(x, box[0] + least);
+  next[j] = j === 1 ? Math.min(y, box[3] - least) : Math.max(y, box[1] + least);
+  return next;
+}
+
+/** The box between two points; null where it would be too small to be meant. */
+export function between(from: Point, to: Point, least: number): Box | null {
+  const [x, y] = to.map((value) => Number(value.toPrecision(4)));
+  const [x0, y0] = from.map((value) => Number(value.toPrecision(4)));
+  const box: Box = [Math.min(x0, x), Math.min(y0, y), Math.max(x0, x), Math.max(y0, y)];
+  return box[2] - box[0] >= least && box[3] - box[1] >= least ? box : null;
+}
+
+export function cornerOf(box: Box, corner: number): Point {
+  const [i, j] = CORNERS[corner];
+  return [box[i], box[j]];
+}
+
+/** The next corner in the order of keys; null after the last. */
+export function nextCorner(task: Task, now: Corner | null): Corner | null {
+  const all = KINDS.filter((kind) => task[kind]).flatMap((kind) => NAMES.map((_, corner) => ({ kind, corner })));
+  const at = now ? all.findIndex((one) => one.kind === now.kind && one.corner === now.corner) : -1;
+  return all[at + 1] ?? null;
+}
+
+export const inWords = (at: Corner) => `${at.kind === "pivots_in" ? "Pivot box" : "Space"}, ${NAMES[at.corner]} corner`;
+
+/** Both boxes as shapes, with handles at their corners. */
+export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corner | null): SVGElement[] {
+  return KINDS.flatMap((kind) => {
+    const box = task[kind];
+    if (!box) return [];
+    const [left, top] = toPixel([box[0], box[3]]);
+    const [right, bottom] = toPixel([box[2], box[1]]);
+    return [
+      shape("rect", { class: `pivot-box ${kind}`, x: px(left), y: px(top), width: px(right - left), height: px(bottom - top) }),
+      shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, [SAYS[kind]]),
+      ...NAMES.map((_, corner) => {
+        const [x, y] = toPixel(cornerOf(box, corner));
+        const here = chosen?.kind === kind && chosen.corner === corner;
+        return shape("rect", { class: `corner${here ? " chosen" : ""}`, x: px(x - 6), y: px(y - 6), width: 12, height: 12, "data-corner": `${kind}:${corner}` });
+      }),
+    ];
+  });
+}

@@ -1,0 +1,90 @@
+// What stands in the way: changes that help, each a button; and what of a problem file the page does not show.
+
+import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
+import { EXACT } from "./task";
+import type { Relaxation, Task, Value } from "./messages";
+
+const NAMES: Record<string, [string, string]> = {
+  "require.type": ["driven by", ""],
+  "require.transmission_deg_min": ["least transmission angle", "°"],
+  "require.link_ratio_max": ["longest over shortest link", ""],
+  "require.pivots_in": ["pivot box", "unit"],
+  "require.footprint_in": ["space for the linkage", "unit"],
+  "require.order": ["order of the points", ""],
+  "require.direction": ["direction of the crank", ""],
+  "require.circuit": ["circuits", ""],
+  "require.branch": ["toggles", ""],
+  "task.path.tolerance": ["largest error", "unit"],
+};
+
+/** A number as it would be typed. */
+const plain = (value: number) => minus(String(Number(value.toPrecision(5))));
+
+const words = (value: Value): string => {
+  if (typeof value === "number") return plain(value);
+  if (typeof value === "string") return value;
+  if (value.length === 0) return "any";
+  return value.map((one) => (Array.isArray(one) ? `${one.map(plain).join(" to ")}` : typeof one === "number" ? plain(one) : one)).join(", ");
+};
+
+/** A change in plain words: `least transmission angle 18° instead of 45°`. */
+function inWords(key: string, from: Value, to: Value, unit: string | undefined): string {
+  const [name, of] = NAMES[key] ?? [key.startsWith("design.") ? `bounds of ${key.slice(7)}` : key, "unit"];
+  const after = of === "unit" ? (unit ? ` ${unit}` : "") : of;
+  return `${name} ${words(to)}${after} instead of ${words(from)}${after}`;
+}
+
+/** The task with a change made. */
+export function changed(task: Task, key: string, to: Value): Task {
+  if (key === "task.path.tolerance") return { ...task, tolerance: to as number, tolerances: undefined };
+  if (key === "require.type") return { ...task, types: to as string[] };
+  if (key.startsWith("require.")) return { ...task, [key.slice(8)]: to };
+  // JSON of numbers, words and lists of them is TOML too.
+  return { ...task, kept: { ...task.kept, [key]: JSON.stringify(to) } };
+}
+
+export class Helps {
+  private told = "";
+
+  constructor(private list: HTMLElement, private take: (make: (task: Task) => Task, said: string) => void) {}
+
+  show(relaxations: Relaxation[], unit: string | undefined) {
+    const key = JSON.stringify([relaxations, unit]);
+    if (key === this.told) return;
+    this.told = key;
+    this.list.hidden = relaxations.length === 0;
+    this.list.replaceChildren(...relaxations.map(({ set, rms }) => {
+      const what = set.map((change) => inWords(change.key, change.from, change.to, unit)).join(" and ");
+      const button = element("button", { type: "button" }, [what]);
+      button.addEventListener("click", () => this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what));
+      return element("li", {}, [button, element("span", {}, [`gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`])]);
+    }));
+  }
+}
+
+/** What is kept of a problem file though the page has no control for it. */
+export class Kept {
+  constructor(private place: HTMLElement, private change: (task: (task: Task) => Task) => void) {}
+
+  show(task: Task) {
+    const all = Object.entries(task.kept ?? {});
+    if (task.method && task.method !== EXACT && task.method !== "auto") all.push(["solve.method", task.method]);
+    if (task.raw) all.push(["smoothing", `${task.raw.points.length} digitised points, until a point is moved`]);
+    this.place.hidden = all.length === 0;
+    const list = this.place.querySelector("ul");
+    const key = JSON.stringify(all);
+    if (!list || list.dataset.key === key) return;
+    list.dataset.key = key;
+    list.replaceChildren(...all.map(([name, value]) => {
+      const item = element("li", {}, [element("code", {}, [`${name} = ${value}`])]);
+      if (task.kept?.[name] === undefined) return item;
+      const drop = element("button", { type: "button", class: "drop", "aria-label": `Let go ${name}` }, ["×"]);
+      drop.addEventListener("click", () => this.change((now) => {
+        const { [name]: _, ...kept } = now.kept ?? {};
+        return { ...now, kept };
+      }));
+      item.append(drop);
+      return item;
+    }));
+  }
+}

@@ -1,0 +1,73 @@
+// Requirements and what stands beside the points, as controls with units and plain words.
+
+import { KINDS } from "./boxes";
+import type { Box, Task } from "./messages";
+import { EXACT, canBeExact, isExact, pivotsBelow, settled, spaceAround, withTiming, withTolerances, withWeights } from "./task";
+
+const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+const input = (id: string) => byId<HTMLInputElement>(id);
+const select = (id: string) => byId<HTMLSelectElement>(id);
+
+const SIDES = ["left", "bottom", "right", "top"];
+const BOXES = [
+  { key: KINDS[0], box: "pivots", numbers: "box-numbers", prefix: "", around: pivotsBelow },
+  { key: KINDS[1], box: "space", numbers: "space-numbers", prefix: "space-", around: spaceAround },
+] as const;
+/** Checked: required, which is the default. */
+const CHECKS = [["order", "required"], ["circuit", "one"], ["branch", "one"]] as const;
+
+/** Listens to the controls; every change makes another task of the one that stands. */
+export function listenToRequirements(now: () => Task, change: (task: Task) => void, shown: () => void) {
+  const on = (id: string, act: () => Task | null) => byId(id).addEventListener("change", () => {
+    const task = act();
+    if (task) change(task);
+  });
+  for (const { key, box, prefix, around } of BOXES) {
+    byId(box).addEventListener("change", () => {
+      change({ ...now(), [key]: input(box).checked ? around(now().points) : undefined });
+      if (input(box).checked) shown();
+    });
+    SIDES.forEach((side, i) => on(prefix + side, () => {
+      const next = [...(now()[key] ?? around(now().points))] as Box;
+      next[i] = input(prefix + side).valueAsNumber;
+      return next.every(Number.isFinite) ? { ...now(), [key]: next } : null;
+    }));
+  }
+  for (const [id, usual] of CHECKS) on(id, () => ({ ...now(), [id]: input(id).checked ? usual : "any" }));
+  on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
+  on("direction", () => ({ ...now(), direction: select("direction").value as Task["direction"] }));
+  on("unit", () => ({ ...now(), unit: select("unit").value || undefined }));
+  on("name", () => (input("name").value.trim() === "" ? null : { ...now(), name: input("name").value.trim() }));
+  on("objective", () => ({ ...now(), objective: select("objective").value as Task["objective"] }));
+  on("timing", () => settled(withTiming(now(), select("timing").value as "none")));
+  on("each-tolerance", () => withTolerances(now(), input("each-tolerance").checked));
+  on("each-weight", () => withWeights(now(), input("each-weight").checked));
+  on("exact", () => ({ ...now(), method: input("exact").checked ? EXACT : undefined }));
+}
+
+/** Brings the controls to what the task says. */
+export function fillRequirements(task: Task) {
+  const set = (id: string, value: number | undefined) => {
+    if (document.activeElement !== input(id)) input(id).value = value === undefined ? "" : String(value);
+  };
+  for (const { key, box, numbers, prefix } of BOXES) {
+    input(box).checked = task[key] !== undefined;
+    byId(numbers).hidden = task[key] === undefined;
+    SIDES.forEach((side, i) => set(prefix + side, task[key]?.[i]));
+  }
+  for (const [id, usual] of CHECKS) input(id).checked = (task[id] ?? usual) === usual;
+  select("over").value = task.transmission_over ?? "";
+  select("direction").value = task.direction ?? "any";
+  select("unit").value = task.unit ?? "";
+  if (document.activeElement !== input("name")) input("name").value = task.name;
+  select("objective").value = task.objective ?? "sum-of-squares";
+  select("timing").value = task.timing?.offset ?? "none";
+  set("tolerance", task.tolerance);
+  input("tolerance").disabled = task.tolerances !== undefined;
+  input("tolerance").placeholder = task.tolerances ? "in the table of points" : "any";
+  input("each-tolerance").checked = task.tolerances !== undefined;
+  input("each-weight").checked = task.weights !== undefined;
+  input("exact").checked = isExact(task);
+  input("exact").disabled = !canBeExact(task) && !isExact(task);
+  input("exact").title = canBeExact(task) ? "" : "Needs exactly nine points and free timing";
+}

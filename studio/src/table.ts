@@ -1,0 +1,154 @@
+// The points as a table to type in: coordinates, and where they are asked for crank angle, tolerance and weight.
+
+import { element } from "../../src/report/html/player/svg.mjs";
+import type { Point, Task } from "./messages";
+import { withAdded, withMoved, withRemoved } from "./task";
+
+/** Rows at once. */
+const PAGE = 40;
+
+type Column = "x" | "y" | "crank_deg" | "tolerance" | "weight";
+
+const HEADS: Record<Column, [string, string]> = {
+  x: ["x", "x"],
+  y: ["y", "y"],
+  crank_deg: ["crank °", "crank angle in degrees"],
+  tolerance: ["± error", "largest error"],
+  weight: ["weight", "weight"],
+};
+
+function columnsOf(task: Task): Column[] {
+  const columns: Column[] = ["x", "y"];
+  if (task.timing) columns.push("crank_deg");
+  if (task.tolerances) columns.push("tolerance");
+  if (task.weights) columns.push("weight");
+  return columns;
+}
+
+function valueAt(task: Task, column: Column, row: number): number {
+  switch (column) {
+    case "x": return task.points[row][0];
+    case "y": return task.points[row][1];
+    case "crank_deg": return task.timing?.crank_deg[row] ?? 0;
+    case "tolerance": return task.tolerances?.[row] ?? 0;
+    case "weight": return task.weights?.[row] ?? 1;
+  }
+}
+
+/** The task with one cell changed. */
+export function withCell(task: Task, column: Column, row: number, value: number): Task {
+  const put = (list: number[] | undefined) => list?.map((old, i) => (i === row ? value : old));
+  switch (column) {
+    case "x":
+    case "y": {
+      const axis = column === "x" ? 0 : 1;
+      const points = task.points.map((p, i): Point => (i === row ? (axis === 0 ? [value, p[1]] : [p[0], value]) : p));
+      return withMoved(task, points);
+    }
+    case "crank_deg": return { ...task, timing: task.timing && { ...task.timing, crank_deg: put(task.timing.crank_deg) as number[] } };
+    case "tolerance": return { ...task, tolerances: put(task.tolerances) };
+    case "weight": return { ...task, weights: put(task.weights) };
+  }
+}
+
+export class Table {
+  private task: Task | null = null;
+  private from = 0;
+  private shape = "";
+  private inputs: HTMLInputElement[][] = [];
+  private head = element("thead");
+  private body = element("tbody");
+  private earlier = element("button", { type: "button" }, ["Earlier"]);
+  private later = element("button", { type: "button" }, ["Later"]);
+  private add = element("button", { type: "button" }, ["Add a point"]);
+  private pages = element("span", { class: "pages" });
+  private label = element("span");
+
+  constructor(private place: HTMLElement, private edit: (task: Task) => void, private say: (text: string) => void) {
+    const table = element("table", { class: "points", "aria-label": "Points" }, [this.head, this.body]);
+    this.pages.append(this.earlier, this.label, this.later);
+    place.append(table, element("div", { class: "row" }, [this.add, this.pages]));
+    this.earlier.addEventListener("click", () => this.turn(-PAGE));
+    this.later.addEventListener("click", () => this.turn(PAGE));
+    this.add.addEventListener("click", () => this.more());
+    place.closest("details")?.addEventListener("toggle", () => this.task && this.show(this.task));
+  }
+
+  private turn(by: number) {
+    this.from += by;
+    if (this.task) this.show(this.task);
+  }
+
+  private more() {
+    const { task } = this;
+    if (!task) return;
+    const n = task.points.length;
+    const [before, last] = [task.points[n - 2], task.points[n - 1]];
+    const at: Point = !last ? [0, 0] : !before ? [last[0] + 10, last[1]] : [Number((2 * last[0] - before[0]).toPrecision(6)), Number((2 * last[1] - before[1]).toPrecision(6))];
+    this.edit(withAdded(task, n - 1, at));
+    this.from = Math.floor(n / PAGE) * PAGE;
+    if (this.task) this.show(this.task);
+    this.inputs[this.inputs.length - 1]?.[0]?.focus();
+  }
+
+  show(task: Task) {
+    this.task = task;
+    // While a point is dragged nobody fills a table that is not seen.
+    if (this.place.closest("details")?.open === false) return;
+    const n = task.points.length;
+    this.from = Math.max(0, Math.min(this.from, Math.floor(Math.max(n - 1, 0) / PAGE) * PAGE));
+    const columns = columnsOf(task);
+    const rows = Math.min(PAGE, n - this.from);
+    const shape = `${columns.join()} ${this.from} ${rows}`;
+    if (shape !== this.shape) this.build(columns, rows);
+    this.shape = shape;
+    this.inputs.forEach((cells, i) => cells.forEach((input, j) => {
+      if (document.activeElement !== input) input.value = String(Number(valueAt(task, columns[j], this.from + i).toPrecision(9)));
+    }));
+    this.pages.hidden = n <= PAGE;
+    this.earlier.disabled = this.from === 0;
+    this.later.disabled = this.from + PAGE >= n;
+    this.label.textContent = `${this.from + 1}–${this.from + rows} of ${n}`;
+  }
+
+  private build(columns: Column[], rows: number) {
+    const heads = columns.map((column) => element("th", { scope: "col", title: HEADS[column][1] }, [HEADS[column][0]]));
+    this.head.replaceChildren(element("tr", {}, [element("th", { scope: "col" }, ["#"]), ...heads, element("th")]));
+    this.inputs = [];
+    this.body.replaceChildren(...Array.from({ length: rows }, (_, i) => {
+      const row = this.from + i;
+      const cells = columns.map((column) => {
+        const input = element("input", { type: "number", step: "any", "aria-label": `Point ${row + 1}, ${HEADS[column][1]}` }) as HTMLInputElement;
+        input.addEventListener("change", () => this.take(column, row, input));
+        input.addEventListener("keydown", (event: KeyboardEvent) => this.go(event, i, columns.indexOf(column)));
+        return input;
+      });
+      this.inputs.push(cells);
+      const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row + 1}` }, ["×"]);
+      drop.addEventListener("click", () => this.task && this.edit(withRemoved(this.task, row)));
+      return element("tr", {}, [element("th", { scope: "row" }, [String(row + 1)]), ...cells.map((cell) => element("td", {}, [cell])), element("td", {}, [drop])]);
+    }));
+  }
+
+  private take(column: Column, row: number, input: HTMLInputElement) {
+    const value = input.valueAsNumber;
+    const wrong = !Number.isFinite(value) ? "is no number" : column === "weight" && value <= 0 ? "must be above 0" : column === "tolerance" && value < 0 ? "must be 0 or more" : null;
+    if (!this.task) return;
+    if (wrong) {
+      this.say(`Point ${row + 1}: the ${HEADS[column][1]} ${wrong}.`);
+      input.value = String(valueAt(this.task, column, row));
+      return;
+    }
+    this.edit(withCell(this.task, column, row, value));
+  }
+
+  /** Enter and the arrows up and down go from row to row. */
+  private go(event: KeyboardEvent, row: number, column: number) {
+    const way = { Enter: 1, ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const next = way && this.inputs[row + way]?.[column];
+    if (!way || !next) return;
+    event.preventDefault();
+    next.focus();
+    next.select();
+  }
+}

@@ -1,0 +1,124 @@
+// What is asked, kept in step with itself: lists beside the points are as long as the points are many.
+
+import type { Ask, Box, Point, Task } from "./messages";
+
+/** So many points have all their linkages told. */
+export const NINE = 9;
+export const EXACT = "continuation";
+
+export const isExact = (task: Task) => task.method === EXACT;
+export const canBeExact = (task: Task) => task.points.length === NINE && !task.timing;
+
+/** Crank angles spread evenly over a turn, or over half a turn of an open path. */
+function evenAngles(n: number, closed: boolean): number[] {
+  const step = closed ? 360 / n : 180 / Math.max(n - 1, 1);
+  return Array.from({ length: n }, (_, i) => Number((i * step).toFixed(3)));
+}
+
+/** Leaves out what belongs to points that are no more, and the exact mode where there are not nine. */
+export function settled(task: Task): Task {
+  const { raw: _, ...rest } = task;
+  const n = rest.points.length;
+  const next: Task = { ...rest };
+  if (next.timing && next.timing.crank_deg.length !== n) next.timing = { ...next.timing, crank_deg: evenAngles(n, next.closed) };
+  if (next.tolerances && next.tolerances.length !== n) {
+    next.tolerance = n > 0 ? Math.max(...next.tolerances) : next.tolerance;
+    next.tolerances = undefined;
+  }
+  if (next.weights && next.weights.length !== n) next.weights = undefined;
+  if (isExact(next) && !canBeExact(next)) next.method = undefined;
+  return next;
+}
+
+/** A task with other points in place of all its points. */
+export const withPoints = (task: Task, points: Point[], closed: boolean): Task => settled({ ...task, points, closed });
+
+/** Points that have moved, as many as before. */
+export const withMoved = (task: Task, points: Point[]): Task => settled({ ...task, points });
+
+/** One point more, after the point `index`: what stands beside it is its neighbour's. */
+export function withAdded(task: Task, index: number, at: Point): Task {
+  const insert = <T>(list: T[] | undefined, value: T) => list && [...list.slice(0, index + 1), value, ...list.slice(index + 1)];
+  const angles = task.timing?.crank_deg;
+  const [before, after] = [angles?.[index] ?? 0, angles?.[index + 1]];
+  const step = angles && index > 0 ? before - angles[index - 1] : 30;
+  const angle = after === undefined ? before + step : (before + after) / 2;
+  return settled({
+    ...task,
+    points: insert(task.points, at) as Point[],
+    timing: task.timing && { ...task.timing, crank_deg: insert(angles, angle) as number[] },
+    tolerances: insert(task.tolerances, task.tolerances?.[index] ?? task.tolerances?.[0] ?? 0),
+    weights: insert(task.weights, 1),
+  });
+}
+
+export function withRemoved(task: Task, index: number): Task {
+  const drop = <T>(list: T[] | undefined) => list && list.filter((_, i) => i !== index);
+  return settled({
+    ...task,
+    points: drop(task.points) as Point[],
+    timing: task.timing && { ...task.timing, crank_deg: drop(task.timing.crank_deg) as number[] },
+    tolerances: drop(task.tolerances),
+    weights: drop(task.weights),
+  });
+}
+
+export function withTiming(task: Task, offset: "none" | "free" | "fixed" | "ground"): Task {
+  if (offset === "none") return { ...task, timing: undefined };
+  const crank_deg = task.timing?.crank_deg ?? evenAngles(task.points.length, task.closed);
+  return settled({ ...task, timing: { crank_deg, offset } });
+}
+
+/** A hundredth of the size, to two digits: a tolerance to begin with. */
+export function usualTolerance(task: Task): number {
+  const [left, low, right, high] = boxOf(task.points) ?? [0, 0, 100, 100];
+  return Number((0.01 * Math.max(Math.hypot(right - left, high - low), 1e-9)).toPrecision(2));
+}
+
+export function withTolerances(task: Task, each: boolean): Task {
+  if (!each) return { ...task, tolerance: task.tolerances ? Math.max(...task.tolerances) : task.tolerance, tolerances: undefined };
+  return { ...task, tolerances: task.points.map(() => task.tolerance ?? usualTolerance(task)), tolerance: undefined };
+}
+
+export const withWeights = (task: Task, each: boolean): Task => ({ ...task, weights: each ? task.points.map(() => 1) : undefined });
+
+export const toleranceAt = (task: Task, index: number): number | undefined => task.tolerances?.[index] ?? task.tolerance;
+
+/** The tolerance at a point, or of all where they have one. */
+export function withToleranceAt(task: Task, index: number, radius: number): Task {
+  const value = Number(Math.max(radius, 0).toPrecision(3));
+  if (!task.tolerances) return { ...task, tolerance: value };
+  return { ...task, tolerances: task.tolerances.map((t, i) => (i === index ? value : t)) };
+}
+
+export function boxOf(points: Point[]): Box | null {
+  if (points.length === 0) return null;
+  const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
+  return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+}
+
+const rounded = (box: Box) => box.map((value) => Number(value.toPrecision(3))) as Box;
+
+/** A box below the target, as wide as it. */
+export function pivotsBelow(points: Point[]): Box {
+  const around = boxOf(points);
+  if (!around) return [-50, -50, 50, 0];
+  const [left, low, right, high] = around;
+  const size = Math.max(right - left, high - low, 1e-6);
+  return rounded([left - 0.3 * size, low - 1.2 * size, right + 0.3 * size, low - 0.1 * size]);
+}
+
+/** A box around the target, with room for links. */
+export function spaceAround(points: Point[]): Box {
+  const around = boxOf(points);
+  if (!around) return [-100, -100, 100, 100];
+  const [left, low, right, high] = around;
+  const size = Math.max(right - left, high - low, 1e-6);
+  return rounded([left - size, low - 1.5 * size, right + size, high + 0.5 * size]);
+}
+
+/** The task of an Ask: the rest is the connection's. */
+export function taskOf(ask: Ask): Task {
+  const { version: _v, moving: _m, fresh: _f, ...task } = ask;
+  return task;
+}
