@@ -276,7 +276,7 @@ mod tests {
     use super::*;
 
     fn at(evaluations: u64, best_sum_sq: Option<f64>, accepted: bool) -> Progress {
-        Progress { phase: "least-squares", evaluations, budget: 1_000_000, best_sum_sq, accepted }
+        Progress { phase: "least-squares", evaluations, budget: 1_000_000, best_sum_sq, accepted, hits: None }
     }
 
     fn line(progress: &Progress, before: u64, seconds: u64) -> String {

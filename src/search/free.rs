@@ -152,8 +152,10 @@ fn run_batch(stage: &mut Stage<'_>, first: u64, left: u64, budget: &Budget<'_>) 
     let near_ends: Vec<Start> = stage.leading.iter().map(|(_, start)| start.clone()).collect();
     // Where ends are finished apart and an exact one would end it all, one round goes before the others.
     let split = stage.setup.finishes_apart() && stage.setup.single && first == 0;
-    let waves: &[Range<u64>] = if split { &[0..1, 1..BATCH] } else { &[0..BATCH] };
-    for wave in waves {
+    let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
+    while begin < BATCH {
+        let wave = begin..end;
+        (begin, end) = (end, BATCH);
         // Evenly among all rounds of the batch, each with what it leads to.
         let left = left.saturating_sub(batch.cost.evaluations);
         let (parts, of) = (wave.end - wave.start, BATCH - wave.start);

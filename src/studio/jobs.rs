@@ -6,8 +6,8 @@
 //! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
 //! beside the folders of results, until it has ended: so one that was broken off can go on.
 
-use super::job_messages::{JobAsk, JobProgress};
 use super::asked::MOST_POINTS;
+use super::job_messages::{JobAsk, JobProgress};
 use super::shelf::Shelf;
 use crate::name;
 use crate::problem::Problem;
