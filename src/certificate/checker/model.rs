@@ -228,14 +228,14 @@ impl Model {
     pub fn lowest(&self) -> f64 {
         let mut low = self.c[0];
         let mut size = self.c[0].abs();
-        for k in 0..4 {
-            let (slope, curve) = (self.c[1 + k].abs(), self.c[PLACE[k][k]]);
+        for (k, places) in PLACE.iter().enumerate() {
+            let (slope, curve) = (self.c[1 + k].abs(), self.c[places[k]]);
             // The least of curve e^2 - slope e over [0, 1].
             low += if slope < 2.0 * curve { -slope * slope / (4.0 * curve) } else { curve - slope };
             size += slope + curve.abs();
-            for l in k + 1..4 {
-                low -= self.c[PLACE[k][l]].abs();
-                size += self.c[PLACE[k][l]].abs();
+            for mixed in &places[k + 1..] {
+                low -= self.c[*mixed].abs();
+                size += self.c[*mixed].abs();
             }
         }
         low - self.rest * UP - 32.0 * EPS * size - TINY
