@@ -45,7 +45,7 @@
 //! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
 //! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
 //! | [`given`], [`measured`] | a result, a candidate or a linkage that is to be compared; its figures, by the referee | assess, linkage, linkage_file, problem, problem_file, record, report, results_folder, run, search, task, verify |
-//! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint |
+//! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint, certificate |
 //! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
 //! | `cli` (feature) | arguments, commands, exit codes | everything |
 
