@@ -7,6 +7,7 @@ use super::api::Opened;
 use super::details::{CompareAsk, Details, DetailsAsk, ExportAsk};
 use super::job_messages::{JobAsk, JobList, JobShown};
 use super::messages::{Ask, LinkageAsk};
+use super::reading::{Reading, Text};
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, SchemaGenerator};
 use serde_json::{Map, Value, json};
@@ -38,7 +39,7 @@ const fn post(path: &'static str, takes: Body, gives: Body, summary: &'static st
     Route { method: "post", path, summary, takes, status: 200, gives }
 }
 
-const ROUTES: [Route; 20] = [
+const ROUTES: [Route; 21] = [
     get(
         "/",
         Body::Other("text/html"),
@@ -75,6 +76,12 @@ const ROUTES: [Route; 20] = [
         Body::Other("application/toml"),
         Body::Json("Ask"),
         "What to ask in a tab for the problem of a file's text.",
+    ),
+    post(
+        "/read",
+        Body::Json("Text"),
+        Body::Json("Reading"),
+        "What to ask for a text that was pasted or dropped: a points file, a drawing or a problem file.",
     ),
     get(
         "/jobs",
@@ -197,6 +204,8 @@ pub fn document() -> Value {
     let mut generator = settings.into_generator();
     note::<Ask>(&mut generator);
     note::<LinkageAsk>(&mut generator);
+    note::<Text>(&mut generator);
+    note::<Reading>(&mut generator);
     note::<JobAsk>(&mut generator);
     note::<JobList>(&mut generator);
     note::<JobShown>(&mut generator);
