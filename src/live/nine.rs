@@ -20,7 +20,7 @@ impl Nine {
     }
 
     /// All real linkages through the points of a problem, judged by its requirements, better first; from the solutions
-    /// before where there are any ([`resolve_from`]), else from the start set ([`solve`]). Nothing is certified: that is
+    /// before where there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is certified: that is
     /// for a run. `None` where the problem has no nine precision points, or it was cancelled.
     pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
         let target = Target::new(precision_points(problem).ok()?).ok()?;
