@@ -155,7 +155,7 @@ test("draw, drag, pin, save, reload, restart", async () => {
 test("by keyboard alone: points typed, requirements set, a point moved, a linkage chosen", async () => {
   const { address, end } = await studio("--port", "18473");
   const { page, said, context } = await opened(address);
-  await page.locator("summary", { hasText: "Coordinates" }).focus();
+  await page.locator("summary", { hasText: "Points (" }).focus();
   await page.keyboard.press("Enter");
   await page.locator("#coordinates").focus();
   await page.keyboard.press("Control+a");
