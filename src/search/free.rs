@@ -8,8 +8,9 @@
 //! shows what groups blur. The points of their ends are brought to their best places on the curve (`reassign`) and
 //! fitted again for as long as that gains. The ends of a batch are finished on all points after it, each of them once
 //! however many rounds came to it. Ends whose points have strayed to where the referee will refuse them are led
-//! back (`required`). Rounds run side by side in batches of `BATCH` and are read in their order: the number of threads changes nothing but
-//! the time. Ends are judged by the referee from the least error up until enough of them are accepted.
+//! back (`required`). Rounds run side by side in batches of `BATCH` and are read in their order: the number of threads
+//! changes nothing but the time. Ends are judged by the referee from the least error up until enough of them are
+//! accepted.
 //!
 //! *Stopping rule*: the best error has come back, within `SAME_OPTIMUM`, from as many independent rounds as
 //! [`Hits`] says (rounds that start near known ends do not count), or within `NEARLY` from four or more times
@@ -22,7 +23,7 @@
 
 use super::atlas::Matches;
 use super::coarse::Coarse;
-use super::keeper::{Keeper, spared};
+use super::keeper::Keeper;
 use super::multistart::judged;
 use super::plan::{Local, SAME_OPTIMUM};
 use super::polish::{basins_wanted, promising};
@@ -32,12 +33,11 @@ use super::{Budget, HitsSoFar, Observer, Progress, repeats};
 use crate::linkage::dot;
 use crate::problem::Problem;
 use crate::record::{Candidate, Evaluations, Reason};
-use rayon::prelude::*;
-use round::{Cost, Finished, Known, Place, Round, Setup, by_merit, finished, is_same, round, unfinished};
+use batch::Batch;
+use round::Setup;
 use state::{Counts, Resumed};
-use std::ops::Range;
-use std::sync::atomic::AtomicU64;
 
+mod batch;
 mod moves;
 mod required;
 mod round;
@@ -79,15 +79,17 @@ const DENSE_BATCHES: u64 = 2;
 const PATIENT_BATCHES: u64 = 60;
 /// Errors of neighbouring points that are more alike than this are not noise.
 const ALIKE: f64 = 0.3;
-/// Of so many batches on a dense target of at most so many points one explores it on all of them: the second, and where
-/// the errors are noise the fourth.
+/// Of so many batches on a dense target of at most so many points one explores it on all of them: the fourth where the
+/// errors are noise, the second elsewhere.
 const WHOLE_EVERY: u64 = 8;
 const WHOLE_IN_NOISE: u64 = 3;
+const WHOLE_ELSE: u64 = 1;
 const WHOLE_MOST: usize = 200;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
 /// Ends that are kept.
 const KEPT: usize = 400;
+
 /// The end of a fit.
 #[derive(Clone, Debug)]
 struct End {
@@ -100,14 +102,24 @@ struct End {
 /// One way of exploring, with what it knows.
 struct Stage<'a> {
     setup: Setup<'a>,
+    memory: Memory,
+}
+
+/// What the batches of a stage have found so far.
+#[derive(Clone, Debug)]
+struct Memory {
     /// The least merit on the explored points.
     bar: f64,
     /// The best different ends on the explored points.
     leading: Vec<(f64, Start)>,
-    /// The merits on the explored points and on all of them of what has been finished.
+    /// The merits on the explored points and on all of them of what has been finished after its batch.
     finished: Vec<(f64, f64)>,
     /// Rounds so far.
     index: u64,
+}
+
+impl Memory {
+    const NONE: Memory = Memory { bar: f64::INFINITY, leading: Vec::new(), finished: Vec::new(), index: 0 };
 }
 
 /// Whether the errors of the best acceptable end are noise.
@@ -128,122 +140,6 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
-/// What a batch brought.
-#[derive(Default)]
-struct Batch {
-    draws: u64,
-    cost: Cost,
-    /// The least merit on all points of each independent round.
-    best_merits: Vec<f64>,
-    ends: Vec<End>,
-    /// No part of it came near to what it was allowed.
-    ample: bool,
-}
-
-/// A share of what is left: evenly, so that the budget is never exceeded whatever the parts need.
-fn share(left: u64, parts: u64, index: u64) -> u64 {
-    left / parts + u64::from(index < left % parts)
-}
-
-/// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations, and
-/// tells the stage what they found.
-fn run_batch(stage: &mut Stage<'_>, first: u64, left: u64, budget: &Budget<'_>) -> Batch {
-    let mut batch = Batch { ample: true, ..Batch::default() };
-    let near_ends: Vec<Start> = stage.leading.iter().map(|(_, start)| start.clone()).collect();
-    // Where ends are finished apart and an exact one would end it all, one round goes before the others.
-    let split = stage.setup.finishes_apart() && stage.setup.single && first == 0;
-    let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
-    while begin < BATCH {
-        let wave = begin..end;
-        (begin, end) = (end, BATCH);
-        // Evenly among all rounds of the batch, each with what it leads to.
-        let left = left.saturating_sub(batch.cost.evaluations);
-        let (parts, of) = (wave.end - wave.start, BATCH - wave.start);
-        let left = left / of * parts + left % of * parts / of;
-        if run_wave(stage, first, wave.clone(), left, &near_ends, budget, &mut batch) {
-            break;
-        }
-    }
-    stage.index += BATCH;
-    by_merit(&mut stage.leading, LEADING);
-    batch
-}
-
-/// Some rounds of a batch side by side, and after them the ends that they share. Whether an exact answer is among them.
-fn run_wave(
-    stage: &mut Stage<'_>,
-    first: u64,
-    wave: Range<u64>,
-    left: u64,
-    near_ends: &[Start],
-    budget: &Budget<'_>,
-    batch: &mut Batch,
-) -> bool {
-    let parts = wave.end - wave.start;
-    let found = AtomicU64::new(u64::MAX);
-    let (setup, known) = (&stage.setup, Known { bar: stage.bar, near_ends });
-    let mut rounds: Vec<Round> = wave
-        .clone()
-        .into_par_iter()
-        .map(|i| {
-            let place = Place { stream: first + i, index: stage.index + i };
-            round(setup, place, share(left, parts, i - wave.start), &known, budget, &found)
-        })
-        .collect();
-    let used: u64 = rounds.iter().map(|round| round.cost.evaluations).sum();
-    batch.ample &= (0..).zip(&rounds).all(|(i, round)| spared(round.cost.evaluations, share(left, parts, i)));
-    let mut done: Vec<Finished> = Vec::new();
-    if setup.finishes_apart() {
-        let left = left.saturating_sub(used);
-        let ends = unfinished(setup, &rounds, stage.bar, &stage.finished);
-        let parts = ends.len() as u64;
-        let found = AtomicU64::new(u64::MAX);
-        let finishes: Vec<(Option<Finished>, Cost)> = ends
-            .into_par_iter()
-            .enumerate()
-            .map(|(i, end)| finished(setup, (i as u64, end), share(left, parts, i as u64), budget, &found))
-            .collect();
-        for (i, (finished, cost)) in (0..).zip(finishes) {
-            batch.cost.add(cost);
-            batch.ample &= spared(cost.evaluations, share(left, parts, i));
-            done.extend(finished);
-            if done.last().is_some_and(|end| end.exact) {
-                break;
-            }
-        }
-    } else if let Some(exact) = rounds.iter().position(|round| round.finished.iter().any(|end| end.exact)) {
-        // What comes after it may have been cut short.
-        rounds.truncate(exact + 1);
-    }
-    stage.finished.extend(done.iter().map(|done| (done.explored, done.end.merit)));
-    for round in &mut rounds {
-        batch.draws += round.draws;
-        batch.cost.add(round.cost);
-        if round.independent {
-            let own = round.finished.iter().map(|done| done.end.merit);
-            let met = |explored: f64| {
-                stage
-                    .finished
-                    .iter()
-                    .filter(move |(other, _)| is_same(*other, explored))
-                    .map(|(_, whole)| *whole)
-            };
-            let shared = round.leaders.iter().flat_map(|(explored, _)| met(*explored));
-            batch.best_merits.push(own.chain(shared).fold(f64::INFINITY, f64::min));
-        }
-        stage.bar = stage.bar.min(round.explored());
-        done.append(&mut round.finished);
-        for (merit, start) in round.leaders.drain(..) {
-            if stage.leading.iter().all(|(other, _)| (merit - other).abs() > DIFFERENT * other) {
-                stage.leading.push((merit, start));
-            }
-        }
-    }
-    let exact = done.iter().any(|done| done.exact);
-    batch.ends.extend(done.into_iter().map(|done| done.end));
-    exact
-}
-
 /// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
 /// an acceptable candidate.
 pub(super) fn search(
@@ -262,10 +158,7 @@ pub(super) fn search(
     let matches = |starts: &Starts<'_>| (starts.arc().len() >= LEAST_MATCHED).then(|| Matches::of(starts));
     let stage = |coarse, starts| Stage {
         setup: Setup { problem, coarse, starts, matches: matches(starts), single: wanted == 1, exact },
-        bar: f64::INFINITY,
-        leading: Vec::new(),
-        finished: Vec::new(),
-        index: 0,
+        memory: Memory::NONE,
     };
     let mut stages = vec![stage(coarse.as_ref(), grouped.as_ref().unwrap_or(&whole))];
     let mut local = Local {
@@ -308,19 +201,21 @@ pub(super) fn search(
         let left = limit.saturating_sub(local.evaluations.objective);
         // What grouping blurs is looked for on all points, now and then.
         let grouped_few = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
-        let turn = if is_noise(problem, &ends) { WHOLE_IN_NOISE } else { 1 };
-        let on_all = grouped_few && count.batch % WHOLE_EVERY == turn;
+        let on_all_at = if is_noise(problem, &ends) { WHOLE_IN_NOISE } else { WHOLE_ELSE };
+        let on_all = grouped_few && count.batch % WHOLE_EVERY == on_all_at;
         if stages.len() == 1 && on_all {
             stages.push(stage(None, &whole));
         }
-        let turn = usize::from(on_all);
-        let batch = run_batch(&mut stages[turn], count.batch * BATCH, left, budget);
+        let stage_now = usize::from(on_all);
+        let Stage { setup, memory } = &stages[stage_now];
+        let batch = Batch::run(setup, memory, count.batch * BATCH, left, budget);
         // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
         let stop = budget.stop_reason();
         if stop.is_some() && ample {
             keep(true, count, local.evaluations, &best_merits, &stages, &ends);
         }
         ample &= batch.ample;
+        stages[stage_now].memory = batch.memory;
         count.batch += 1;
         count.draws += batch.draws;
         local.evaluations.objective += batch.cost.evaluations;
@@ -342,11 +237,7 @@ pub(super) fn search(
             local.reason = reason;
             break;
         }
-        let within = |error: f64, part: f64| {
-            // An end that lies lower has been refused, and says nothing of this one.
-            let near = (part * error).max(exact);
-            best_merits.iter().filter(|merit| (**merit - error).abs() <= near).count()
-        };
+        let within = |error: f64, part: f64| repeats::came(&best_merits, error, part, exact);
         let hits = if coarse.is_some() { DENSE_HITS } else { SPARSE_HITS };
         observer(&Progress {
             phase: "least-squares",
@@ -392,8 +283,7 @@ pub(super) fn search(
             break;
         }
     }
-    let judged = ends.iter().filter_map(|end| end.verdict.as_ref()?.as_ref());
-    let best = judged.filter(|c| promising(problem, c)).map(|c| searched(problem, c)).min_by(f64::total_cmp);
+    let best = accepted(problem, &ends).iter().map(|c| searched(problem, c)).min_by(f64::total_cmp);
     local.repeats = best.map(|best| repeats::counted(&best_merits, best, exact));
     local.found = ends.into_iter().filter_map(|end| end.verdict.flatten()).collect();
     local

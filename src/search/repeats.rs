@@ -1,30 +1,31 @@
 //! Repeated hits, counted from what independent rounds came to.
 
+use super::free::NEARLY;
+use super::plan::SAME_OPTIMUM;
 use crate::record::Repeats;
 
-/// Objectives that differ by less than this part are the same optimum.
-const SAME: f64 = 1e-6;
-/// Objectives that differ by less than this part are near the same optimum.
-const NEAR: f64 = 1e-3;
+/// How many rounds came to an objective within a part of it; up to `exact` objectives are exact, and equal. One that lies
+/// lower than the best is that of an end that cannot be accepted, and says nothing of the best.
+pub(super) fn came(objectives: &[f64], best: f64, part: f64, exact: f64) -> usize {
+    let room = (part * best).max(exact);
+    objectives.iter().filter(|objective| (**objective - best).abs() <= room).count()
+}
 
 /// Of rounds that came to these objectives, infinite where a round was given up, those that came to `best`.
-/// Objectives up to `exact` are exact, and equal. An objective below the best is that of an end that cannot be
-/// accepted: a basin like any other, and no hit.
 pub(super) fn counted(objectives: &[f64], best: f64, exact: f64) -> Repeats {
-    let room = |part: f64, of: f64| (part * of).max(exact);
-    let within =
-        |part: f64| objectives.iter().filter(|o| (**o - best).abs() <= room(part, best)).count() as u64;
+    let within = |part: f64| came(objectives, best, part, exact) as u64;
     let mut ends: Vec<f64> = objectives.iter().copied().filter(|o| o.is_finite()).collect();
     ends.sort_by(f64::total_cmp);
     let mut basins = 0;
     let mut last: Option<f64> = None;
     for end in &ends {
-        if last.is_none_or(|first| end - first > room(SAME, first)) {
+        if last.is_none_or(|first| end - first > (SAME_OPTIMUM * first).max(exact)) {
             basins += 1;
             last = Some(*end);
         }
     }
-    Repeats::new(objectives.len() as u64, within(SAME), within(NEAR)).with_basins(ends.len() as u64, basins)
+    let (hits, near) = (within(SAME_OPTIMUM), within(NEARLY));
+    Repeats::new(objectives.len() as u64, hits, near).with_basins(ends.len() as u64, basins)
 }
 
 #[cfg(test)]

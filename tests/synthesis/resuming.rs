@@ -71,6 +71,10 @@ fn resumed_is_unbroken(file: ProblemFile, least_boundaries: usize) {
     let (broken, until) = run_from(&job, SearchState::default(), 1, Some(1 + n / 3));
     assert_eq!(broken.termination.reason, Reason::Cancelled);
     assert!(!broken.termination.reproducible);
+    // Stopped in the middle of a batch it keeps the boundary before it, not where nothing goes on from.
+    for kept in &until {
+        assert!(checkpoints.contains(kept), "{}: a checkpoint that no unbroken search writes", job.name);
+    }
     let state = folder.state(until.last().expect("one at least"), &job);
     let (resumed, _) = run_from(&job, state, 2, None);
     assert_eq!(bytes(&resumed), bytes(&whole), "{} broken by hand", job.name);

@@ -29,9 +29,7 @@ const MIDDLE: usize = 3;
 const DENSE_MIDDLE: usize = 1;
 /// How often the points of an end are brought to their best places.
 const REASSIGNED: usize = 6;
-/// Types that are aimed at, the most promising first, where points have strayed.
-const LED_BACK: usize = 2;
-/// What a fit to such a type may spend: where the type binds, the linkage is almost a change point, and not worth more.
+/// What a fit may spend that leads strayed points back to a type whose points cannot stray: where the type binds, the linkage is almost a change point, and not worth more.
 const LED_BACK_MOST: u64 = 600;
 /// After a few steps, of the strayed end's merit.
 const WORTH_LEADING_BACK: f64 = 16.0;
@@ -86,6 +84,13 @@ pub(super) struct Known<'a> {
     pub(super) near_ends: &'a [Start],
 }
 
+impl Known<'_> {
+    /// Whether a round starts from nothing that others have found.
+    fn is_independent(&self, index: u64) -> bool {
+        self.near_ends.is_empty() || index.is_multiple_of(2)
+    }
+}
+
 /// Which round it is: of the whole search, for its random stream, and of its stage.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
@@ -123,6 +128,11 @@ impl Round {
     /// The least merit on the explored points.
     pub(super) fn explored(&self) -> f64 {
         self.leaders.first().map_or(f64::INFINITY, |(merit, _)| *merit)
+    }
+
+    /// Whether it met an exact, accepted answer.
+    pub(super) fn is_exact(&self) -> bool {
+        self.finished.iter().any(|done| done.exact)
     }
 }
 
@@ -199,7 +209,7 @@ impl Spender<'_> {
                 tried.extend(self.fit(problem, start, SHORT_FIT));
             }
             tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
-            by_merit(&mut tried, LED_BACK);
+            tried.sort_by(|one, other| one.0.total_cmp(&other.0));
             back = tried.into_iter().map(|(_, start)| start).collect();
         }
         for start in back {
@@ -218,35 +228,19 @@ pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
     ends.truncate(keep);
 }
 
-/// A round: its ends on the explored points, and on a sparse target what became of them. `found` is the first round
-/// with an exact answer; those after it are not read and may stop.
-pub(super) fn round(
+/// The starts of a round with what they promise on the explored points, and how many were drawn.
+fn drawn(
     setup: &Setup<'_>,
     Place { stream: of_search, index }: Place,
-    allowance: u64,
     known: &Known<'_>,
-    budget: &Budget<'_>,
-    found: &AtomicU64,
-) -> Round {
-    let mut round = Round {
-        draws: 0,
-        cost: Cost::default(),
-        leaders: Vec::new(),
-        finished: Vec::new(),
-        independent: known.near_ends.is_empty() || index.is_multiple_of(2),
-    };
-    let mut spender = Spender { cost: Cost::default(), allowance, budget };
-    let beaten = || found.load(Ordering::Relaxed) < of_search;
-    if beaten() {
-        return round;
-    }
+    spender: &mut Spender<'_>,
+) -> (Vec<(f64, Start)>, u64) {
     let explored = setup.explored();
-    let dense = setup.finishes_apart();
     let n = explored.task().len() as u64;
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
-    let mut draws_taken = 0;
+    let mut count = 0;
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
-        draws_taken += 1;
+        count += 1;
         let Some(mut start) = start else { return };
         spender.cost.evaluations += 1;
         spender.cost.positions += n;
@@ -258,7 +252,7 @@ pub(super) fn round(
     let turn = of_search as usize / 2;
     let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, of_search);
-    if !round.independent {
+    if !known.is_independent(index) {
         let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
         for i in 0..JITTERED {
             if spender.left() == 0 {
@@ -275,7 +269,7 @@ pub(super) fn round(
             } else {
                 near(explored, end, &mut draws)
             };
-            take(&mut spender, start);
+            take(spender, start);
         }
     } else {
         let matched = index.is_multiple_of(2) && turn % 3 < 2;
@@ -283,23 +277,50 @@ pub(super) fn round(
             Some(matches) => {
                 for rank in first..(first + MATCHED).min(matches.len()) {
                     if spender.left() > 0 {
-                        take(&mut spender, matches.start(setup.starts, rank));
+                        take(spender, matches.start(setup.starts, rank));
                     }
                 }
             }
             None => {
                 for _ in 0..SCREEN {
                     if spender.left() > 0 {
-                        take(&mut spender, setup.starts.draw(&mut draws));
+                        take(spender, setup.starts.draw(&mut draws));
                     }
                 }
             }
         }
     }
+    (drawn, count)
+}
+
+/// A round: its ends on the explored points, and on a sparse target what became of them. `found` is the first round
+/// with an exact answer; those after it are not read and may stop.
+pub(super) fn round(
+    setup: &Setup<'_>,
+    Place { stream: of_search, index }: Place,
+    allowance: u64,
+    known: &Known<'_>,
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> Round {
+    let mut round = Round {
+        draws: 0,
+        cost: Cost::default(),
+        leaders: Vec::new(),
+        finished: Vec::new(),
+        independent: known.is_independent(index),
+    };
+    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    let beaten = || found.load(Ordering::Relaxed) < of_search;
+    if beaten() {
+        return round;
+    }
+    let (explored, dense) = (setup.explored(), setup.finishes_apart());
+    let (mut drawn, draws) = drawn(setup, Place { stream: of_search, index }, known, &mut spender);
+    round.draws = draws;
     let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
     let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
     by_merit(&mut drawn, shorts);
-    round.draws = draws_taken;
     let spare = drawn.first().cloned();
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
     for (_, start) in drawn {

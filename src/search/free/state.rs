@@ -2,7 +2,7 @@
 
 use super::super::multistart::judged;
 use super::super::starts::Start;
-use super::{BATCH, End, Stage, WHOLE_MOST};
+use super::{BATCH, End, Memory, Stage, WHOLE_MOST};
 use crate::problem::Problem;
 use crate::record::Evaluations;
 use crate::solve::exact_float::Exact;
@@ -68,19 +68,26 @@ impl FreeState {
             start: end.start.clone(),
             judged: end.verdict.is_some(),
         };
-        let stage = |stage: &Stage<'_>| StageState {
-            bar: Exact(stage.bar),
-            leading: stage.leading.iter().map(leader).collect(),
-            finished: stage.finished.iter().map(pair).collect(),
-            index: stage.index,
+        let stage = |Stage { memory, .. }: &Stage<'_>| StageState {
+            bar: Exact(memory.bar),
+            leading: memory.leading.iter().map(leader).collect(),
+            finished: memory.finished.iter().map(pair).collect(),
+            index: memory.index,
         };
-        FreeState {
+        let state = FreeState {
             counts,
             evaluations,
             best_merits: best_merits.iter().copied().map(Exact).collect(),
             stages: stages.iter().map(stage).collect(),
             ends: ends.iter().map(end).collect(),
-        }
+        };
+        debug_assert!(state.is_counted(), "a state in the middle of a batch");
+        state
+    }
+
+    /// Whether it lies between two batches.
+    fn is_counted(&self) -> bool {
+        self.stages.iter().map(|stage| stage.index).sum::<u64>() == self.counts.batch * BATCH
     }
 
     /// How many ways of exploring have begun, where the state can be one of this problem's; `points` are those that
@@ -90,23 +97,24 @@ impl FreeState {
         let coarse = points != n;
         let stages = self.stages.len();
         let explored = |i: usize| if i == 0 { points } else { n };
-        let counted = self.stages.iter().map(|stage| stage.index).sum::<u64>() == self.counts.batch * BATCH;
         let leaders =
             self.stages.iter().enumerate().all(|(i, stage)| {
                 stage.leading.iter().all(|(_, start)| start.positions.len() == explored(i))
             });
         let ends = self.ends.iter().all(|end| end.start.positions.len() == n);
         let possible = stages == 1 || (stages == 2 && coarse && n <= WHOLE_MOST);
-        (possible && counted && leaders && ends).then_some(stages)
+        (possible && self.is_counted() && leaders && ends).then_some(stages)
     }
 
     /// Gives the stages what they knew, and the rest back; ends that the referee has seen are judged again.
     pub(super) fn resume(&self, problem: &Problem, stages: &mut [Stage<'_>]) -> Resumed {
         for (stage, state) in stages.iter_mut().zip(&self.stages) {
-            stage.bar = state.bar.0;
-            stage.leading = state.leading.iter().map(|(merit, start)| (merit.0, start.clone())).collect();
-            stage.finished = state.finished.iter().map(|(explored, whole)| (explored.0, whole.0)).collect();
-            stage.index = state.index;
+            stage.memory = Memory {
+                bar: state.bar.0,
+                leading: state.leading.iter().map(|(merit, start)| (merit.0, start.clone())).collect(),
+                finished: state.finished.iter().map(|(explored, whole)| (explored.0, whole.0)).collect(),
+                index: state.index,
+            };
         }
         let end = |end: &EndState| End {
             start: end.start.clone(),
