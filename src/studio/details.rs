@@ -196,6 +196,9 @@ impl Sources<'_> {
         match source {
             Source::Job(OfJob { name, rank }) => {
                 let record = self.shelf.record(name)?;
+                if let Some(first) = verify(&record).map_err(|e| e.to_string())?.first() {
+                    return Err(format!("the record of {name} is not true: {first}"));
+                }
                 let n = record.candidates.len();
                 if *rank == 0 || *rank > n {
                     return Err(format!("{name} has no candidate {rank}: it has {n}"));
@@ -273,13 +276,7 @@ impl Sources<'_> {
         let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
         let text = |kind, ending, text: String| Ok(Handed { kind, ending, bytes: text.into_bytes() });
         match ask.format.as_str() {
-            "html" => {
-                let untrue = verify(&record).map_err(|e| e.to_string())?;
-                match untrue.first() {
-                    None => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
-                    Some(first) => Err(format!("this record is not true, so it gets no report: {first}")),
-                }
-            }
+            "html" => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
             "sheet" => text("image/svg+xml", "svg", svg::candidate_svg(&record, index)),
             "points" => text("text/csv; charset=utf-8", "csv", csv::candidate_curve_csv(candidate)),
             other => {

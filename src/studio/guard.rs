@@ -10,7 +10,7 @@ use std::fmt::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Requests a second that are answered in the long run.
+/// Requests a second that are answered in the long run, of those who are let in and of strangers each.
 const RATE: f64 = 100.0;
 /// Requests that are answered at once after a pause.
 const BURST: f64 = 300.0;
@@ -27,7 +27,31 @@ pub(super) struct Guard {
     token: Mutex<Option<String>>,
     /// What the cookie holds.
     secret: String,
-    bucket: Mutex<(f64, Instant)>,
+    known: Bucket,
+    /// Apart, so that no page of another origin uses up what ours needs.
+    strangers: Bucket,
+}
+
+/// Requests that are answered now, and when that was counted.
+struct Bucket(Mutex<(f64, Instant)>);
+
+impl Bucket {
+    fn new() -> Self {
+        Bucket(Mutex::new((BURST, Instant::now())))
+    }
+
+    /// Whether there is room for one more request now.
+    fn has_room(&self) -> bool {
+        let mut bucket = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = Instant::now();
+        let filled = bucket.0 + RATE * now.duration_since(bucket.1).as_secs_f64();
+        *bucket = (filled.min(BURST), now);
+        let room = bucket.0 >= 1.0;
+        if room {
+            bucket.0 -= 1.0;
+        }
+        room
+    }
 }
 
 /// 256 random bits as hexadecimal digits.
@@ -52,7 +76,8 @@ impl Guard {
             port,
             token: Mutex::new(Some(random()?)),
             secret: random()?,
-            bucket: Mutex::new((BURST, Instant::now())),
+            known: Bucket::new(),
+            strangers: Bucket::new(),
         })
     }
 
@@ -113,30 +138,18 @@ impl Guard {
         }
     }
 
-    /// Whether there is room for one more request now.
-    fn has_room(&self) -> bool {
-        let mut bucket = self.bucket.lock().unwrap_or_else(PoisonError::into_inner);
-        let now = Instant::now();
-        let filled = bucket.0 + RATE * now.duration_since(bucket.1).as_secs_f64();
-        *bucket = (filled.min(BURST), now);
-        let room = bucket.0 >= 1.0;
-        if room {
-            bucket.0 -= 1.0;
-        }
-        room
-    }
-
     /// Why a request is refused before anything is done for it.
     fn refusal(&self, request: &Request) -> Option<(StatusCode, &'static str)> {
         let headers = request.headers();
         let upgrade = request.uri().path() == super::server::LIVE;
+        let bucket = if self.knows(headers) { &self.known } else { &self.strangers };
         if !self.is_for_us(headers) {
             Some((StatusCode::MISDIRECTED_REQUEST, "the studio answers to 127.0.0.1 alone\n"))
         } else if !self.is_from_us(headers, upgrade || request.method() != Method::GET) {
             Some((StatusCode::FORBIDDEN, "only the studio's own page may ask\n"))
         } else if announced(headers) > MOST_BYTES as u64 {
             Some((StatusCode::PAYLOAD_TOO_LARGE, "this is more than the studio reads\n"))
-        } else if !self.has_room() {
+        } else if !bucket.has_room() {
             Some((StatusCode::TOO_MANY_REQUESTS, "too many requests: wait a second\n"))
         } else {
             None

@@ -4,7 +4,7 @@
 //! Every job has as many threads as there are cores, all of low priority, so that jobs share the cores evenly, one
 //! that is alone has them all, and the hand's own answers come first. What is kept of a job in memory is where it
 //! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
-//! beside the folders of results, until it has ended: so one that was broken off can go on.
+//! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
 use super::asked::MOST_POINTS;
 use super::job_messages::{JobAsk, JobProgress};
@@ -12,7 +12,7 @@ use super::shelf::Shelf;
 use crate::name;
 use crate::problem::Problem;
 use crate::problem_file::{self, ProblemFile};
-use crate::results_folder::{read_record, replace_file};
+use crate::results_folder::{is_in_use, replace_file};
 use crate::run::Job;
 use crate::saved_run::{self, Listener, Options, Ran};
 use crate::search::Progress;
@@ -205,9 +205,10 @@ impl Jobs {
             let file = ask.problem().map_err(Refusal::Bad)?;
             return self.begin(of_file(file), how, Some(&ask));
         }
-        let Some(place) = self.shelf.place(name) else { return Err(absent(name)) };
-        let record = read_record(&place).map_err(|e| Refusal::Conflict(e.to_string()))?;
-        let asked = record.problem;
+        if self.shelf.place(name).is_none() {
+            return Err(absent(name));
+        }
+        let asked = self.shelf.record(name).map_err(Refusal::Conflict)?.problem;
         if asked.name != name {
             let other = asked.name;
             return Err(Refusal::Conflict(format!(
@@ -241,6 +242,11 @@ impl Jobs {
             if running.jobs.contains_key(&name) {
                 return Err(Refusal::Conflict(format!("a job named {name} is running")));
             }
+            if is_in_use(&self.shelf.folder().join(&name)) {
+                return Err(Refusal::Conflict(format!(
+                    "another program works in the folder {name}: wait for it"
+                )));
+            }
             if running.jobs.len() >= MOST_JOBS {
                 return Err(Refusal::Busy(format!("{MOST_JOBS} jobs are running: wait for one or stop it")));
             }
@@ -253,7 +259,7 @@ impl Jobs {
             std::thread::Builder::new().name("job".into()).spawn(work).map_err(|e| e.to_string())
         });
         if let Err(why) = begun {
-            self.over(&name, None);
+            self.over(&name, Some(why.clone()));
             return Err(Refusal::Busy(format!("the job cannot begin: {why}")));
         }
         Ok(())
@@ -298,10 +304,13 @@ impl Jobs {
         Ok(())
     }
 
+    /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
     fn over(&self, name: &str, failed: Option<String>) {
-        let (folder, file) = self.started(name);
-        // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
-        let _ = std::fs::remove_file(folder.join(file));
+        if failed.is_none() {
+            let (folder, file) = self.started(name);
+            // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
+            let _ = std::fs::remove_file(folder.join(file));
+        }
         let mut running = self.running();
         running.jobs.remove(name);
         if let Some(why) = failed {

@@ -144,15 +144,17 @@ const ROUTES: [Route; 21] = [
 ];
 
 /// Why requests are refused, with the status of the answer; the reason stands in its text.
-const REFUSALS: [(u16, &str); 9] = [
+const REFUSALS: [(u16, &str); 11] = [
     (400, "It cannot be read as HTTP, or asks for an upgrade where there is none."),
     (403, "Without the cookie, or from another origin."),
     (404, "There is no such job or file."),
     (408, "It took too long."),
     (409, "The name is taken, or the job is not in a state for it."),
     (413, "The body is larger than 256 KiB."),
+    (421, "Another host's name."),
     (422, "The body is not what is asked for."),
     (429, "Too many requests: wait a second."),
+    (500, "A bug of linkwright's."),
     (503, "Too much is going on: as many jobs run, or tabs are open, as may."),
 ];
 

@@ -133,14 +133,15 @@ impl Shelf {
             Some(Reading::Whole { result, .. }) => Some(result.as_ref().clone()),
             _ => None,
         };
+        if is_in_use(&place) {
+            let said = "Another program, such as linkwright synth or another studio, works in its folder."
+                .to_owned();
+            return shown(JobState::Elsewhere, said, false, result(&reading));
+        }
         if begun {
             let from = if half_done { "from its checkpoint" } else { "from the beginning" };
             let said = format!("The studio ended before it did. It can go on {from}.");
             return shown(JobState::BrokenOff, said, true, result(&reading));
-        }
-        if is_in_use(&place) {
-            let said = "Another program, such as linkwright synth, works in its folder.".to_owned();
-            return shown(JobState::Elsewhere, said, false, result(&reading));
         }
         match reading {
             Some(Reading::Whole { result, stopped, ending, name: named }) => {
@@ -229,7 +230,7 @@ impl Jobs {
                 name: name.to_owned(),
                 state: JobState::Failed,
                 said: why.clone(),
-                resumable: false,
+                resumable: begun,
                 progress: None,
                 result: shown.and_then(|shown| shown.result),
             }),

@@ -410,6 +410,11 @@ fn bursts_are_served_or_refused_and_ten_tabs_all_get_their_linkages() {
         }] += 1;
     }
     assert!(counts[0] >= 100 && counts[2] == 0, "{counts:?}");
+    // What strangers ask is counted apart.
+    std::thread::sleep(Duration::from_secs(1));
+    let refused = (0..1000).filter(|_| studio.asks("GET", "/", &[], b"").status() == 429).count();
+    assert!(refused > 0);
+    assert_eq!(studio.asks("GET", "/", &[("Cookie", &cookie)], b"").status(), 200);
     for tab in &mut tabs {
         let last =
             |a: &Value| a["version"] == 199 && a["candidates"].as_array().is_some_and(|c| !c.is_empty());

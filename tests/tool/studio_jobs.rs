@@ -233,8 +233,8 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     drop(first);
     let second = studio(&saved, "18443");
     let guest = Guest::of(&second);
-    let broken = guest.job("long");
-    assert!(broken["state"] == "broken-off" && broken["resumable"] == true, "{broken}");
+    let broken = guest.waits_for("long", "broken-off");
+    assert!(broken["resumable"] == true, "{broken}");
     assert_eq!(guest.posts("/jobs/long/resume", &json!(null)).status(), 202);
     let at = guest.waits("long", |job| !job["progress"].is_null());
     assert!(begun_at(&at) > 2.0 * anew, "it begins anew, as after {anew} evaluations: {at}");
@@ -255,6 +255,70 @@ fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio
     linkwright(folder.path(), &[&["synth", "long.toml"], &arguments[..]].concat());
     assert!(files(&saved.join("long")) == files(&folder.path().join("own")), "the records differ");
     assert_eq!(fs::read_dir(saved.join(".studio")).expect("a folder").count(), 0);
+}
+
+#[test]
+fn a_job_that_failed_keeps_its_problem_and_goes_on() {
+    let folder = TempDir::new().expect("a folder");
+    let studio = studio(folder.path(), "18446");
+    let guest = Guest::of(&studio);
+    let mine = folder.path().join("egg/notes.txt");
+    fs::create_dir(folder.path().join("egg")).expect("a folder");
+    fs::write(&mine, "not linkwright's").expect("written");
+    let mut ask = egg(1, 24, 2.0);
+    ask["name"] = json!("egg");
+    let job = json!({"ask": ask, "set": {"solve.evaluations": "30000"}, "replace": true});
+    assert_eq!(guest.posts("/jobs", &job).status(), 201);
+    let failed = guest.waits_for("egg", "failed");
+    assert!(failed["said"].as_str().is_some_and(|said| said.contains("notes.txt")), "{failed}");
+    assert!(failed["resumable"] == true && mine.exists(), "{failed}");
+    fs::remove_file(&mine).expect("removed");
+    assert_eq!(guest.posts("/jobs/egg/resume", &json!(null)).status(), 202);
+    guest.waits_for("egg", "done");
+    assert_eq!(fs::read_dir(folder.path().join(".studio")).expect("a folder").count(), 0);
+}
+
+#[test]
+fn a_figure_that_was_changed_by_hand_is_not_shown() {
+    let folder = TempDir::new().expect("a folder");
+    let studio = studio(folder.path(), "18449");
+    let guest = Guest::of(&studio);
+    let mut ask = egg(1, 24, 2.0);
+    ask["name"] = json!("egg");
+    guest.posts("/jobs", &json!({"ask": ask, "set": {"solve.evaluations": "30000"}}));
+    guest.waits_for("egg", "done");
+    let of = json!({"job": {"name": "egg", "rank": 1}});
+    let asks = [("/details", json!({"of": of})), ("/export", json!({"of": of, "format": "dxf"}))];
+    for (path, ask) in &asks {
+        assert_eq!(guest.posts(path, ask).status(), 200, "{path}");
+    }
+    let file = folder.path().join("egg/record.json");
+    let mut record: Value = serde_json::from_slice(&fs::read(&file).expect("a record")).expect("JSON");
+    record["candidates"][0]["error"]["rms"] = json!(0.0);
+    fs::write(&file, record.to_string()).expect("written");
+    for (path, ask) in &asks {
+        let refused = guest.posts(path, ask);
+        assert!(refused.status() == 422 && body(&refused).contains("not true"), "{path}: {}", refused.0);
+    }
+}
+
+#[test]
+fn a_second_studio_leaves_the_jobs_of_the_first_alone() {
+    let folder = TempDir::new().expect("a folder");
+    let (first, second) = (studio(folder.path(), "18447"), studio(folder.path(), "18448"));
+    let (guest, other) = (Guest::of(&first), Guest::of(&second));
+    assert_eq!(guest.posts("/jobs", &endless("long")).status(), 201);
+    guest.waits("long", |job| !job["progress"].is_null());
+    let seen = other.job("long");
+    assert!(seen["state"] == "elsewhere" && seen["resumable"] == false, "{seen}");
+    assert_eq!(other.posts("/jobs/long/resume", &json!(null)).status(), 409);
+    let mut again = endless("long");
+    again["replace"] = json!(true);
+    assert_eq!(other.posts("/jobs", &again).status(), 409);
+    assert!(folder.path().join(".studio/long.json").exists());
+    assert_eq!(guest.job("long")["state"], "running");
+    assert_eq!(guest.posts("/jobs/long/cancel", &json!(null)).status(), 202);
+    guest.waits_for("long", "stopped");
 }
 
 #[cfg(target_os = "linux")]
