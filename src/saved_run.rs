@@ -156,7 +156,7 @@ pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, String>> {
 }
 
 /// Saves a result that its folder does not take in another place, and says so.
-fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> String {
+pub(crate) fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> String {
     match rescue(files) {
         Ok(place) => format!("{e}; the result was saved in {}", place.display()),
         Err(also) => format!("{e}; nor can it be saved elsewhere: {also}"),

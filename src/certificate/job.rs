@@ -8,9 +8,6 @@ use crate::record::{Certificate, Record};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// The gap that is asked for unless another is given.
-pub const DEFAULT_GAP: f64 = 1e-4;
-
 /// What is wanted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {

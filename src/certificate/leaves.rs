@@ -46,18 +46,20 @@ const SUM: usize = 32;
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LeavesError {
     /// It begins otherwise.
-    #[error("these are no leaves of a certificate (certify RESULT --leaves FILE writes them)")]
+    #[error("these are no leaves of a certificate: certify RESULT --leaves writes them")]
     Foreign,
     /// It is of another version.
     #[error(
-        "the leaves are of format {found}, this program reads format {VERSION}: write them anew with certify"
+        "the leaves are of format {found}, this program reads format {VERSION}: certify RESULT --leaves writes them anew"
     )]
     Version {
         /// What was found.
         found: u32,
     },
     /// Its checksum is wrong, or it ends too early or too late.
-    #[error("the leaves were changed or cut off after they were written: write them anew with certify")]
+    #[error(
+        "the leaves were changed or cut off after they were written: certify RESULT --leaves writes them anew"
+    )]
     Changed,
     /// The tree does not cover the chart.
     #[error("the leaves of part {part} do not cover the chart: {what}")]

@@ -4,7 +4,7 @@
 use super::chart::Class;
 use super::leaves::{Leaves, OPEN};
 use super::target::TargetError;
-use crate::problem::spec::{Limits, Objective};
+use crate::problem::spec::{Limits, Objective, OnePolicy};
 use crate::record::{Certificate, CertificatePart, Record};
 use crate::task::AngleOffset;
 use sha2::{Digest, Sha256};
@@ -29,6 +29,14 @@ pub enum NoCertificate {
     /// The sum is not the plain one.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
     OtherObjective,
+    /// A linkage may be taken apart between two points.
+    #[error(
+        "no certificate is available where points may lie on different circuits: it needs require.circuit = \"same\""
+    )]
+    AnyCircuit,
+    /// The recorded problem is none.
+    #[error("the recorded problem is none: {0}")]
+    Problem(String),
     /// The best candidate meets the points exactly.
     #[error("the best candidate meets the points exactly: nothing can be below it")]
     Exact,
@@ -57,7 +65,9 @@ pub struct Subject {
     pub from_ground: bool,
     /// The directions of the crank: 1, -1.
     pub directions: Vec<f64>,
-    /// R: no linkage with a larger |Z| is asked about.
+    /// The problem's own limit of |Z|, the distance of the coupler point from the crank pin.
+    pub limit: f64,
+    /// R, a little above the limit: no linkage with a larger |Z| is asked about.
     pub cap: f64,
     /// The sum of squares of the best candidate.
     pub best: f64,
@@ -81,12 +91,16 @@ impl Subject {
         if timing.offset == AngleOffset::Fixed {
             return Err(NoCertificate::FixedOffset);
         }
-        let problem = crate::problem::Problem::new(spec.clone()).map_err(|_| NoCertificate::NoCandidate)?;
+        let problem =
+            crate::problem::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;
         let task = problem.task();
         let first = task.weights().first().copied().unwrap_or(1.0);
         let weighted = task.weights().iter().any(|w| *w != first);
         if weighted || spec.solve.objective != Objective::SumOfSquares {
             return Err(NoCertificate::OtherObjective);
+        }
+        if spec.require.circuit != OnePolicy::One {
+            return Err(NoCertificate::AnyCircuit);
         }
         if best.is_nan() || best <= 0.0 {
             return Err(NoCertificate::Exact);
@@ -95,17 +109,18 @@ impl Subject {
         let largest = |limits: Limits| limits.0.abs().max(limits.1.abs());
         let by_box = design.coupler_x.zip(design.coupler_y).map(|(x, y)| largest(x).hypot(largest(y)));
         let by_length = design.d.map(largest);
-        let cap = match (by_box, by_length) {
+        let limit = match (by_box, by_length) {
             (Some(x), Some(y)) => x.min(y),
             (Some(x), None) | (None, Some(x)) => x,
             (None, None) => return Err(NoCertificate::NoLimits),
-        } * (1.0 + 1e-9);
+        };
         Ok(Subject {
             points: task.points().iter().map(|p| [p.re, p.im]).collect(),
             turns_deg: timing.crank_deg.clone(),
             from_ground: timing.offset == AngleOffset::Ground,
             directions: problem.directions().to_vec(),
-            cap,
+            limit,
+            cap: limit * (1.0 + 1e-9),
             best,
             gap,
         })
@@ -154,7 +169,8 @@ impl Subject {
             })
             .collect();
         let bound = parts.iter().map(|part| part.lower_bound).fold(f64::INFINITY, f64::min);
-        let (points, cap, best) = (self.points.len(), self.cap, self.best);
+        let (points, best) = (self.points.len(), self.best);
+        let limit = self.limit;
         // Rounded down to the digits that are shown.
         let below = bound * (1.0 - 1e-12);
         let angles = match self.from_ground {
@@ -162,29 +178,31 @@ impl Subject {
             false => "increments of the crank",
         };
         let either = if self.directions.len() == 2 { "either way" } else { "the way that is asked for" };
+        let gap = self.gap_of(bound);
         Certificate {
             statement: format!(
-                "No four-bar linkage whose input turns fully and whose coupler point is at most {cap:.6} from the \
-                 crank pin has a sum of squared errors below {below:.12e} at these {points} points and \
+                "No four-bar linkage whose input turns fully, in one assembly, and whose coupler point is at most {limit} \
+                 from the crank pin has a sum of squared errors below {below:.12e} at these {points} points and \
                  {angles}; the best one found has {best:.12e}."
             ),
             lower_bound: bound,
-            gap: self.gap_of(bound),
-            closed: parts.iter().all(|part| part.closed),
+            gap,
+            closed: parts.iter().all(|part| part.closed) && gap <= self.gap,
             boxes: parts.iter().map(|part| part.boxes).sum(),
             covered: vec![
-                "crank-rockers and double-cranks, change points included".into(),
-                "both assemblies".into(),
+                "crank-rockers and double-cranks, and linkages with change points as long as they stay in one assembly".into(),
+                "either assembly, the same at all points".into(),
                 match self.from_ground {
                     true => "the crank angles from the ground line, as prescribed".into(),
                     false => format!("the crank turning {either}, any first crank angle"),
                 },
                 format!(
-                    "any pivots and lengths of links, the coupler point at most {cap:.6} from the crank pin"
+                    "any pivots and lengths of links, the coupler point at most {limit} from the crank pin"
                 ),
             ],
             not_covered: vec![
                 "linkages whose input rocks".into(),
+                "motions that pass from one assembly to the other at a change point".into(),
                 "coupler points farther from the crank pin".into(),
             ],
             leaves_sha256: hex(&leaves.sha256()),

@@ -2,6 +2,7 @@
 
 use crate::analysis::PositionMethod;
 use crate::export::Format;
+use crate::problem::spec::{CertifySpec, MAX_CERTIFY_S};
 use crate::report::compare::SortKey;
 use crate::schema::SchemaKind;
 use crate::snap::Length;
@@ -37,7 +38,7 @@ pub enum Command {
     Compare(Compare),
     /// Recompute every figure and verdict of a result
     Verify(Verify),
-    /// Prove that no linkage can be better than a result by more than a gap (prescribed timing)
+    /// Prove that no linkage whose input turns fully is better than a result by more than a gap (prescribed timing)
     Certify(Certify),
     /// Write a result as a page to look at, print and mail: one HTML file
     Report(Report),
@@ -183,7 +184,7 @@ pub struct Certify {
     #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// How far below the best candidate the proved bound may be, relative
-    #[arg(long, value_name = "G", default_value_t = crate::certificate::job::DEFAULT_GAP, allow_negative_numbers = true, value_parser = gap)]
+    #[arg(long, value_name = "G", default_value_t = CertifySpec::default().gap, allow_negative_numbers = true, value_parser = gap)]
     pub gap: f64,
     /// certify.time_limit_s=S: end after S seconds with what is proved by then [default: 300]
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = certify_key)]
@@ -393,8 +394,8 @@ fn certify_key(text: &str) -> Result<(String, f64), String> {
     let (key, value) = key_value(text)?;
     match key.as_str() {
         "certify.time_limit_s" => match positive(&value)? {
-            seconds if seconds <= 1e6 => Ok((key, seconds)),
-            _ => Err("at most 1e6 seconds".into()),
+            seconds if seconds <= MAX_CERTIFY_S => Ok((key, seconds)),
+            _ => Err(format!("at most {MAX_CERTIFY_S:e} seconds")),
         },
         _ => Err("what can be set is certify.time_limit_s".into()),
     }

@@ -1,22 +1,23 @@
-//! `certify`: a bound below which no linkage can be.
+//! `certify`: a bound below which no linkage that it covers can be.
 
 use super::arguments::Certify;
+use super::progress::Proving;
 use super::result::{self, Which};
 use super::{Ended, interrupt, synth, terminal};
 use crate::certificate::checkpoint::MAX_BYTES;
-use crate::certificate::{NoCertificate, Progress, Proof, Request, ResumeError};
+use crate::certificate::{NoCertificate, Proof, Request, ResumeError};
 use crate::diagnostic::escaped;
+use crate::problem::spec::CertifySpec;
 use crate::record::Certificate;
-use crate::report::certificate::repeats_text;
+use crate::report::certificate::{certificate_text, parts_text, repeats_text};
 use crate::results_folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, replace_file};
+use crate::saved_run::saved_elsewhere;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// Progress lines come this often.
-const LINE_EVERY: Duration = Duration::from_secs(5);
 /// What is proved is kept this often, so that a process that is killed loses no more.
 const KEPT_EVERY: Duration = Duration::from_secs(60);
 /// The file with a run's times.
@@ -35,33 +36,24 @@ fn refuse(text: &str) -> Ended {
 fn inner(options: &Certify) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let shown = escaped(&options.result.display().to_string());
+    let not_whole = || refuse(&format!("{shown}: certify writes into the result's folder; give the folder"));
+    if !options.result.is_dir() {
+        result::read_run_of(&options.result, "certify")?;
+        return Err(not_whole());
+    }
+    // Taken before the record is read, so that no other run changes it, and before the work, so that a place that cannot
+    // be written to is told at once.
+    let mut folder = ResultsFolder::take(&options.result).map_err(|e| refuse(&e.to_string()))?;
     let run = result::read_run_of(&options.result, "certify")?;
     if run.which != Which::All {
-        return Err(refuse(&format!("{shown}: a result is certified as a whole; give {} alone", run.named)));
-    }
-    if !options.result.is_dir() {
-        return Err(refuse(&format!("{shown}: certify writes into the result's folder; give the folder")));
+        return Err(not_whole());
     }
     let mut record = run.record;
-    // Taken before the work, so that a place that cannot be written to is told at once.
-    let mut folder = ResultsFolder::take(&options.result).map_err(|e| refuse(&e.to_string()))?;
-    let limit = options.set.iter().map(|(_, seconds)| *seconds).next_back().unwrap_or(DEFAULT_LIMIT_S);
-    let deadline = begun + Duration::from_secs_f64(limit);
+    let former = record.certificate.take();
+    let limit = options.set.iter().map(|(_, seconds)| *seconds).next_back();
+    let deadline = begun + Duration::from_secs_f64(limit.unwrap_or(CertifySpec::default().time_limit_s));
     let cancel = interrupt::watch("keeping what is proved by now");
-    let mut last = Instant::now();
-    let mut tell = |progress: &Progress| {
-        if !options.quiet && last.elapsed() >= LINE_EVERY {
-            last = Instant::now();
-            terminal::tell(&format!(
-                "{:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {:.6e} (gap {:.4} %)",
-                begun.elapsed().as_secs_f64(),
-                progress.boxes,
-                100.0 * progress.decided,
-                progress.lower_bound,
-                100.0 * progress.gap,
-            ));
-        }
-    };
+    let mut proving = Proving::new(&record.problem.name, options.quiet);
     let request = Request { gap: options.gap };
     // Where nothing can be proved, what the search itself foretells.
     let none = |e: NoCertificate| {
@@ -77,37 +69,60 @@ fn inner(options: &Certify) -> Result<Ended, Ended> {
         })?,
         None => Proof::new(&record, &request).map_err(none)?,
     };
+    let mut warned = false;
     loop {
         let pause = deadline.min(Instant::now() + KEPT_EVERY);
-        proof.run(cancel, Some(pause), &mut tell);
+        proof.run(cancel, Some(pause), &mut |progress| proving.update(progress));
         if proof.ended() || pause == deadline || cancel.load(Ordering::SeqCst) {
             break;
         }
-        replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint())
-            .map_err(|e| refuse(&e.to_string()))?;
+        if let Err(e) = replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint()) {
+            if !warned {
+                terminal::tell(&format!("warning: no checkpoint could be written, the proof goes on: {e}"));
+            }
+            warned = true;
+        }
     }
     let leaves = proof.leaves();
     let certificate = proof.certificate_of(&leaves);
-    let text = text(&certificate, proof.ended());
-    let closed = certificate.closed;
-    record.certificate = Some(certificate);
-    let mut files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
-    if options.leaves {
-        files.push((LEAVES.into(), leaves.to_bytes()));
+    let go_on = if proof.ended() { "no more boxes can be kept" } else { "certify --resume goes on" };
+    let proved = |certificate: &Certificate| (certificate.lower_bound, certificate.boxes);
+    let stronger = former.filter(|former| proved(former) > proved(&certificate));
+    let stays = stronger.is_some();
+    record.certificate = Some(stronger.unwrap_or(certificate));
+    if stays {
+        terminal::tell(&format!("{shown}: its certificate proves more than this run: it stays as it is"));
+        if !proof.ended() {
+            replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint())
+                .map_err(|e| refuse(&e.to_string()))?;
+        }
+    } else {
+        let mut files = files(&options.result, &record, begun).map_err(|e| refuse(&e))?;
+        let bytes = leaves.to_bytes();
+        let had = std::fs::read(options.result.join(LEAVES)).ok();
+        if options.leaves || had.as_ref() == Some(&bytes) {
+            files.push((LEAVES.into(), bytes));
+        } else if had.is_some() {
+            terminal::tell(&format!(
+                "{shown}: {LEAVES} was of another certificate and is gone; --leaves keeps the new ones"
+            ));
+        }
+        if !proof.ended() {
+            files.push((CERTIFICATE_CHECKPOINT.into(), proof.checkpoint()));
+        }
+        if folder.has_checkpoint() {
+            folder.keep_checkpoint();
+        }
+        folder.replace(&files).map_err(|e| refuse(&saved_elsewhere(&e, &files)))?;
     }
-    if !proof.ended() {
-        files.push((CERTIFICATE_CHECKPOINT.into(), proof.checkpoint()));
+    let Some(certificate) = &record.certificate else { return Err(Ended::Bad) };
+    terminal::answer(certificate_text(&record, terminal::colour()).trim_start_matches('\n'));
+    terminal::answer(&parts_text(certificate));
+    if certificate.gap <= options.gap {
+        return Ok(Ended::Good);
     }
-    if folder.has_checkpoint() {
-        folder.keep_checkpoint();
-    }
-    folder.replace(&files).map_err(|e| refuse(&e.to_string()))?;
-    terminal::answer(&text);
-    Ok(match closed {
-        true => Ended::Good,
-        false if cancel.load(Ordering::SeqCst) => Ended::Interrupted,
-        false => Ended::Bad,
-    })
+    terminal::answer(&format!("  Not closed: {go_on}.\n"));
+    Ok(if cancel.load(Ordering::SeqCst) { Ended::Interrupted } else { Ended::Bad })
 }
 
 /// What a run that was stopped has left, where it is to go on.
@@ -134,9 +149,6 @@ fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
     Ok(Some(bytes))
 }
 
-/// The time limit unless another is set, seconds.
-const DEFAULT_LIMIT_S: f64 = 300.0;
-
 /// The files of the result with the certificate; the times of its search stay.
 fn files(
     place: &Path,
@@ -153,25 +165,4 @@ fn files(
         }
     }
     Ok(files)
-}
-
-/// What a person reads.
-fn text(certificate: &Certificate, ended: bool) -> String {
-    let mut text = format!("{}\n\n", certificate.statement);
-    let state = match (certificate.closed, ended) {
-        (true, _) => "closed",
-        (false, true) => "not closed: no more boxes can be kept",
-        (false, false) => "not closed: certify --resume goes on",
-    };
-    text.push_str(&format!("  gap {:.4} %, {state}; {} boxes\n", 100.0 * certificate.gap, certificate.boxes));
-    for part in &certificate.parts {
-        let way = if part.direction > 0 { "with" } else { "against" };
-        text.push_str(&format!(
-            "  {:<12} {way:<7} the increments: no sum below {:.9e}, {} boxes\n",
-            part.linkage_type, part.lower_bound, part.boxes
-        ));
-    }
-    text.push_str(&format!("  Covered: {}.\n", certificate.covered.join("; ")));
-    text.push_str(&format!("  Not covered: {}.\n", certificate.not_covered.join("; ")));
-    text
 }

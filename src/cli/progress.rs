@@ -1,6 +1,7 @@
 //! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
 
 use crate::certificate;
+use crate::report::text::{at_most, percent_up};
 use crate::search::Progress;
 use crate::suite::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -13,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Searches shorter than this show no progress.
 const QUIET_FOR: Duration = Duration::from_millis(700);
 /// Plain lines come at most this often.
-const LINE_EVERY: Duration = Duration::from_secs(5);
+pub const LINE_EVERY: Duration = Duration::from_secs(5);
 /// The bar of a suite moves at most this often.
 const BAR_EVERY: Duration = Duration::from_millis(100);
 
@@ -227,12 +228,12 @@ impl Proving {
 /// What is proved by now.
 fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
     format!(
-        "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {:.6e} (gap {:.4} %)",
+        "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {} (gap {} %)",
         elapsed.as_secs_f64(),
         progress.boxes,
         100.0 * progress.decided,
-        progress.lower_bound,
-        100.0 * progress.gap,
+        at_most(progress.lower_bound, 7),
+        percent_up(progress.gap),
     )
 }
 
@@ -320,8 +321,7 @@ mod tests {
         let progress = certificate::Progress { boxes: 1200, decided: 0.25, lower_bound: 0.009, gap: 0.05 };
         assert_eq!(
             proved("leg", Duration::from_secs(10), &progress),
-            "leg: certificate, 10 s: 1200 boxes, 25.000 % of the linkages decided, no sum below 9.000000e-3 (gap \
-             5.0000 %)"
+            "leg: certificate, 10 s: 1200 boxes, 25.000 % of the linkages decided, no sum below 0.009000000 (gap 5 %)"
         );
     }
 

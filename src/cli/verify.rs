@@ -1,16 +1,18 @@
 //! `verify`: recompute a result.
 
 use super::arguments::Verify;
+use super::progress::LINE_EVERY;
 use super::result::{self, Which};
 use super::{Ended, interrupt, terminal};
-use crate::certificate::leaves::MAX_BYTES;
+use crate::certificate::leaves::{LeavesError, MAX_BYTES};
 use crate::certificate::{CheckError, Checked, check};
 use crate::diagnostic::escaped;
 use crate::record::Record;
 use crate::results_folder::LEAVES;
 use std::fs::File;
 use std::io::{self, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// Runs the command.
 pub fn run(options: &Verify) -> Ended {
@@ -42,20 +44,16 @@ pub fn run(options: &Verify) -> Ended {
                 }
             }
         }
-        let mut leaves = None;
+        let mut leaves = Ok(None);
         if let (Ok(_), true) = (&verified, options.leaves) {
-            match check_leaves(path, &record) {
-                Ok(checked) => leaves = Some(checked),
+            leaves = match check_leaves(path, &record) {
+                Ok(checked) => Ok(Some(checked)),
                 Err(Wrong::Told(ended)) => return ended,
-                Err(Wrong::NotProved(why)) => {
-                    ended = Ended::Bad;
-                    terminal::answer(&format!("{shown}: NOT true.\n  certificate: {}\n", escaped(&why)));
-                    continue;
-                }
-            }
+                Err(Wrong::Not(why)) => Err(why),
+            };
         }
         match verified {
-            Ok(mismatches) if mismatches.is_empty() => {
+            Ok(mismatches) if mismatches.is_empty() && leaves.is_ok() => {
                 let n = record.candidates.len();
                 let word = if n == 1 { "candidate" } else { "candidates" };
                 terminal::answer(&format!(
@@ -66,7 +64,7 @@ pub fn run(options: &Verify) -> Ended {
                         "  The certificate was worked out again: the same boxes, the same bound.\n",
                     );
                 }
-                if let Some(Checked { leaves, boxes }) = leaves {
+                if let Ok(Some(Checked { leaves, boxes })) = leaves {
                     terminal::answer(&format!(
                         "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, \
                          {boxes} boxes.\n"
@@ -75,9 +73,14 @@ pub fn run(options: &Verify) -> Ended {
             }
             Ok(mismatches) => {
                 ended = Ended::Bad;
-                terminal::answer(&format!("{shown}: NOT true.\n"));
+                let untrue = !mismatches.is_empty() || leaves.as_ref().is_err_and(CheckError::is_refuted);
+                terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
                 for mismatch in mismatches {
                     terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
+                }
+                if let Err(why) = leaves {
+                    let file = escaped(&leaves_of(path).display().to_string());
+                    terminal::answer(&format!("  {file}: {}\n", escaped(&why.to_string())));
                 }
             }
             Err(e) => {
@@ -94,7 +97,12 @@ enum Wrong {
     /// It has been told.
     Told(Ended),
     /// They do not prove the certificate.
-    NotProved(String),
+    Not(CheckError),
+}
+
+/// The file of leaves beside a record.
+fn leaves_of(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) }
 }
 
 /// Checks the leaves of a record's certificate, which lie beside it.
@@ -107,7 +115,7 @@ fn check_leaves(path: &Path, record: &Record) -> Result<Checked, Wrong> {
         .certificate
         .as_ref()
         .ok_or_else(|| refuse(path, "the record has no certificate; run certify with --leaves first"))?;
-    let file = if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) };
+    let file = leaves_of(path);
     let mut bytes = Vec::new();
     let read = File::open(&file).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
     read.map_err(|e| match e.kind() {
@@ -118,9 +126,25 @@ fn check_leaves(path: &Path, record: &Record) -> Result<Checked, Wrong> {
         return Err(refuse(&file, &format!("leaves have at most {MAX_BYTES} bytes")));
     }
     let cancel = interrupt::watch("ending the check");
-    check(record, recorded, &bytes, cancel, &mut |_| {}).map_err(|e| match e {
+    let begun = Instant::now();
+    let mut last = begun;
+    let mut tell = |checked: &Checked| {
+        if last.elapsed() >= LINE_EVERY {
+            last = Instant::now();
+            let seconds = begun.elapsed().as_secs_f64();
+            terminal::tell(&format!(
+                "{}: {seconds:.0} s: {} leaves checked",
+                escaped(&file.display().to_string()),
+                checked.leaves
+            ));
+        }
+    };
+    check(record, recorded, &bytes, cancel, &mut tell).map_err(|e| match e {
         CheckError::NoCertificate(e) => refuse(path, &e.to_string()),
+        CheckError::Leaves(e @ (LeavesError::Foreign | LeavesError::Version { .. })) => {
+            refuse(&file, &e.to_string())
+        }
         CheckError::Stopped => Wrong::Told(Ended::Interrupted),
-        wrong => Wrong::NotProved(wrong.to_string()),
+        wrong => Wrong::Not(wrong),
     })
 }

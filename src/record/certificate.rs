@@ -11,7 +11,7 @@ pub struct Certificate {
     pub lower_bound: f64,
     /// 1 - lower bound/best candidate, at least 0.
     pub gap: f64,
-    /// Whether the wanted gap was reached everywhere.
+    /// Whether the wanted gap was reached everywhere: no box is open.
     pub closed: bool,
     /// Boxes looked at.
     pub boxes: u64,
@@ -19,7 +19,7 @@ pub struct Certificate {
     pub covered: Vec<String>,
     /// What it says nothing about.
     pub not_covered: Vec<String>,
-    /// SHA-256 of the parts' digests.
+    /// SHA-256 of the file of leaves without its last 32 bytes.
     pub leaves_sha256: String,
     /// The gap that was asked for.
     pub wanted_gap: f64,
@@ -41,6 +41,6 @@ pub struct CertificatePart {
     pub closed: bool,
     /// Boxes looked at.
     pub boxes: u64,
-    /// SHA-256 of the leaves, in order.
+    /// SHA-256 of the part's nodes as the file packs them.
     pub leaves_sha256: String,
 }

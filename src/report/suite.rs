@@ -1,9 +1,8 @@
 //! A suite for the terminal and as Markdown: the same sheets, set twice.
 
-use super::certificate::percent_up;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
-use super::text::{brief, clean, clean_sentence, grouped, shortened, significant, wrapped};
+use super::text::{brief, clean, clean_sentence, grouped, percent_up, shortened, significant, wrapped};
 use crate::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
 /// Marks a problem with a sum that is smaller than the best known.

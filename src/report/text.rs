@@ -27,7 +27,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     let digits = digits.max(1);
     let scientific = format!("{:.*e}", digits - 1, value);
     // The exponent after rounding: 9.9999 may have become 1.000e1.
-    let exponent = scientific.split_once('e').and_then(|(_, e)| e.parse::<i32>().ok()).unwrap_or(0);
+    let (_, exponent) = split(&scientific);
     if !PLAIN_EXPONENTS.contains(&exponent) {
         return scientific;
     }
@@ -35,12 +35,59 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
+/// [`significant`] of a positive number, rounded so that what is shown is never more than it is.
+///
+/// ```
+/// use linkwright::report::text::{at_least, at_most};
+/// assert_eq!((at_most(0.12349, 4), at_least(0.12341, 4)), ("0.1234".into(), "0.1235".into()));
+/// assert_eq!((at_most(0.5, 2), at_least(0.5, 2)), ("0.50".into(), "0.50".into()));
+/// ```
+pub fn at_most(value: f64, digits: usize) -> String {
+    on_one_side(value, digits, -1.0, |shown| shown <= value)
+}
+
+/// [`significant`] of a positive number, rounded so that what is shown is never less than it is.
+pub fn at_least(value: f64, digits: usize) -> String {
+    on_one_side(value, digits, 1.0, |shown| shown >= value)
+}
+
+/// A gap in per cent with two digits, never less than it is.
+pub fn percent_up(gap: f64) -> String {
+    let percent = 100.0 * gap;
+    // The product is rounded; the digits that are shown, two places further, are compared with the gap itself.
+    without_zeros(&on_one_side(percent, 2, 1.0, |shown| {
+        let (mantissa, exponent) = split(&format!("{shown:e}"));
+        format!("{mantissa}e{}", exponent - 2).parse().is_ok_and(|shown: f64| shown >= gap)
+    }))
+}
+
+/// [`significant`], and one unit of the last digit further (`way`) where that is not right.
+fn on_one_side(value: f64, digits: usize, way: f64, is_right: impl Fn(f64) -> bool) -> String {
+    let text = significant(value, digits);
+    if text.parse().map_or(true, is_right) {
+        return text;
+    }
+    let (_, exponent) = split(&format!("{value:e}"));
+    let unit = 10.0_f64.powi(exponent + 1 - digits as i32);
+    // The nearest was at most half a unit on the wrong side.
+    significant(value + 0.75 * way * unit, digits)
+}
+
+/// Mantissa and exponent of a number in the form `1.5e-3`.
+fn split(scientific: &str) -> (String, i32) {
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((scientific, "0"));
+    (mantissa.to_owned(), exponent.parse().unwrap_or(0))
+}
+
 /// As [`significant`] without zeros at the end of the decimals: `30`, `0.5`.
 pub fn brief(value: f64, digits: usize) -> String {
-    let text = significant(value, digits);
+    without_zeros(&significant(value, digits))
+}
+
+fn without_zeros(text: &str) -> String {
     let (mantissa, exponent) = match text.split_once('e') {
         Some((mantissa, exponent)) => (mantissa, Some(exponent)),
-        None => (text.as_str(), None),
+        None => (text, None),
     };
     let short =
         if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
@@ -234,8 +281,45 @@ pub fn wrapped(lead: &str, indent: &str, text: &str, columns: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::exact;
+    use super::{at_least, at_most, exact, percent_up};
     use crate::solve::streams::{stream, unit};
+
+    #[test]
+    fn a_bound_is_never_shown_on_the_other_side_of_itself() {
+        for value in
+            [9.236430336755e-3, 0.1 + 0.2, 1.0, 999_999.96, 7.4157e-7, 2.0_f64.powi(-30), 123_456.789]
+        {
+            for digits in 1..12 {
+                let (low, high) = (at_most(value, digits), at_least(value, digits));
+                let read = |text: &str| text.parse::<f64>().expect("a number");
+                assert!(read(&low) <= value && value <= read(&high), "{value}: {low} {high}");
+                let unit = 10.0_f64.powi(value.log10().floor() as i32 + 1 - digits as i32);
+                assert!(read(&high) - read(&low) < 1.001 * unit, "{value}: {low} {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_gap_is_never_shown_smaller_than_it_is() {
+        for (gap, shown) in [
+            (1e-4, "0.01"),
+            (9.99e-5, "0.01"),
+            (1.01e-4, "0.011"),
+            (1.00000009e-4, "0.011"),
+            (0.9999, "100"),
+            (4.2e-9, "4.2e-7"),
+            (0.5, "50"),
+            (1.0, "100"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(percent_up(gap), shown, "{gap}");
+        }
+        for gap in [3.3e-5, 1.234e-3, 0.0987, 0.999] {
+            let shown: f64 = percent_up(gap).parse().expect("a number");
+            let percent = 100.0 * gap * (1.0 - 1e-15);
+            assert!(shown >= percent && shown < 1.101 * percent, "{gap}: {shown}");
+        }
+    }
 
     #[test]
     fn exact_numbers_are_written_as_the_language_does() {

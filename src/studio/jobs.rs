@@ -12,6 +12,7 @@ use super::shelf::Shelf;
 use crate::name;
 use crate::problem::Problem;
 use crate::problem_file::{self, ProblemFile};
+use crate::report::text::at_most;
 use crate::results_folder::{is_in_use, replace_file};
 use crate::run::Job;
 use crate::saved_run::{self, Listener, Options, Ran};
@@ -290,7 +291,7 @@ impl Jobs {
         let listener = Listener {
             observer: &|progress| one.note(progress),
             proving: &|progress| {
-                one.told().said = format!("certificate: no sum below {:.6e}", progress.lower_bound);
+                one.told().said = format!("certificate: no sum below {}", at_most(progress.lower_bound, 7));
             },
             tell: &|text| one.told().said = text.into(),
         };

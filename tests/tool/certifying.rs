@@ -53,6 +53,13 @@ fn a_run_that_is_stopped_early_leaves_a_valid_bound_that_verify_works_out_again(
     let (code, stdout, stderr) = linkwright(folder.path(), &["verify", "r", "--certificate"]);
     assert_eq!(code, 0, "{stdout}{stderr}");
     assert!(stdout.contains("worked out again"), "{stdout}");
+    // A later run that proves less takes nothing away.
+    let (code, stdout, stderr) = linkwright(
+        folder.path(),
+        &["certify", "r", "--gap", "0.9", "--set", "certify.time_limit_s=1e-9", "--quiet"],
+    );
+    assert!(code == 1 && stderr.contains("proves more than this run"), "{stdout}{stderr}");
+    assert_eq!(record(&result).certificate.as_ref(), Some(&certificate));
     // A bound that was raised by hand is found out.
     let path = result.join("record.json");
     after.certificate = Some(certificate);
@@ -108,6 +115,9 @@ fn a_stopped_run_goes_on_where_it_stood_and_refuses_what_is_not_its_own() {
     fs::write(&leaves, &whole[..whole.len() - 7]).expect("they are cut");
     let (code, stdout, _) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
     assert!(code == 1 && stdout.contains("NOT true") && stdout.contains("cut off"), "{stdout}");
+    fs::write(&leaves, "something else").expect("they are others");
+    let (code, _, stderr) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
+    assert!(code == 2 && stderr.contains("certificate.leaves: these are no leaves"), "{stderr}");
     fs::remove_file(&leaves).expect("they are gone");
     let (code, _, stderr) = linkwright(folder.path(), &["verify", "r", "--leaves"]);
     assert!(code == 2 && stderr.contains("certify with --leaves"), "{stderr}");
@@ -119,6 +129,11 @@ fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
     let points = "x,y\n0,0\n1,0.2\n2,0\n2.1,1\n1,1.3\n0,1\n";
     fs::write(folder.path().join("free.csv"), points).expect("written");
     linkwright(folder.path(), &["synth", "free.csv", "--out", "free", "--quiet"]);
+    let k18 = problem("k18");
+    let apart = ["synth", &k18, "--set", "require.circuit=any", "--out", "apart", "--quiet"];
+    linkwright(folder.path(), &apart);
+    let (code, _, stderr) = linkwright(folder.path(), &["certify", "apart"]);
+    assert!(code == 2 && stderr.contains("require.circuit"), "{stderr}");
     let before = fs::read(folder.path().join("free/record.json")).expect("a record");
     let (code, stdout, stderr) = linkwright(folder.path(), &["certify", "free"]);
     assert_eq!(code, 2);

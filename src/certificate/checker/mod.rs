@@ -47,7 +47,10 @@ pub enum CheckError {
     #[error("the leaves have other classes or directions of the crank than the record's problem")]
     Parts,
     /// A leaf could not be shown.
-    #[error("leaf {leaf} of part {part} is not proved: p {p:?}, phi {phi:?}, g {g:?}, d {d:?} as \"{rule}\"")]
+    #[error(
+        "leaf {leaf} of part {part} is not shown within {MOST_BOXES} boxes: p {p:?}, phi {phi:?}, g {g:?}, d {d:?} as \
+         \"{rule}\"; verify --certificate works it out by the rules of the search"
+    )]
     Leaf {
         /// The part, from 1.
         part: usize,
@@ -67,6 +70,13 @@ pub enum CheckError {
     /// It was stopped.
     #[error("the check was stopped: nothing is said about the certificate")]
     Stopped,
+}
+
+impl CheckError {
+    /// Whether the leaves are not what the record says of them. A leaf that is not shown may be true all the same.
+    pub fn is_refuted(&self) -> bool {
+        !matches!(self, CheckError::Leaf { .. } | CheckError::Stopped)
+    }
 }
 
 /// What was checked.

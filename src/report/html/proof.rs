@@ -2,12 +2,9 @@
 
 use super::body::{paragraph, section};
 use super::page::escaped;
-use crate::record::{Certificate, CertificatePart, Record};
-use crate::report::certificate::{headline, percent_up, proof_sentences, reason, repeats_sentences};
-use crate::report::text::{clean, grouped, significant};
-
-/// Classes of a certificate that are shown; it has at most four.
-const PARTS: usize = 8;
+use crate::record::{Certificate, Record};
+use crate::report::certificate::{PARTS, headline, part_words, proof_sentences, reason, repeats_sentences};
+use crate::report::text::{at_most, grouped, percent_up};
 
 /// The section; empty for a record that says nothing of it.
 pub(super) fn proof(record: &Record) -> String {
@@ -26,7 +23,7 @@ pub(super) fn proof(record: &Record) -> String {
 
 fn proved(certificate: &Certificate) -> String {
     let pairs = [
-        ("no sum of squares below", significant(certificate.lower_bound, 10)),
+        ("no sum of squares below", at_most(certificate.lower_bound, 10)),
         ("gap to the best found", format!("{} %", percent_up(certificate.gap))),
         ("boxes looked at", grouped(certificate.boxes)),
     ];
@@ -36,22 +33,11 @@ fn proved(certificate: &Certificate) -> String {
     let mut out = paragraph(class, &format!("{}.", headline(certificate)));
     out.push_str(&format!("<dl class=\"figures\">\n{pairs}</dl>\n"));
     out.push_str(&proof_sentences(certificate).iter().map(|s| paragraph("", s)).collect::<String>());
-    let items: String = certificate.parts.iter().take(PARTS).map(part).collect();
+    let item = |words: String| format!("<li>{}</li>\n", escaped(&words));
+    let items: String = certificate.parts.iter().take(PARTS).map(part_words).map(item).collect();
     if !items.is_empty() {
         out.push_str(&format!("<ul class=\"said-list\">\n{items}</ul>\n"));
     }
     let check = "linkwright verify RESULT --certificate works it out again, box by box.";
     out + &paragraph("notes", check)
-}
-
-fn part(part: &CertificatePart) -> String {
-    let way = if part.direction < 0 { "against" } else { "with" };
-    let state = if part.closed { "" } else { ", not closed" };
-    let text = format!(
-        "{} {way} the increments: no sum below {}, {} boxes{state}",
-        clean(&part.linkage_type),
-        significant(part.lower_bound, 10),
-        grouped(part.boxes)
-    );
-    format!("<li>{}</li>\n", escaped(&text))
 }
