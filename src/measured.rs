@@ -8,6 +8,7 @@ use crate::linkage_file::LinkageFile;
 use crate::problem::Problem;
 use crate::problem_file::ProblemFile;
 use crate::record::{Candidate, Unit};
+use crate::report::certificate::headline;
 use crate::report::compare::{
     Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, scaled, times, unit_remarks,
 };
@@ -178,6 +179,11 @@ impl Measured {
             match (one, own) {
                 (Given::Run(run), Some(own)) => {
                     let untrue = digest_of(run);
+                    let proved = run.record.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
+                    if let (Some(proof), None, true) = (proved, target, untrue.is_empty()) {
+                        let named = escaped(&run.named);
+                        measured.remarks.push(format!("{named}, as its record says: {}.", headline(proof)));
+                    }
                     for chosen in run.chosen() {
                         measured.units.push((chosen.label.clone(), run.record.problem.unit));
                         measured.candidate(&chosen, own, target, &untrue);

@@ -52,7 +52,7 @@ pub(super) fn reason(why: &str) -> String {
 }
 
 /// `Proved optimum: no linkage whose input turns fully is better by more than 0.01 %`, or how far a proof came.
-pub(super) fn headline(certificate: &Certificate) -> String {
+pub fn headline(certificate: &Certificate) -> String {
     let proved = match (certificate.closed, certificate.lower_bound > 0.0) {
         (true, _) if certificate.gap <= NARROW => "Proved optimum",
         (true, _) => "Proved",

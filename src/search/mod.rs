@@ -13,6 +13,8 @@ pub mod continuation;
 pub mod costs;
 pub mod exact_linkages;
 pub mod family;
+#[cfg(test)]
+mod fixture;
 pub mod free;
 pub mod keeper;
 pub mod loosen;

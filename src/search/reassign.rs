@@ -250,9 +250,7 @@ impl Target<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linkage::{CouplerSide, NaturalCoordinates};
-    use crate::problem::Setting;
-    use crate::problem::design_space::Shape;
+    use crate::search::fixture;
     use crate::solve::streams::{below, stream, uniform};
 
     fn random_places(count: usize, random: &mut crate::solve::streams::Stream) -> Vec<Place> {
@@ -304,19 +302,7 @@ mod tests {
 
     /// Points of a linkage's curve, and a start on it with its points at other places.
     fn displaced(links: [f64; 4], order: bool, closed: bool) -> (Problem, Start, f64) {
-        let [ground, crank, coupler, follower] = links;
-        let linkage = FourBar::new(NaturalCoordinates {
-            crank_pivot: [0.0, 0.0],
-            follower_pivot: [ground, 0.0],
-            crank,
-            coupler,
-            follower,
-            crank_side: 0.6 * coupler,
-            follower_side: 0.7 * coupler,
-            assembly: AssemblyMode::Plus,
-            side: CouplerSide::Plus,
-        })
-        .expect("a linkage");
+        let linkage = fixture::linkage(links);
         let mobility = linkage.mobility();
         let begin = match mobility.input {
             crate::linkage::InputRange::One(arc) | crate::linkage::InputRange::Two([arc, _]) => arc.middle,
@@ -330,21 +316,16 @@ mod tests {
             (0..n).filter_map(|j| track.place(0.2 + span * f64::from(j) / f64::from(n))).collect();
         let points: Vec<[f64; 2]> = own.iter().map(|p| [p.point.re, p.point.im]).collect();
         let order = if order { "required" } else { "any" };
-        let text = format!(
-            "format = 1\n[task.path]\npoints = {points:?}\nclosed = {closed}\n[require]\norder = \"{order}\"\nbranch = \"any\"\n"
-        );
-        let spec = crate::problem_file::parse("it.toml", &text, None, &[]).expect("a problem").spec;
-        let problem = Problem::new(spec).expect("a problem");
-        let setting =
-            Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };
-        let design = problem.space(setting.side).design(&Shape::from(&linkage), 0.0);
+        let require = format!("order = \"{order}\"\nbranch = \"any\"");
+        let problem = fixture::problem(&points, closed, &require);
         // All of them crowd together in the first fifth of their way.
         let positions = (0..n)
             .filter_map(|j| track.place(0.2 + 0.2 * span * f64::from(j) / f64::from(n)))
             .map(|place| place.position)
             .collect();
         let size = problem.task().size();
-        (problem, Start { design, setting, positions }, size)
+        let start = fixture::start(&problem, &linkage, positions);
+        (problem, start, size)
     }
 
     #[test]

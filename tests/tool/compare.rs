@@ -369,6 +369,23 @@ fn runs_of_different_targets_are_measured_on_one_that_is_named() {
 }
 
 #[test]
+fn what_is_proved_of_a_result_is_told() {
+    let folder = TempDir::new().expect("a folder");
+    run(folder.path(), "r", &["--set", "task.path.timing.offset=ground"]);
+    let (_, text, _) = linkwright(folder.path(), &["compare", "r"]);
+    assert!(!text.contains("Proved"), "{text}");
+    linkwright(folder.path(), &["certify", "r", "--gap", "0.02", "--quiet"]);
+    let (code, text, _) = linkwright(folder.path(), &["compare", "r"]);
+    let said = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let told = "r, as its record says: Proved: no linkage whose input turns fully is better by more than";
+    assert!(code == 0 && said.contains(told), "{text}");
+    // Of other points nothing is proved.
+    let target = root().join("problems/literature/k18b.toml").display().to_string();
+    let (_, text, _) = linkwright(folder.path(), &["compare", "r", "--target", &target]);
+    assert!(!text.contains("Proved"), "{text}");
+}
+
+#[test]
 fn what_cannot_be_measured_is_left_out_and_told() {
     let folder = TempDir::new().expect("a folder");
     run(folder.path(), "r", &[]);

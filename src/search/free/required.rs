@@ -78,26 +78,13 @@ fn on_one_branch(problem: &Problem, end: &Start) -> Option<Start> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linkage::{Complex, CouplerSide, FourBar, NaturalCoordinates};
-    use crate::problem::Setting;
-    use crate::problem::design_space::Shape;
+    use crate::linkage::Complex;
+    use crate::search::fixture;
     use std::f64::consts::TAU;
 
     /// Points all around the curve of a linkage, and a start there in the assemblies that are told.
     fn start(links: [f64; 4], require: &str, assemblies: impl Fn(usize) -> AssemblyMode) -> (Problem, Start) {
-        let [ground, crank, coupler, follower] = links;
-        let linkage = FourBar::new(NaturalCoordinates {
-            crank_pivot: [0.0, 0.0],
-            follower_pivot: [ground, 0.0],
-            crank,
-            coupler,
-            follower,
-            crank_side: 0.6 * coupler,
-            follower_side: 0.7 * coupler,
-            assembly: AssemblyMode::Plus,
-            side: CouplerSide::Plus,
-        })
-        .expect("a linkage");
+        let linkage = fixture::linkage(links);
         let (mut points, mut positions) = (Vec::new(), Vec::new());
         for j in 0..24 {
             // Where the crank rocks, on an arc that it reaches.
@@ -108,13 +95,9 @@ mod tests {
             let coupler = (joints.follower_pin - joints.crank_pin) / linkage.coupler();
             positions.push([Complex::from_polar(1.0, angle), coupler]);
         }
-        let text = format!("format = 1\n[task.path]\npoints = {points:?}\n[require]\n{require}\n");
-        let spec = crate::problem_file::parse("it.toml", &text, None, &[]).expect("a problem").spec;
-        let problem = Problem::new(spec).expect("a problem");
-        let setting =
-            Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };
-        let design = problem.space(setting.side).design(&Shape::from(&linkage), 0.0);
-        (problem, Start { design, setting, positions })
+        let problem = fixture::problem(&points, false, require);
+        let start = fixture::start(&problem, &linkage, positions);
+        (problem, start)
     }
 
     fn mostly_plus(j: usize) -> AssemblyMode {

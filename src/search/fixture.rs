@@ -1,0 +1,39 @@
+//! A linkage, a problem with points on its curve and a start there, for tests.
+
+use super::starts::Start;
+use crate::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use crate::problem::design_space::Shape;
+use crate::problem::torus::Positions;
+use crate::problem::{Problem, Setting};
+
+/// Of these lengths, its ground line on the x axis and its coupler point to the left of C D.
+pub(super) fn linkage([ground, crank, coupler, follower]: [f64; 4]) -> FourBar {
+    FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [ground, 0.0],
+        crank,
+        coupler,
+        follower,
+        crank_side: 0.6 * coupler,
+        follower_side: 0.7 * coupler,
+        assembly: AssemblyMode::Plus,
+        side: CouplerSide::Plus,
+    })
+    .expect("a linkage")
+}
+
+/// These points with free timing and these lines under `[require]`.
+pub(super) fn problem(points: &[[f64; 2]], closed: bool, require: &str) -> Problem {
+    let text =
+        format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = {closed}\n[require]\n{require}\n");
+    let file = crate::problem_file::parse("it.toml", &text, None, &[]).expect("a problem");
+    Problem::new(file.spec).expect("a problem")
+}
+
+/// The linkage as a start for the problem, at these positions.
+pub(super) fn start(problem: &Problem, linkage: &FourBar, positions: Positions) -> Start {
+    let setting =
+        Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };
+    let design = problem.space(setting.side).design(&Shape::from(linkage), 0.0);
+    Start { design, setting, positions }
+}
