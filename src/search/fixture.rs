@@ -1,5 +1,7 @@
 //! A linkage, a problem with points on its curve and a start there, for tests.
 
+#![cfg(test)]
+
 use super::starts::Start;
 use crate::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use crate::problem::design_space::Shape;

@@ -13,7 +13,6 @@ pub mod continuation;
 pub mod costs;
 pub mod exact_linkages;
 pub mod family;
-#[cfg(test)]
 mod fixture;
 pub mod free;
 pub mod keeper;
