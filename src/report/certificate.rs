@@ -26,7 +26,11 @@ pub fn certificate_text(record: &Record, colour: Colour) -> String {
         sentences.iter().map(|sentence| wrapped("    ", "    ", sentence, COLUMNS)).collect()
     };
     match (&record.certificate, &record.no_certificate) {
-        (Some(certificate), _) => head(&headline(certificate)) + &lines(&proof_sentences(certificate)),
+        (Some(certificate), _) => {
+            let mut sentences = proof_sentences(certificate);
+            sentences.extend(unused_limits(record));
+            head(&headline(certificate)) + &lines(&sentences)
+        }
         (None, Some(why)) => {
             let mut out = head("No certificate") + &lines(&[reason(why)]);
             if let Some(repeats) = &record.repeats {
@@ -98,6 +102,28 @@ pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
         sentences.push(format!("Not covered: {}.", list(&certificate.not_covered)));
     }
     sentences
+}
+
+/// The limits of a length that a proof uses too.
+const USED_LIMITS: [&str; 3] = ["design.coupler_x", "design.coupler_y", "design.d"];
+
+/// Where a proof that has not closed may never do so: limits and requirements at the best answer that it does not use.
+pub(super) fn unused_limits(record: &Record) -> Option<String> {
+    let open = record.certificate.as_ref().is_some_and(|certificate| !certificate.closed);
+    let costs = record.candidates.first().filter(|_| open).map_or(&[][..], |best| &best.costs);
+    let names: Vec<String> = costs
+        .iter()
+        .filter(|cost| !USED_LIMITS.contains(&cost.name.as_str()))
+        .take(TOLD)
+        .map(|cost| clean(&cost.name))
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "The best answer lies on limits that the proof does not use ({}): where linkages beyond them are better, the \
+             gap cannot close.",
+            names.join(", ")
+        )
+    })
 }
 
 /// How often the best answer came back and what that foretells, each figure with what it assumes.

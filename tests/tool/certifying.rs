@@ -124,6 +124,19 @@ fn a_stopped_run_goes_on_where_it_stood_and_refuses_what_is_not_its_own() {
 }
 
 #[test]
+fn limits_that_the_proof_does_not_use_are_named() {
+    let folder = TempDir::new().expect("a folder");
+    linkwright(folder.path(), &["synth", &problem("a6"), "--out", "r", "--quiet"]);
+    let (code, stdout, _) =
+        linkwright(folder.path(), &["certify", "r", "--set", "certify.time_limit_s=0.1", "--quiet"]);
+    let said = stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        code == 1 && said.contains("limits that the proof does not use (design.ground, design.a)"),
+        "{stdout}"
+    );
+}
+
+#[test]
 fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
     let folder = TempDir::new().expect("a folder");
     let points = "x,y\n0,0\n1,0.2\n2,0\n2.1,1\n1,1.3\n0,1\n";

@@ -3,14 +3,16 @@
 use super::body::{paragraph, section};
 use super::page::escaped;
 use crate::record::{Certificate, Record};
-use crate::report::certificate::{PARTS, headline, part_words, proof_sentences, reason, repeats_sentences};
+use crate::report::certificate::{
+    PARTS, headline, part_words, proof_sentences, reason, repeats_sentences, unused_limits,
+};
 use crate::report::text::{at_most, grouped, percent_up};
 
 /// The section; empty for a record that says nothing of it.
 pub(super) fn proof(record: &Record) -> String {
     let mut inside = String::new();
     match (&record.certificate, &record.no_certificate) {
-        (Some(certificate), _) => inside.push_str(&proved(certificate)),
+        (Some(certificate), _) => inside.push_str(&proved(certificate, unused_limits(record))),
         (None, Some(why)) => inside.push_str(&paragraph("", &reason(why))),
         (None, None) => {}
     }
@@ -21,7 +23,7 @@ pub(super) fn proof(record: &Record) -> String {
     if inside.is_empty() { inside } else { section("proof", "Can it be better?", &inside) }
 }
 
-fn proved(certificate: &Certificate) -> String {
+fn proved(certificate: &Certificate, unused: Option<String>) -> String {
     let pairs = [
         ("no sum of squares below", at_most(certificate.lower_bound, 10)),
         ("gap to the best found", format!("{} %", percent_up(certificate.gap))),
@@ -32,7 +34,8 @@ fn proved(certificate: &Certificate) -> String {
     let class = if certificate.closed { "good" } else { "" };
     let mut out = paragraph(class, &format!("{}.", headline(certificate)));
     out.push_str(&format!("<dl class=\"figures\">\n{pairs}</dl>\n"));
-    out.push_str(&proof_sentences(certificate).iter().map(|s| paragraph("", s)).collect::<String>());
+    let sentences = proof_sentences(certificate).into_iter().chain(unused);
+    out.push_str(&sentences.map(|s| paragraph("", &s)).collect::<String>());
     let item = |words: String| format!("<li>{}</li>\n", escaped(&words));
     let items: String = certificate.parts.iter().take(PARTS).map(part_words).map(item).collect();
     if !items.is_empty() {
