@@ -273,6 +273,21 @@ fn every_command_of_the_other_pages_runs_and_prints_what_is_shown() {
 }
 
 #[test]
+fn every_command_of_the_program_stands_in_the_readme() {
+    let help = answer(&root(), "linkwright --help").stdout;
+    let listed = help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("a list");
+    let readme = fs::read_to_string(root().join("README.md")).expect("it can be read");
+    let table =
+        readme.split("\n## Commands\n").nth(1).and_then(|rest| rest.split("\n## ").next()).expect("a table");
+    let commands: Vec<&str> = listed.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(commands.len() > 10, "{help}");
+    for command in commands.iter().filter(|command| **command != "help") {
+        let named = |mark: char| table.contains(&format!("`{command}{mark}"));
+        assert!(named(' ') || named('`'), "the README's table of commands lacks {command}");
+    }
+}
+
+#[test]
 fn every_link_between_the_pages_leads_somewhere() {
     for place in documents() {
         let text = fs::read_to_string(&place).expect("it can be read");
