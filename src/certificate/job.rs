@@ -1,7 +1,7 @@
 //! A record in, its certificate out; a recorded certificate worked out again.
 
 use super::chart::Class;
-use super::leaves::{Leaves, LeavesPart};
+use super::leaves::{Angles, Leaves, LeavesPart};
 use super::search::{Question, Search};
 use super::subject::{NoCertificate, Subject};
 use crate::record::{Certificate, Record};
@@ -44,8 +44,12 @@ impl Proof {
         let subject = Subject::new(record, request.gap)?;
         let mut searches = Vec::new();
         for (class, direction) in subject.parts() {
-            let question = Question::new(class, direction, &subject.points, &subject.turns_deg, subject.cap)?;
-            let question = if subject.from_ground { question.from_ground() } else { question };
+            let (points, turns, cap) = (&subject.points, &subject.turns_deg, subject.cap);
+            let question = match subject.angles {
+                Angles::Increments => Question::new(class, direction, points, turns, cap)?,
+                Angles::Ground => Question::new(class, direction, points, turns, cap)?.from_ground(),
+                Angles::Axis(axis) => Question::from_axis(class, points, turns, cap, axis)?,
+            };
             searches.push((class, direction, Search::new(question, subject.wanted())));
         }
         Ok(Proof { subject, searches })
@@ -90,7 +94,7 @@ impl Proof {
         let part = |(class, direction, search): &(Class, f64, Search)| LeavesPart {
             class: *class,
             direction: if *direction > 0.0 { 1 } else { -1 },
-            from_ground: self.subject.from_ground,
+            origin: self.subject.angles.origin(),
             lower_bound: search.lower_bound(),
             nodes: search.nodes(),
         };

@@ -5,7 +5,7 @@
 //! 8    4  1: the version of the format            numbers are little-endian
 //! 12   4  the number of parts
 //! then, a part: 1 class (0 crank-rocker, 1 double-crank), 1 direction (1 or 255 for -1),
-//!               1 first crank angle (0 any, 1 on the ground line), 5 zeros,
+//!               1 crank angles (0 increments, 1 from the ground line, 2 from the x axis), 5 zeros,
 //!               8 its lower bound (double), 8 the number of nodes,
 //!               the nodes, half a byte each, the lower half first; 15 fills the last byte
 //! at the end  32  SHA-256 of all before: `leaves_sha256` of the record
@@ -15,18 +15,43 @@
 //! (the lower half comes first), 0 a box that is open, 1 to 3 a leaf: outside, cognate, bounded. The first box is the
 //! whole chart ([`root`]). Halves meet in the middle of the two ends, rounded to single precision.
 
+use super::absolute::Axis;
 use super::bound::Cell;
 use super::chart::Class;
 use sha2::{Digest, Sha256};
 
 /// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
 pub const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
-/// The part of the chart that a question is about: all of it, or phi_0 = 0 where crank angles are from the ground line.
-pub fn root(from_ground: bool) -> Cell {
-    let mut root = ROOT;
-    if from_ground {
-        (root.low[1], root.high[1]) = (0.0, 0.0);
+/// Where crank angles are from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Angles {
+    /// Anywhere: they are increments.
+    Increments,
+    /// The ground line.
+    Ground,
+    /// The x axis.
+    Axis(Axis),
+}
+
+impl Angles {
+    /// The number in a file of leaves.
+    pub fn origin(&self) -> u8 {
+        match self {
+            Angles::Increments => 0,
+            Angles::Ground => 1,
+            Angles::Axis(_) => 2,
+        }
     }
+}
+
+/// The part of the chart with phi_0 in a range, outwards to single precision.
+pub fn root(phi: [f64; 2]) -> Cell {
+    let mut root = ROOT;
+    let [low, high] = phi.map(|end| end as f32);
+    let low = if f64::from(low) > phi[0] { low.next_down() } else { low };
+    let high = if f64::from(high) < phi[1] { high.next_up() } else { high };
+    root.low[1] = f64::from(low).max(root.low[1]);
+    root.high[1] = f64::from(high).min(root.high[1]);
     root
 }
 
@@ -145,8 +170,8 @@ pub struct LeavesPart {
     pub class: Class,
     /// The direction of the crank, 1 or -1.
     pub direction: i8,
-    /// Whether the crank angles are from the ground line.
-    pub from_ground: bool,
+    /// Where the crank angles are from: 0, 1 or 2 of the file.
+    pub origin: u8,
     /// No linkage of the part has a sum of squares below it.
     pub lower_bound: f64,
     /// The tree.
@@ -167,7 +192,7 @@ impl Leaves {
         bytes.extend((self.parts.len() as u32).to_le_bytes());
         for part in &self.parts {
             bytes.extend([u8::from(part.class == Class::DoubleCrank), part.direction as u8]);
-            bytes.push(u8::from(part.from_ground));
+            bytes.push(part.origin);
             bytes.extend([0; 5]);
             bytes.extend(part.lower_bound.to_le_bytes());
             bytes.extend(part.nodes.len().to_le_bytes());
@@ -211,10 +236,10 @@ impl Leaves {
         }
         let mut parts = Vec::new();
         for number in 1..=count as usize {
-            let [class, direction, ground, zeros @ ..] = take::<8>(&mut rest)?;
-            let class = match (class, direction, ground, zeros) {
-                (0, 1 | 255, 0 | 1, [0, 0, 0, 0, 0]) => Class::CrankRocker,
-                (1, 1 | 255, 0 | 1, [0, 0, 0, 0, 0]) => Class::DoubleCrank,
+            let [class, direction, origin, zeros @ ..] = take::<8>(&mut rest)?;
+            let class = match (class, direction, origin, zeros) {
+                (0, 1 | 255, 0..=2, [0, 0, 0, 0, 0]) => Class::CrankRocker,
+                (1, 1 | 255, 0..=2, [0, 0, 0, 0, 0]) => Class::DoubleCrank,
                 _ => return Err(LeavesError::Changed),
             };
             let lower_bound = f64::from_le_bytes(take(&mut rest)?);
@@ -224,8 +249,7 @@ impl Leaves {
             rest = others;
             let nodes = Nodes::from_bytes(own, count).ok_or(LeavesError::Changed)?;
             nodes.covers().map_err(|what| LeavesError::Uncovered { part: number, what })?;
-            let (direction, from_ground) = (direction as i8, ground == 1);
-            parts.push(LeavesPart { class, direction, from_ground, lower_bound, nodes });
+            parts.push(LeavesPart { class, direction: direction as i8, origin, lower_bound, nodes });
         }
         if rest.is_empty() { Ok(Leaves { parts }) } else { Err(LeavesError::Changed) }
     }

@@ -8,24 +8,29 @@
 //! ([`chart`]); [`mod@bound`] bounds a box from below in arithmetic with enclosed rounding ([`ball`]); [`search`] halves
 //! boxes until each is decided. docs/certificate.md has the proofs.
 
+pub mod absolute;
+mod affine;
 pub mod ball;
 pub mod bound;
 pub mod chart;
 pub mod checker;
 pub mod checkpoint;
+mod expansion;
 pub mod job;
 pub mod leaves;
 pub mod search;
 pub mod subject;
 pub mod target;
+mod words;
 
+pub use absolute::{Axis, Lengths, Line};
 pub use ball::Ball;
 pub use bound::{Bound, Cell, bound};
 pub use chart::{Class, Point, Ratios};
 pub use checker::{CheckError, Checked, check};
 pub use checkpoint::ResumeError;
 pub use job::{Progress, Proof, Request, certify, recheck};
-pub use leaves::{Leaves, LeavesError, LeavesPart, Nodes};
+pub use leaves::{Angles, Leaves, LeavesError, LeavesPart, Nodes};
 pub use search::{Leaf, Outcome, Question, Search};
 pub use subject::{NoCertificate, Subject};
 pub use target::{Target, TargetError};

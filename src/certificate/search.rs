@@ -5,9 +5,10 @@
 //! lowest bound that waits is at any time a bound of everything. Batches are of one size whatever the number of
 //! threads, and their results are taken in order: the same boxes, the same digits.
 
+use super::absolute::{self, Axis};
 use super::bound::{Bound, Cell, bound};
 use super::chart::Class;
-use super::leaves::{HALVED, Nodes, OPEN, ROOT, root};
+use super::leaves::{Angles, HALVED, Nodes, OPEN, ROOT, root};
 use super::target::{Target, TargetError};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -26,12 +27,12 @@ pub struct Question {
     class: Class,
     whole: Target,
     /// All points but one.
-    fewer: Vec<Target>,
+    fewer: Vec<Option<Target>>,
     turns: Vec<f64>,
     /// No linkage with a larger |Z| is asked about.
     cap: f64,
-    /// Whether phi_0 = 0: the crank angles are from the ground line.
-    from_ground: bool,
+    /// Where crank angles are from.
+    angles: Angles,
 }
 
 /// Why a box needs no further look.
@@ -79,13 +80,41 @@ impl Question {
             })
             .collect::<Result<Vec<_>, _>>()?;
         let turns = turns_deg.iter().map(|deg| direction.signum() * deg.to_radians()).collect();
-        Ok(Question { class, whole, fewer, turns, cap, from_ground: false })
+        let fewer = fewer.into_iter().map(Some).collect();
+        Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Increments })
+    }
+
+    /// A class for points with crank angles from the x axis.
+    ///
+    /// # Errors
+    /// [`TargetError`].
+    pub fn from_axis(
+        class: Class,
+        points: &[[f64; 2]],
+        angles_deg: &[f64],
+        cap: f64,
+        axis: Axis,
+    ) -> Result<Self, TargetError> {
+        if points.len() < 5 {
+            return Err(TargetError::Points { points: points.len() });
+        }
+        let whole = Target::on_axis(points, angles_deg, &axis)?;
+        let but = |j: usize| {
+            let (mut points, mut angles) = (points.to_vec(), angles_deg.to_vec());
+            points.remove(j);
+            angles.remove(j);
+            Target::on_axis(&points, &angles, &axis).ok()
+        };
+        let fewer = (0..points.len()).map(but).collect();
+        let line = axis.angle_deg().unwrap_or_default();
+        let turns = angles_deg.iter().map(|deg| (deg - line).to_radians()).collect();
+        Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Axis(axis) })
     }
 
     /// The same where the angles are from the ground line: phi_0 = 0.
     #[must_use]
     pub fn from_ground(mut self) -> Self {
-        self.from_ground = true;
+        self.angles = Angles::Ground;
         self
     }
 
@@ -104,19 +133,42 @@ impl Question {
         ROOT
     }
 
+    /// The part of the chart that is asked about.
+    fn part(&self) -> Cell {
+        match self.angles {
+            Angles::Increments => ROOT,
+            Angles::Ground => root([0.0; 2]),
+            Angles::Axis(axis) => root(axis.phi),
+        }
+    }
+
+    fn bound(&self, target: &Target, cell: &Cell, wanted: f64) -> Bound {
+        match &self.angles {
+            Angles::Axis(axis) => absolute::bound(target, self.class, cell, &axis.lengths, self.cap, wanted),
+            _ => bound(target, self.class, cell, self.cap, wanted),
+        }
+    }
+
     /// Decides a box, or bounds it.
     pub fn look(&self, cell: &Cell, wanted: f64) -> Outcome {
         if outside(cell) {
             return Outcome::Leaf(Leaf::Outside);
         }
-        if in_cognate_half(cell) {
-            return Outcome::Leaf(Leaf::Cognate);
+        match &self.angles {
+            // The cognate has another A and a K that is not real.
+            Angles::Axis(axis) if axis.lengths.exclude(self.class, cell) => {
+                return Outcome::Leaf(Leaf::Outside);
+            }
+            Angles::Increments | Angles::Ground if in_cognate_half(cell) => {
+                return Outcome::Leaf(Leaf::Cognate);
+            }
+            _ => {}
         }
-        let mut best = bound(&self.whole, self.class, cell, self.cap, wanted);
+        let mut best = self.bound(&self.whole, cell, wanted);
         if best.sum_sq < wanted && cell.high[0] > 0.5 {
             // The crank pin may be near B at one point: that point is left out.
-            if let Some(j) = self.near(cell) {
-                let other = bound(&self.fewer[j], self.class, cell, self.cap, wanted);
+            if let Some(fewer) = self.near(cell).and_then(|j| self.fewer[j].as_ref()) {
+                let other = self.bound(fewer, cell, wanted);
                 if other.sum_sq > best.sum_sq {
                     best.sum_sq = other.sum_sq;
                 }
@@ -242,9 +294,10 @@ fn halves(node: u32) -> Option<(u32, u8)> {
 impl Search {
     /// To find out whether every sum of squares is at least `wanted`.
     pub fn new(question: Question, wanted: f64) -> Self {
-        let turn = if question.from_ground { 0.0 } else { 2.0 };
+        let whole = question.part();
+        let turn = if whole.low[1] < whole.high[1] { 2.0 } else { 0.0 };
         let none = Bound { sum_sq: 0.0, weight: [1.0, turn, 1.5, 1.2] };
-        let heap = BinaryHeap::from([Waiting::new(&root(question.from_ground), &none, 0.0, 0)]);
+        let heap = BinaryHeap::from([Waiting::new(&whole, &none, 0.0, 0)]);
         Search { question, wanted, heap, decided: 0.0, tree: vec![u32::from(OPEN)] }
     }
 
@@ -338,7 +391,7 @@ impl Search {
         }
         let mut tree = Vec::with_capacity(count);
         tree.push(u32::from(OPEN));
-        let mut next = vec![(0_u32, root(like.question.from_ground))];
+        let mut next = vec![(0_u32, like.question.part())];
         let mut waiting = Vec::with_capacity(open.len());
         let mut open = open.iter();
         for code in nodes.codes() {
@@ -392,7 +445,7 @@ impl Search {
             })
         };
         let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
-        let whole = root(self.question.from_ground);
+        let whole = self.question.part();
         for (parent, pair) in batch.iter().zip(looked) {
             self.tree[parent.node as usize] = halved(self.tree.len() as u32, parent.axis);
             for (cell, outcome) in pair {

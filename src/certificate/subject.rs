@@ -1,9 +1,12 @@
 //! What a certificate is about: the points, the crank's increments, the cap and the best sum of a record; and what a
 //! certificate says when each part is bounded.
 
+use super::absolute::{Axis, Line};
+use super::bound::Cell;
 use super::chart::Class;
-use super::leaves::{Leaves, OPEN};
+use super::leaves::{Angles, Leaves, OPEN, ROOT, root};
 use super::target::TargetError;
+use crate::linkage::LinkageType;
 use crate::problem::spec::{Limits, Objective, OnePolicy};
 use crate::record::{Certificate, CertificatePart, Record};
 use crate::task::AngleOffset;
@@ -21,11 +24,6 @@ pub enum NoCertificate {
     /// The points are met at whatever crank angle is nearest.
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
-    /// The crank angles are not increments.
-    #[error(
-        "no certificate is available yet for crank angles from the x axis: it needs offset = \"free\" or \"ground\""
-    )]
-    FixedOffset,
     /// The sum is not the plain one.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
     OtherObjective,
@@ -61,8 +59,10 @@ pub struct Subject {
     pub points: Vec<[f64; 2]>,
     /// The crank's increments, degrees; its angles where these are from the ground line.
     pub turns_deg: Vec<f64>,
-    /// Whether the crank angles are from the ground line.
-    pub from_ground: bool,
+    /// Where the crank angles are from.
+    pub angles: Angles,
+    /// Which links may turn fully with the input.
+    pub classes: Vec<Class>,
     /// The directions of the crank: 1, -1.
     pub directions: Vec<f64>,
     /// The problem's own limit of |Z|, the distance of the coupler point from the crank pin.
@@ -88,9 +88,6 @@ impl Subject {
         let best = record.candidates.first().ok_or(NoCertificate::NoCandidate)?.error.sum_sq;
         let path = &spec.task.path;
         let timing = path.timing.as_ref().ok_or(NoCertificate::FreeTiming)?;
-        if timing.offset == AngleOffset::Fixed {
-            return Err(NoCertificate::FixedOffset);
-        }
         let problem =
             crate::problem::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;
         let task = problem.task();
@@ -117,7 +114,15 @@ impl Subject {
         Ok(Subject {
             points: task.points().iter().map(|p| [p.re, p.im]).collect(),
             turns_deg: timing.crank_deg.clone(),
-            from_ground: timing.offset == AngleOffset::Ground,
+            angles: match timing.offset {
+                AngleOffset::Free => Angles::Increments,
+                AngleOffset::Ground => Angles::Ground,
+                AngleOffset::Fixed => Angles::Axis(Axis::of(design)),
+            },
+            classes: match timing.offset {
+                AngleOffset::Fixed => classes(&spec.require.types),
+                AngleOffset::Free | AngleOffset::Ground => Class::ALL.to_vec(),
+            },
             directions: problem.directions().to_vec(),
             limit,
             cap: limit * (1.0 + 1e-9),
@@ -133,7 +138,7 @@ impl Subject {
 
     /// The parts of the proof: each class in each direction, in the order of the record.
     pub fn parts(&self) -> Vec<(Class, f64)> {
-        Class::ALL.iter().flat_map(|class| self.directions.iter().map(|way| (*class, *way))).collect()
+        self.classes.iter().flat_map(|class| self.directions.iter().map(|way| (*class, *way))).collect()
     }
 
     /// How far a bound is below the best, relative.
@@ -145,12 +150,34 @@ impl Subject {
     pub fn sha256(&self) -> [u8; 32] {
         let mut sum = Sha256::new();
         let points = self.points.iter().flatten();
-        let ground = f64::from(u8::from(self.from_ground));
+        let ground = f64::from(u8::from(self.angles == Angles::Ground));
         let rest = [self.cap, self.best, self.gap, self.points.len() as f64, ground];
         for number in rest.iter().chain(points).chain(&self.turns_deg).chain(&self.directions) {
             sum.update(number.to_le_bytes());
         }
+        if let Angles::Axis(Axis { pivot, line, lengths, phi }) = self.angles {
+            let (line, to) = match line {
+                None => (0.0, [0.0; 2]),
+                Some(Line::Angle(angle)) => (1.0, [angle, 0.0]),
+                Some(Line::To(b)) => (2.0, b),
+            };
+            let known = f64::from(u8::from(pivot.is_some()));
+            let [crank, double] = Class::ALL.map(|class| f64::from(u8::from(self.classes.contains(&class))));
+            let limits = [lengths.crank, lengths.ground, phi, pivot.unwrap_or_default(), to];
+            for number in [2.0, known, line, crank, double].iter().chain(limits.as_flattened()) {
+                sum.update(number.to_le_bytes());
+            }
+        }
         sum.finalize().into()
+    }
+
+    /// The part of the chart that is asked about.
+    pub fn root(&self) -> Cell {
+        match self.angles {
+            Angles::Increments => ROOT,
+            Angles::Ground => root([0.0; 2]),
+            Angles::Axis(axis) => root(axis.phi),
+        }
     }
 
     /// What the record says when its parts have these trees.
@@ -173,43 +200,37 @@ impl Subject {
         let limit = self.limit;
         // Rounded down to the digits that are shown.
         let below = bound * (1.0 - 1e-12);
-        let angles = match self.from_ground {
-            true => "angles of the crank from the ground line",
-            false => "increments of the crank",
-        };
-        let either = if self.directions.len() == 2 { "either way" } else { "the way that is asked for" };
         let gap = self.gap_of(bound);
+        let words = self.words();
         Certificate {
             statement: format!(
-                "No four-bar linkage whose input turns fully, in one assembly, and whose coupler point is at most {limit} \
-                 from the crank pin has a sum of squared errors below {below:.12e} at these {points} points and \
-                 {angles}; the best one found has {best:.12e}."
+                "No {}, in one assembly, whose coupler point is at most {limit} from the crank pin has a sum of squared \
+                 errors below {below:.12e} at these {points} points and {}; the best one found has {best:.12e}.",
+                words.linkage, words.angles
             ),
             lower_bound: bound,
             gap,
             closed: parts.iter().all(|part| part.closed) && gap <= self.gap,
             boxes: parts.iter().map(|part| part.boxes).sum(),
-            covered: vec![
-                "crank-rockers and double-cranks, and linkages with change points as long as they stay in one assembly".into(),
-                "either assembly, the same at all points".into(),
-                match self.from_ground {
-                    true => "the crank angles from the ground line, as prescribed".into(),
-                    false => format!("the crank turning {either}, any first crank angle"),
-                },
-                format!(
-                    "any pivots and lengths of links, the coupler point at most {limit} from the crank pin"
-                ),
-            ],
-            not_covered: vec![
-                "linkages whose input rocks".into(),
-                "motions that pass from one assembly to the other at a change point".into(),
-                "coupler points farther from the crank pin".into(),
-            ],
+            covered: words.covered,
+            not_covered: words.not_covered,
             leaves_sha256: hex(&leaves.sha256()),
             wanted_gap: self.gap,
             parts,
         }
     }
+}
+
+/// The classes that hold linkages of these types; all where none does.
+fn classes(types: &[LinkageType]) -> Vec<Class> {
+    let own = |class: &Class| match class {
+        Class::CrankRocker => LinkageType::CrankRocker,
+        Class::DoubleCrank => LinkageType::DoubleCrank,
+    };
+    let holds = |class: &Class| types.contains(&own(class)) || types.contains(&LinkageType::ChangePoint);
+    let all = Class::ALL.to_vec();
+    let some: Vec<Class> = all.iter().copied().filter(holds).collect();
+    if some.is_empty() { all } else { some }
 }
 
 fn hex(bytes: &[u8]) -> String {

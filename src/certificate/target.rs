@@ -3,6 +3,7 @@
 //! With P_j = A + K e_j + Z u_j the span of 1 and e_j = e^{i (phi_0 + s Delta_j)} does not depend on phi_0. T' is the
 //! target off that span, S = |T'|^2 and tau = T'/|T'|.
 
+use super::absolute::{Axis, Line};
 use super::ball::Ball;
 
 /// The most points of a target: a box's figures live on the stack.
@@ -33,6 +34,12 @@ pub struct Target {
     size_sq: Ball,
     /// At least the distance of each rounded basis vector from the exact one.
     basis_error: f64,
+    /// <e'/|e'|, T>: what e' takes away.
+    along: [Ball; 2],
+    /// |e'|.
+    crank: Ball,
+    /// Whether A is known: then ' takes away nothing, and the first basis vector is 0.
+    pivot_known: bool,
 }
 
 type BallVector = Vec<[Ball; 2]>;
@@ -58,34 +65,76 @@ fn unit(v: &BallVector) -> BallVector {
     v.iter().map(|v| [v[0].over(norm), v[1].over(norm)]).collect()
 }
 
+/// e^{i direction angle} of an angle in degrees.
+fn unit_at(deg: f64, direction: f64) -> [Ball; 2] {
+    // pi/180 and its rounding; the angle is first brought to at most half a turn, exactly.
+    let degree = Ball { mid: std::f64::consts::PI / 180.0, rad: 4e-18 };
+    let rest = deg % 360.0;
+    let rest = Ball::exact(rest) - Ball::exact(if rest.abs() > 180.0 { rest.signum() * 360.0 } else { 0.0 });
+    let angle = rest * degree * Ball::exact(direction.signum());
+    // cos and sin are 1-Lipschitz.
+    Ball::cos_sin(angle.mid).map(|b| Ball { mid: b.mid, rad: b.rad + 2.0 * angle.rad })
+}
+
 impl Target {
     /// The points with the crank's increments in degrees, in the direction of the crank (+1 or -1).
     ///
     /// # Errors
     /// [`TargetError`].
     pub fn new(points: &[[f64; 2]], turns_deg: &[f64], direction: f64) -> Result<Self, TargetError> {
+        Target::placed(points, turns_deg, direction, None)
+    }
+
+    /// The points with crank angles from the x axis, with what is known of the pivots; turned, where the ground line is
+    /// known, so that it is the x axis.
+    ///
+    /// # Errors
+    /// [`TargetError`].
+    pub fn on_axis(points: &[[f64; 2]], angles_deg: &[f64], axis: &Axis) -> Result<Self, TargetError> {
+        Target::placed(points, angles_deg, 1.0, Some(axis))
+    }
+
+    fn placed(
+        points: &[[f64; 2]],
+        turns_deg: &[f64],
+        direction: f64,
+        axis: Option<&Axis>,
+    ) -> Result<Self, TargetError> {
+        let (pivot, line) = axis.map_or((None, None), |axis| (axis.pivot, axis.line));
         let n = points.len();
         if !(4..=MAX_POINTS).contains(&n) || turns_deg.len() != n {
             return Err(TargetError::Points { points: n });
         }
-        let exact = |p: &[f64; 2]| [Ball::exact(p[0]), Ball::exact(p[1])];
-        // pi/180 and its rounding; the increment is first brought to at most half a turn, exactly.
-        let degree = Ball { mid: std::f64::consts::PI / 180.0, rad: 4e-18 };
-        let turn: BallVector = turns_deg
-            .iter()
-            .map(|&deg| {
-                let rest = deg % 360.0;
-                let rest = Ball::exact(rest)
-                    - Ball::exact(if rest.abs() > 180.0 { rest.signum() * 360.0 } else { 0.0 });
-                let angle = rest * degree * Ball::exact(direction.signum());
-                // cos and sin are 1-Lipschitz.
-                Ball::cos_sin(angle.mid).map(|b| Ball { mid: b.mid, rad: b.rad + 2.0 * angle.rad })
-            })
-            .collect();
-        let ones: BallVector = vec![[Ball::exact(1.0), Ball::exact(0.0)]; n];
-        let first = unit(&ones);
-        let second = unit(&without(&turn, &first));
-        let rest = without(&without(&points.iter().map(exact).collect(), &first), &second);
+        let from = pivot.unwrap_or_default().map(Ball::exact);
+        let from_pivot = |p: &[f64; 2]| match pivot {
+            Some(_) => [Ball::exact(p[0]) - from[0], Ball::exact(p[1]) - from[1]],
+            None => p.map(Ball::exact),
+        };
+        let mut turn: BallVector = turns_deg.iter().map(|&deg| unit_at(deg, direction)).collect();
+        let mut points: BallVector = points.iter().map(from_pivot).collect();
+        if let Some(line) = line {
+            let along = match line {
+                Line::Angle(deg) => unit_at(deg, 1.0),
+                Line::To(b) => {
+                    let [x, y] = from_pivot(&b);
+                    let length = (x.square() + y.square()).root();
+                    [x.over(length), y.over(length)]
+                }
+            };
+            for v in turn.iter_mut().chain(&mut points) {
+                *v = [v[0] * along[0] + v[1] * along[1], v[1] * along[0] - v[0] * along[1]];
+            }
+        }
+        let zero = Ball::exact(0.0);
+        let first = match pivot {
+            Some(_) => vec![[zero; 2]; n],
+            None => unit(&vec![[Ball::exact(1.0), zero]; n]),
+        };
+        let crank = without(&turn, &first);
+        let second = unit(&crank);
+        let centred = without(&points, &first);
+        let along = product(&second, &centred);
+        let rest = without(&centred, &second);
         let size_sq = norm_sq(&rest);
         let basis = [first, second, unit(&rest)];
         let error = |b: &BallVector| {
@@ -97,7 +146,8 @@ impl Target {
             return Err(TargetError::Degenerate);
         }
         let basis = basis.map(|b| b.iter().map(|b| [b[0].mid, b[1].mid]).collect());
-        Ok(Target { turn, basis, size_sq, basis_error })
+        let (crank, pivot_known) = (norm_sq(&crank).root(), pivot.is_some());
+        Ok(Target { turn, basis, size_sq, basis_error, along, crank, pivot_known })
     }
 
     /// How many points.
@@ -117,6 +167,22 @@ impl Target {
 
     pub(super) fn basis_error(&self) -> f64 {
         self.basis_error
+    }
+
+    pub(super) fn rest_sq(&self) -> Ball {
+        self.size_sq
+    }
+
+    pub(super) fn along(&self) -> [Ball; 2] {
+        self.along
+    }
+
+    pub(super) fn crank(&self) -> Ball {
+        self.crank
+    }
+
+    pub(super) fn pivot_known(&self) -> bool {
+        self.pivot_known
     }
 
     /// The sum of squares left by the best A, K and Z for given directions of the coupler, in plain arithmetic:

@@ -55,7 +55,7 @@ pub(super) fn reason(why: &str) -> String {
     format!("{}.", capital.trim_end_matches('.'))
 }
 
-/// `Proved optimum: no linkage whose input turns fully is better by more than 0.01 %`, or how far a proof came.
+/// `Proved optimum: no linkage that the proof covers is better by more than 0.01 %`, or how far a proof came.
 pub fn headline(certificate: &Certificate) -> String {
     let proved = match (certificate.closed, certificate.lower_bound > 0.0) {
         (true, _) if certificate.gap <= NARROW => "Proved optimum",
@@ -64,7 +64,7 @@ pub fn headline(certificate: &Certificate) -> String {
         (false, false) => return "Nothing is proved yet".to_owned(),
     };
     let gap = percent_up(certificate.gap);
-    format!("{proved}: no linkage whose input turns fully is better by more than {gap} %")
+    format!("{proved}: no linkage that the proof covers is better by more than {gap} %")
 }
 
 /// `crank-rocker with the increments: no sum below 0.009, 1,200 boxes`.

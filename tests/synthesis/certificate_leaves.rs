@@ -222,7 +222,7 @@ fn a_closed_certificate_is_proved_by_its_leaves_and_by_nothing_less() {
     assert!(found.boxes < 4 * found.leaves, "{found:?}");
     // The file of another question: any first crank angle.
     let mut other = leaves.clone();
-    other.parts[0].from_ground = false;
+    other.parts[0].origin = 0;
     let subject = linkwright::certificate::Subject::new(&record, gap).expect("a subject");
     let refused = checked(&record, &subject.certificate(&other), &other.to_bytes());
     assert_eq!(refused, Err(CheckError::Parts));

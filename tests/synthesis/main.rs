@@ -2,6 +2,7 @@
 
 mod answers;
 mod certificate;
+mod certificate_axis;
 mod certificate_leaves;
 mod certificate_resuming;
 #[path = "../common/mod.rs"]

@@ -377,7 +377,7 @@ fn what_is_proved_of_a_result_is_told() {
     linkwright(folder.path(), &["certify", "r", "--gap", "0.02", "--quiet"]);
     let (code, text, _) = linkwright(folder.path(), &["compare", "r"]);
     let said = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let told = "r, as its record says: Proved: no linkage whose input turns fully is better by more than";
+    let told = "r, as its record says: Proved: no linkage that the proof covers is better by more than";
     assert!(code == 0 && said.contains(told), "{text}");
     // Of other points nothing is proved.
     let target = root().join("problems/literature/k18b.toml").display().to_string();

@@ -322,7 +322,7 @@ fn a_proof_is_told_with_what_it_covers_and_how_often_the_best_came_back() {
     let mut record = five();
     let page = report_html(&record, 0);
     for said in [
-        "<p class=\"lead good\">Proved optimum: no linkage whose input turns fully is better by more than 0.0099 %.</p>",
+        "<p class=\"lead good\">Proved optimum: no linkage that the proof covers is better by more than 0.0099 %.</p>",
         "Can it be better?",
         "below 9.028e-3",
         "Covered: crank-rockers and double-cranks; both assemblies.",
@@ -340,7 +340,7 @@ fn a_proof_is_told_with_what_it_covers_and_how_often_the_best_came_back() {
     }
     let page = report_html(&record, 0);
     assert!(
-        page.contains("Proved so far: no linkage whose input turns fully is better by more than 31 %")
+        page.contains("Proved so far: no linkage that the proof covers is better by more than 31 %")
             && !page.contains("Proved optimum")
     );
     record.certificate = None;

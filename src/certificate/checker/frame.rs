@@ -2,7 +2,7 @@
 
 use super::interval::Interval;
 
-type Complex = [Interval; 2];
+pub(super) type Complex = [Interval; 2];
 
 /// Some of the points, in one direction of the crank.
 #[derive(Clone, Debug)]
@@ -15,13 +15,17 @@ pub struct Frame {
     pub error: f64,
     /// |T'|^2.
     pub size_sq: Interval,
+    /// <e'/|e'|, T>: the target's part along e'.
+    pub(super) along: Complex,
+    /// |e'|.
+    pub crank: Interval,
 }
 
-fn times(x: Complex, y: Complex) -> Complex {
+pub(super) fn times(x: Complex, y: Complex) -> Complex {
     [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]]
 }
 
-fn conjugate(x: Complex) -> Complex {
+pub(super) fn conjugate(x: Complex) -> Complex {
     [x[0], -x[1]]
 }
 
@@ -29,13 +33,17 @@ fn norm_sq(v: &[Complex]) -> Interval {
     v.iter().fold(Interval::exact(0.0), |sum, x| sum + x[0].square() + x[1].square())
 }
 
-/// v less its part along the unit vector b.
-fn off(v: &[Complex], b: &[Complex]) -> Vec<Complex> {
-    let zero = [Interval::exact(0.0); 2];
-    let along = b.iter().zip(v).fold(zero, |sum, (b, v)| {
+/// <b, v>.
+fn product(b: &[Complex], v: &[Complex]) -> Complex {
+    b.iter().zip(v).fold([Interval::exact(0.0); 2], |sum, (b, v)| {
         let product = times(conjugate(*b), *v);
         [sum[0] + product[0], sum[1] + product[1]]
-    });
+    })
+}
+
+/// v less its part along the unit vector b.
+fn off(v: &[Complex], b: &[Complex]) -> Vec<Complex> {
+    let along = product(b, v);
     b.iter()
         .zip(v)
         .map(|(b, v)| {
@@ -61,15 +69,19 @@ pub fn turn(delta_deg: f64, direction: f64) -> Complex {
 }
 
 impl Frame {
-    /// Of the points `which`, whose crank turns are given; `None` where they are too much alike.
-    pub fn new(all: &[[f64; 2]], turns: &[Complex], which: Vec<usize>) -> Option<Self> {
-        let ones = vec![[Interval::exact(1.0), Interval::exact(0.0)]; which.len()];
+    /// Of the points `which`, whose crank turns are given, with A free or (`at_origin`) 0; `None` where they are too much
+    /// alike.
+    pub fn new(all: &[Complex], turns: &[Complex], which: Vec<usize>, at_origin: bool) -> Option<Self> {
+        let zero = Interval::exact(0.0);
+        let ones = vec![[Interval::exact(1.0), zero]; which.len()];
         let crank: Vec<Complex> = which.iter().filter_map(|j| turns.get(*j).copied()).collect();
-        let target: Vec<Complex> =
-            which.iter().filter_map(|j| all.get(*j)).map(|p| p.map(Interval::exact)).collect();
-        let first = unit(&ones);
-        let second = unit(&off(&crank, &first));
-        let rest = off(&off(&target, &first), &second);
+        let target: Vec<Complex> = which.iter().filter_map(|j| all.get(*j).copied()).collect();
+        let first = if at_origin { vec![[zero; 2]; which.len()] } else { unit(&ones) };
+        let crank = off(&crank, &first);
+        let second = unit(&crank);
+        let target = off(&target, &first);
+        let along = product(&second, &target);
+        let rest = off(&target, &second);
         let size_sq = norm_sq(&rest);
         let basis = [first, second, unit(&rest)];
         let error = basis.iter().map(|b| {
@@ -82,6 +94,8 @@ impl Frame {
             basis: basis.map(|b| b.iter().map(|x| x.map(Interval::middle)).collect()),
             error,
             size_sq,
+            along,
+            crank: norm_sq(&crank).root(),
         })
     }
 }

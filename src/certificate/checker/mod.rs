@@ -8,9 +8,11 @@
 pub mod frame;
 pub mod interval;
 pub mod model;
+mod real;
 pub mod region;
 
-use super::leaves::{Leaves, LeavesError, LeavesPart, root};
+use super::bound::Cell;
+use super::leaves::{Angles, Leaves, LeavesError, LeavesPart};
 use super::subject::{NoCertificate, Subject};
 use crate::record::{Certificate, Record};
 use rayon::prelude::*;
@@ -106,8 +108,8 @@ pub fn check(
     let subject = Subject::new(record, recorded.wanted_gap)?;
     let parts = subject.parts();
     let named = |part: &LeavesPart| (part.class, f64::from(part.direction));
-    let from_ground = leaves.parts.iter().all(|part| part.from_ground == subject.from_ground);
-    if !from_ground || leaves.parts.iter().map(named).ne(parts.iter().copied()) {
+    let alike = leaves.parts.iter().all(|part| part.origin == subject.angles.origin());
+    if !alike || leaves.parts.iter().map(named).ne(parts.iter().copied()) {
         return Err(CheckError::Parts);
     }
     compare(recorded, &subject.certificate(&leaves))?;
@@ -128,16 +130,15 @@ fn check_part(
     progress: &mut dyn FnMut(&Checked),
 ) -> Result<(), CheckError> {
     part.nodes.covers().map_err(|what| LeavesError::Uncovered { part: number, what })?;
-    let claim = Claim::new(
-        part.class,
-        f64::from(part.direction),
-        &subject.points,
-        &subject.turns_deg,
-        subject.cap,
-        part.lower_bound,
-    )
+    let (points, turns, cap) = (&subject.points, &subject.turns_deg, subject.cap);
+    let claim = match &subject.angles {
+        Angles::Increments | Angles::Ground => {
+            Claim::new(part.class, f64::from(part.direction), points, turns, cap, part.lower_bound)
+        }
+        Angles::Axis(axis) => Claim::on_axis(part.class, points, turns, cap, part.lower_bound, axis),
+    }
     .ok_or(NoCertificate::Target(super::TargetError::Degenerate))?;
-    let mut replay = Replay::new(part);
+    let mut replay = Replay::new(part, subject.root());
     let mut before = 0;
     loop {
         let block: Vec<Leaf> = replay.by_ref().take(BLOCK).collect();
@@ -176,8 +177,8 @@ fn check_part(
 /// How many boxes it took to show a leaf; `None` where it could not be shown.
 fn shows(claim: &Claim, (region, rule): &Leaf) -> Option<u64> {
     match rule {
-        1 => return region.is_outside().then_some(1),
-        2 => return region.has_cognates().then_some(1),
+        1 => return claim.is_outside(region).then_some(1),
+        2 => return claim.has_cognates(region).then_some(1),
         _ => {}
     }
     let mut boxes = 0;
@@ -202,8 +203,7 @@ struct Replay<'a> {
 }
 
 impl<'a> Replay<'a> {
-    fn new(part: &'a LeavesPart) -> Self {
-        let whole = root(part.from_ground);
+    fn new(part: &'a LeavesPart, whole: Cell) -> Self {
         let whole = Region { low: whole.low, high: whole.high };
         Replay { codes: Box::new(part.nodes.codes()), waiting: vec![whole] }
     }

@@ -1,9 +1,11 @@
 //! One box: whether every linkage in it has a sum of squares of at least the claimed one.
 
+use super::super::absolute::{Axis, Line};
 use super::super::chart::Class;
-use super::frame::{Frame, turn};
+use super::frame::{Complex, Frame, conjugate, times, turn};
 use super::interval::Interval;
 use super::model::{Model, Sum, UP};
+use super::real::crank_lengths;
 
 /// A box of the chart: p, phi_0, g, d.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,17 +58,19 @@ pub enum Shown {
 /// A claim about one class in one direction: no linkage with |Z| <= cap has a sum of squares below `claim`.
 #[derive(Clone, Debug)]
 pub struct Claim {
-    class: Class,
+    pub(super) class: Class,
     turns: Vec<[Interval; 2]>,
     whole: Frame,
     /// All points but one; `None` where the others are too much alike.
     fewer: Vec<Option<Frame>>,
-    cap: f64,
-    claim: f64,
+    pub(super) cap: f64,
+    pub(super) claim: f64,
+    /// What is known where crank angles are from the x axis.
+    axis: Option<Axis>,
 }
 
 /// u at a point, with the sizes of its parts.
-struct Direction {
+pub(super) struct Direction {
     u: [Model; 2],
     size: [f64; 2],
 }
@@ -81,22 +85,75 @@ impl Claim {
         cap: f64,
         claim: f64,
     ) -> Option<Self> {
-        let turns: Vec<[Interval; 2]> = turns_deg.iter().map(|deg| turn(*deg, direction)).collect();
+        let points: Vec<Complex> = points.iter().map(|p| p.map(Interval::exact)).collect();
+        let turns = turns_deg.iter().map(|deg| turn(*deg, direction)).collect();
+        Claim::of(class, points, turns, cap, claim, None)
+    }
+
+    /// The claim for crank angles from the x axis.
+    pub fn on_axis(
+        class: Class,
+        points: &[[f64; 2]],
+        angles_deg: &[f64],
+        cap: f64,
+        claim: f64,
+        axis: &Axis,
+    ) -> Option<Self> {
+        let [a_x, a_y] = axis.pivot.unwrap_or_default().map(Interval::exact);
+        let from_pivot = |p: &[f64; 2]| [Interval::exact(p[0]) - a_x, Interval::exact(p[1]) - a_y];
+        let back = match &axis.line {
+            None => [Interval::exact(1.0), Interval::exact(0.0)],
+            Some(Line::Angle(angle)) => conjugate(turn(*angle, 1.0)),
+            Some(Line::To(b)) => {
+                let [x, y] = from_pivot(b);
+                let length = (x.square() + y.square()).root();
+                [x.over(length), -y.over(length)]
+            }
+        };
+        let points = points.iter().map(|p| times(from_pivot(p), back)).collect();
+        let turns = angles_deg.iter().map(|deg| times(turn(*deg, 1.0), back)).collect();
+        Claim::of(class, points, turns, cap, claim, Some(*axis))
+    }
+
+    fn of(
+        class: Class,
+        points: Vec<Complex>,
+        turns: Vec<Complex>,
+        cap: f64,
+        claim: f64,
+        axis: Option<Axis>,
+    ) -> Option<Self> {
         let all: Vec<usize> = (0..points.len()).collect();
-        let whole = Frame::new(points, &turns, all.clone())?;
+        let at_origin = axis.is_some_and(|axis| axis.pivot.is_some());
+        let whole = Frame::new(&points, &turns, all.clone(), at_origin)?;
         let but = |j: usize| all.iter().copied().filter(|i| *i != j).collect();
-        let fewer = (0..points.len()).map(|j| Frame::new(points, &turns, but(j))).collect();
-        Some(Claim { class, turns, whole, fewer, cap, claim })
+        let fewer = all.iter().map(|j| Frame::new(&points, &turns, but(*j), at_origin)).collect();
+        Some(Claim { class, turns, whole, fewer, cap, claim, axis })
+    }
+
+    /// No linkage is in a box: of no length of the crank, or |d| > min(g, pi - g) everywhere.
+    pub fn is_outside(&self, region: &Region) -> bool {
+        let excluded = |axis: &Axis| {
+            let [least, greatest] = crank_lengths(axis, self.class, region.side(0));
+            least > greatest
+        };
+        region.is_outside() || self.axis.as_ref().is_some_and(excluded)
+    }
+
+    /// All linkages of a box have cognates in the other half of the chart, with the same crank angles. These have another
+    /// A, and a K that is not real where that of the linkage is.
+    pub fn has_cognates(&self, region: &Region) -> bool {
+        self.axis.is_none() && region.has_cognates()
     }
 
     /// Whether the claim can be seen to hold on a box.
     pub fn look(&self, region: &Region) -> Shown {
-        if self.claim <= 0.0 || region.is_outside() || region.has_cognates() {
+        if self.claim <= 0.0 || self.is_outside(region) || self.has_cognates(region) {
             return Shown::Yes;
         }
         let (us, nearest) = self.directions(region);
         let mut cost = [0.0; 4];
-        if self.holds(&self.whole, &us, &mut cost) {
+        if self.shown(&self.whole, region, &us, &mut cost) {
             return Shown::Yes;
         }
         if let Some((j, f_sq)) = nearest
@@ -104,7 +161,7 @@ impl Claim {
             && let Some(fewer) = &self.fewer[j]
         {
             cost = [0.0; 4];
-            if self.holds(fewer, &us, &mut cost) {
+            if self.shown(fewer, region, &us, &mut cost) {
                 return Shown::Yes;
             }
         }
@@ -164,6 +221,14 @@ impl Claim {
     }
 
     /// Whether the points of a frame show the claim; else what each axis costs.
+    fn shown(&self, frame: &Frame, region: &Region, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
+        match &self.axis {
+            None => self.holds(frame, us, cost),
+            Some(axis) => self.holds_on_axis(frame, axis, region.side(0), us, cost),
+        }
+    }
+
+    /// The same where A and K are any.
     fn holds(&self, frame: &Frame, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
         let size_sq = frame.size_sq.low;
         if self.claim >= size_sq {
@@ -173,14 +238,8 @@ impl Claim {
         let at: Vec<&Option<Direction>> = frame.points.iter().map(|j| &us[*j]).collect();
         let y = witness(frame, &at);
         let length_sq = y.iter().flatten().map(|y| y * y).sum::<f64>() * UP;
-        // y along the exact directions: <b, y> with its rounding and theirs; |<b, u>| <= sqrt n.
-        let rounding = (2.0 * n as f64 + 4.0) * f64::EPSILON;
-        let along = |b: &Vec<[f64; 2]>| {
-            let [re, im] = product(b, &y);
-            re.abs() + im.abs() + rounding + 1.01 * frame.error
-        };
         let root_n = (n as f64).sqrt() * UP;
-        let slack = frame.basis.iter().map(along).sum::<f64>() * root_n * UP;
+        let slack = witness_slack(frame, &y);
         let beta = functional(&y, &at, slack);
         let alpha = functional(&frame.basis[2], &at, frame.error * root_n);
         let alpha_sq = alpha[0].square().plus(&alpha[1].square());
@@ -219,8 +278,20 @@ fn product(b: &[[f64; 2]], v: &[[f64; 2]]) -> [f64; 2] {
         .fold([0.0; 2], |[re, im], (b, v)| [re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0]])
 }
 
+/// What <y, u> may owe to the parts of y along the frame's exact directions.
+pub(super) fn witness_slack(frame: &Frame, y: &[[f64; 2]]) -> f64 {
+    let n = y.len() as f64;
+    // <b, y> with its rounding and that of b; |<b, u>| <= sqrt n.
+    let rounding = (2.0 * n + 4.0) * f64::EPSILON;
+    let along = |b: &Vec<[f64; 2]>| {
+        let [re, im] = product(b, y);
+        re.abs() + im.abs() + rounding + 1.01 * frame.error
+    };
+    frame.basis.iter().map(along).sum::<f64>() * n.sqrt() * UP * UP
+}
+
 /// u in the middle of the box, off the frame's directions and of length 1: any vector would do.
-fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]> {
+pub(super) fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]> {
     let mut y: Vec<[f64; 2]> =
         at.iter().map(|d| d.as_ref().map_or([0.0; 2], |d| [d.u[0].middle(), d.u[1].middle()])).collect();
     for _ in 0..2 {
@@ -240,7 +311,7 @@ fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]> {
 }
 
 /// Both parts of <v, u> over the box.
-fn functional(v: &[[f64; 2]], at: &[&Option<Direction>], slack: f64) -> [Model; 2] {
+pub(super) fn functional(v: &[[f64; 2]], at: &[&Option<Direction>], slack: f64) -> [Model; 2] {
     let (mut re, mut im) = (Sum::EMPTY, Sum::EMPTY);
     for (v, direction) in v.iter().zip(at) {
         match direction {

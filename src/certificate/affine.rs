@@ -1,0 +1,155 @@
+//! Functions over a box, enclosed: a linear one and a bound for the rest.
+//!
+//! An [`Affine`] stands for every function of e in [-1, 1]^4 within `rest` of `mid + by . e`. What an operation leaves
+//! out (products of linear parts, rounding) goes into the rest. Its sums are of a few non-negative numbers: [`UP`].
+
+use super::ball::Ball;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// Twice the unit roundoff.
+const EPS: f64 = f64::EPSILON;
+/// Above the rounding of a sum of 64 non-negative numbers.
+const UP: f64 = 1.0 + 1e-13;
+/// Above everything that underflow can do.
+const TINY: f64 = 1e-290;
+
+/// A linear function and a rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Affine {
+    pub mid: f64,
+    pub by: [f64; 4],
+    pub rest: f64,
+}
+
+impl Affine {
+    /// A number.
+    pub fn constant(x: Ball) -> Self {
+        Affine { mid: x.mid, by: [0.0; 4], rest: x.rad }
+    }
+
+    /// The number itself.
+    pub fn exact(x: f64) -> Self {
+        Affine::constant(Ball::exact(x))
+    }
+
+    /// low <= x_k <= high, where `mid` and `half` hold it.
+    pub fn variable(mid: f64, half: f64, k: usize) -> Self {
+        let mut by = [0.0; 4];
+        by[k] = half;
+        Affine { mid, by, rest: 0.0 }
+    }
+
+    #[inline(always)]
+    fn spread(&self) -> f64 {
+        (self.by[0].abs() + self.by[1].abs() + self.by[2].abs() + self.by[3].abs()) * UP
+    }
+
+    /// At least every absolute value.
+    #[inline(always)]
+    pub fn size(&self) -> f64 {
+        (self.mid.abs() + self.spread() + self.rest) * UP
+    }
+
+    /// At most every value.
+    #[inline(always)]
+    pub fn low(&self) -> f64 {
+        let away = (self.spread() + self.rest) * UP;
+        let low = self.mid - away;
+        low - 4.0 * EPS * (self.mid.abs() + away) - TINY
+    }
+
+    /// At least every value.
+    #[inline(always)]
+    pub fn high(&self) -> f64 {
+        -(-*self).low()
+    }
+
+    #[inline(always)]
+    fn rounded(mid: f64, by: [f64; 4], rest: f64, size: f64) -> Self {
+        Affine { mid, by, rest: (rest + 4.0 * EPS * size + TINY) * UP }
+    }
+
+    /// x times a number.
+    #[inline(always)]
+    pub fn times(&self, factor: f64) -> Self {
+        let (mid, by) = (self.mid * factor, self.by.map(|by| by * factor));
+        let size = (self.mid.abs() + self.spread()) * factor.abs();
+        Affine::rounded(mid, by, self.rest * factor.abs(), size)
+    }
+
+    /// x^2: the square of the linear part lies between 0 and that of its size.
+    #[inline(always)]
+    pub fn square(&self) -> Self {
+        let spread = self.spread();
+        let half = 0.5 * spread * spread * UP;
+        let size = self.mid.abs() + spread;
+        let rest = half + self.rest * (2.0 * size + self.rest);
+        let by = self.by.map(|by| 2.0 * self.mid * by);
+        Affine::rounded(self.mid * self.mid + half, by, rest, size * size)
+    }
+
+    /// sqrt max(x, 0): sqrt(1 + y) is in [1 + y/2 - y^2/2, 1 + y/2] for y >= -1.
+    pub fn root(&self) -> Self {
+        let (mid, spread) = (self.mid, (self.spread() + self.rest) * UP);
+        if !(mid > 1e-12 && spread < 0.9 * mid) {
+            let half = 0.5 * (self.high().max(0.0).sqrt() * UP);
+            return Affine { mid: half, by: [0.0; 4], rest: half * UP };
+        }
+        let root = mid.sqrt();
+        let by = self.by.map(|by| 0.5 * by / root);
+        let rest = 0.5 * self.rest / root + 0.5 * (spread / mid) * (spread / mid) * root;
+        Affine::rounded(root, by, rest, root * 4.0)
+    }
+
+    /// 1/x; `None` where x may be near 0: 1/(1 + y) = 1 - y + y^2/(1 + y).
+    pub fn inverse(&self) -> Option<Self> {
+        let spread = (self.spread() + self.rest) * UP;
+        let relative = spread / self.mid.abs();
+        if !(self.mid.abs() > 1e-12 && relative < 0.9) {
+            return None;
+        }
+        let inverse = 1.0 / self.mid;
+        let by = self.by.map(|by| -by * inverse * inverse);
+        let size = inverse.abs();
+        let rest = self.rest * size * size + size * relative * relative / (1.0 - relative);
+        Some(Affine::rounded(inverse, by, rest, size * 4.0))
+    }
+}
+
+impl Add for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn add(self, y: Affine) -> Affine {
+        let by = std::array::from_fn(|k| self.by[k] + y.by[k]);
+        let size = self.mid.abs() + self.spread() + y.mid.abs() + y.spread();
+        Affine::rounded(self.mid + y.mid, by, self.rest + y.rest, size)
+    }
+}
+
+impl Neg for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn neg(self) -> Affine {
+        Affine { mid: -self.mid, by: self.by.map(|by| -by), rest: self.rest }
+    }
+}
+
+impl Sub for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn sub(self, y: Affine) -> Affine {
+        self + -y
+    }
+}
+
+impl Mul for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn mul(self, y: Affine) -> Affine {
+        let by = std::array::from_fn(|k| self.mid * y.by[k] + y.mid * self.by[k]);
+        let (a, b) = (self.spread(), y.spread());
+        let (size_a, size_b) = (self.mid.abs() + a, y.mid.abs() + b);
+        let rest = a * b + self.rest * (size_b + y.rest) + size_a * y.rest;
+        Affine::rounded(self.mid * y.mid, by, rest, size_a * size_b)
+    }
+}

@@ -1,0 +1,271 @@
+//! The coupler's directions over a box: first derivatives at its centre, and what they leave out.
+//!
+//! u_j = e^{i theta_j}. Less a common turn, theta_j is a linear part t_j and a rest that the second derivatives of theta
+//! over the box bound; where these are not bounded, the chord of u_j is (docs/certificate.md has each line).
+
+use super::ball::Ball;
+use super::bound::Cell;
+use super::chart::{Centre, Class, Motion};
+use super::target::MAX_POINTS;
+
+/// Majorants are computed in plain arithmetic from non-negative numbers and from differences that are kept above
+/// [`NEAR`] times what they are taken from; this covers their rounding.
+pub(super) const LARGER: f64 = 1.0 + 1e-9;
+/// Below this f or sin gamma no second derivatives are used.
+const NEAR: f64 = 1e-4;
+
+/// A difference, less what its rounding can be.
+fn less(x: f64) -> f64 {
+    x - 1e-12
+}
+
+/// At least |cos g|, |sin g|, |cos d|, |sin d| over a box.
+struct Ranges([f64; 4], f64);
+
+impl Ranges {
+    fn new(c: &Centre, h: &[f64; 4], p: f64) -> Self {
+        let up = |x: f64, h: f64| (x + h).min(1.0);
+        Ranges(
+            [
+                up(c.cos_g.magnitude(), h[2]),
+                up(c.sin_g.magnitude(), h[2]),
+                up(c.cos_d.magnitude(), h[3]),
+                up(c.sin_d.magnitude(), h[3]),
+            ],
+            p,
+        )
+    }
+
+    /// At least |d gamma/d phi|: both forms of sin^2 gamma >= cos^2 d sin^2 psi + sin^2 d sin^2 chi and the same with
+    /// g, with the Cauchy inequality, leave the root of cos^2 psi_phi^2 + sin^2 chi_phi^2.
+    #[inline(always)]
+    fn gamma_phi(&self, p: f64, f: f64) -> f64 {
+        ((p + self.0[1].min(self.0[3])) / f).min(1.0 / f)
+    }
+
+    /// At least how far gamma is from its value at the centre: 1 in g and d, 1/f in p.
+    #[inline(always)]
+    fn gamma(&self, f: f64, h: &[f64; 4]) -> f64 {
+        h[2] + h[3] + h[0] / f + h[1] * self.gamma_phi(self.1, f)
+    }
+}
+
+/// The largest of the second derivatives of theta, in absolute value, over a box; by p, phi, g, d.
+#[inline(always)]
+fn second_derivatives(r: &Ranges, m: &Motion, p: f64, h: &[f64; 4], f: f64, s: f64) -> [[f64; 4]; 4] {
+    let inv = 1.0 / f;
+    let chi_range = (h[0] + h[1]) * inv;
+    let psi_range = (p * h[1] + h[0]) * inv;
+    let sin_psi = (m.sin_psi.magnitude() + psi_range).min(p);
+    let cos_psi = m.cos_psi.magnitude() + psi_range;
+    let cos_psi = cos_psi.min(1.0);
+    let sin_chi = (m.sin_chi.magnitude() + chi_range).min(1.0);
+    let cos_chi = (m.cos_chi.magnitude() + chi_range).min(1.0);
+    let cos = (m.cos.magnitude() + r.gamma(f, h)).min(1.0);
+    let [cos_g, sin_g, cos_d, sin_d] = r.0;
+    let (cc, sc, cs, ss) = (cos_g * cos_d, sin_g * cos_d, cos_g * sin_d, sin_g * sin_d);
+    let over = 1.0 / s;
+    // psi and chi: chi_phi = cos psi/f, psi_phi = p cos chi/f, psi_p = chi_p = sin chi/f.
+    let psi_phi = p * cos_chi * inv;
+    let chi_phi = cos_psi * inv;
+    let psi_p = sin_chi * inv;
+    let psi_phiphi = sin_psi * (cos_psi + p * cos_chi) * inv * inv;
+    let psi_phip = (cos_chi + p * inv * (cos_chi * cos_chi).max(sin_chi * sin_chi)) * inv;
+    let psi_pp = 2.0 * sin_chi * cos_chi * inv * inv;
+    // First derivatives of gamma.
+    let (a, b) = (cc * sin_psi * over, ss * sin_chi * over);
+    let gamma_phi = (a * psi_phi + b * chi_phi).min(r.gamma_phi(p, f));
+    let gamma_p = ((a + b) * psi_p).min(inv);
+    let gamma_g = ((sc * cos_psi + cs * cos_chi) * over).min(1.0);
+    let gamma_d = ((cs * cos_psi + sc * cos_chi) * over).min(1.0);
+    // Second: gamma_kl = -(C_kl + C gamma_k gamma_l)/sin gamma.
+    let (psi_sq, chi_sq) = (sin_psi * sin_psi, sin_chi * sin_chi);
+    let over_sq = over * over;
+    let (cd, sd, cg, sg) = (cos_d * cos_d, sin_d * sin_d, cos_g * cos_g, sin_g * sin_g);
+    let gg = cos * ((cd * psi_sq + sd * chi_sq) * over_sq).min(1.0) * over;
+    let dd = cos * ((cg * psi_sq + sg * chi_sq) * over_sq).min(1.0) * over;
+    let gd = ((ss * cos_psi * chi_sq + cc * cos_chi * psi_sq) * over_sq).min(1.0) * over;
+    let mixed = |by_psi: f64, by_chi: f64, psi_k: f64, chi_k: f64, gamma_l: f64, gamma_k: f64| {
+        (by_psi * sin_psi * psi_k + by_chi * sin_chi * chi_k + cos * gamma_l * gamma_k) * over
+    };
+    let gp = mixed(sc, cs, psi_p, psi_p, gamma_g, gamma_p);
+    let gphi = mixed(sc, cs, psi_phi, chi_phi, gamma_g, gamma_phi);
+    let dp = mixed(cs, sc, psi_p, psi_p, gamma_d, gamma_p);
+    let dphi = mixed(cs, sc, psi_phi, chi_phi, gamma_d, gamma_phi);
+    let outer = |kl: [f64; 4], psi_kl: f64, gamma_kl: f64| {
+        let [psi_k, psi_l, chi_k, chi_l] = kl;
+        let by_psi = cc * (cos_psi * psi_k * psi_l + sin_psi * psi_kl);
+        let by_chi = ss * (cos_chi * chi_k * chi_l + sin_chi * psi_kl);
+        (by_psi + by_chi + cos * gamma_kl) * over + psi_kl
+    };
+    let pp = outer([psi_p; 4], psi_pp, gamma_p * gamma_p);
+    let pphi = outer([psi_p, psi_phi, psi_p, chi_phi], psi_phip, gamma_p * gamma_phi);
+    let phiphi = outer([psi_phi, psi_phi, chi_phi, chi_phi], psi_phiphi, gamma_phi * gamma_phi);
+    [[pp, pphi, gp, dp], [pphi, phiphi, gphi, dphi], [gp, gphi, gg, gd], [dp, dphi, gd, dd]]
+}
+
+/// The directions over a box.
+pub(super) struct Expansion {
+    n: usize,
+    /// Half the box's widths.
+    pub h: [f64; 4],
+    p_high: f64,
+    ranges: Ranges,
+    /// The crank's own turn, which a double-crank's coupler makes with it.
+    own_turn: f64,
+    /// At the centre.
+    pub u: [[f64; 2]; MAX_POINTS],
+    u_error: [f64; MAX_POINTS],
+    gradient: [[f64; 4]; MAX_POINTS],
+    gradient_error: [f64; MAX_POINTS],
+    second: [[f64; 4]; MAX_POINTS],
+    chord: [f64; MAX_POINTS],
+    smooth: [bool; MAX_POINTS],
+    near_f: [f64; MAX_POINTS],
+}
+
+/// A turn of all u_j that a bound leaves out, with how far it goes over the box beyond the crank's own.
+pub(super) struct CommonTurn {
+    by: [f64; 4],
+    beyond: f64,
+}
+
+/// How u_j moves over a box, less the common turn: within `rest` of u_j (1 + i t . x).
+#[derive(Clone, Copy)]
+pub(super) struct Moved {
+    /// The slopes of theta_j; 0 where only a chord is known.
+    pub t: [f64; 4],
+    /// What is left out.
+    pub rest: f64,
+    /// What each axis adds to it.
+    pub own: [f64; 4],
+}
+
+impl Moved {
+    /// Not at all.
+    pub const NOT: Moved = Moved { t: [0.0; 4], rest: 0.0, own: [0.0; 4] };
+}
+
+impl Expansion {
+    /// For points of the crank's turns.
+    #[inline(always)]
+    pub fn new(turn: &[[Ball; 2]], class: Class, cell: &Cell) -> Self {
+        let n = turn.len();
+        let (middle, h) = cell.centre();
+        let c = Centre::new(middle[0], middle[1], middle[2], middle[3]);
+        let p_high = cell.high[0].min(1.0);
+        let ranges = Ranges::new(&c, &h, p_high);
+        // The crank's own turn, which a double-crank's coupler makes with it.
+        let own_turn = if class == Class::DoubleCrank { 1.0 } else { 0.0 };
+        let mut u = [[0.0; 2]; MAX_POINTS];
+        let mut u_error = [0.0; MAX_POINTS];
+        let mut gradient = [[0.0; 4]; MAX_POINTS];
+        let mut gradient_error = [0.0; MAX_POINTS];
+        let mut second = [[0.0; 4]; MAX_POINTS];
+        let mut chord = [2.0; MAX_POINTS];
+        let mut smooth = [false; MAX_POINTS];
+        let mut near_f = [0.0; MAX_POINTS];
+        for j in 0..n {
+            let m = Motion::at(class, &c, turn[j]);
+            let f = less(m.f.mid - m.f.rad - h[0] - h[1]);
+            near_f[j] = m.f.mid;
+            u[j] = [m.u[0].mid, m.u[1].mid];
+            u_error[j] = m.u[0].rad + m.u[1].rad;
+            let known = u_error[j] < 1e-3;
+            if !known {
+                // Nothing is known but that it is a unit vector.
+                u[j] = [1.0, 0.0];
+                u_error[j] = 0.0;
+                continue;
+            }
+            if f >= NEAR {
+                // theta (less the crank's turn, for double-cranks) moves by gamma and psi.
+                let gamma = ranges.gamma(f, &h);
+                chord[j] = (gamma + (h[0] + p_high * h[1]) / f) * LARGER;
+                let s = less(m.sin.mid - m.sin.rad - gamma);
+                if s >= NEAR {
+                    let all = second_derivatives(&ranges, &m, p_high, &h, f, s);
+                    let mut total = 0.0;
+                    for k in 0..4 {
+                        second[j][k] = 0.5 * h[k] * (0..4).map(|l| all[k][l] * h[l]).sum::<f64>() * LARGER;
+                        total += second[j][k];
+                        gradient[j][k] = m.gradient[k].mid;
+                        gradient_error[j] += h[k] * m.gradient[k].rad;
+                    }
+                    smooth[j] = total < 2.0 && gradient_error[j] < 1.0;
+                }
+            }
+        }
+        Expansion {
+            n,
+            h,
+            p_high,
+            ranges,
+            own_turn,
+            u,
+            u_error,
+            gradient,
+            gradient_error,
+            second,
+            chord,
+            smooth,
+            near_f,
+        }
+    }
+
+    /// The common turn that is the mean of the gradients by these weights.
+    #[inline(always)]
+    pub fn common_turn(&self, size_y: &[f64; MAX_POINTS]) -> CommonTurn {
+        let mut common = [0.0; 4];
+        let mut total = 0.0;
+        for j in 0..self.n {
+            if self.smooth[j] {
+                total += size_y[j];
+                for k in 0..4 {
+                    common[k] += size_y[j] * self.gradient[j][k];
+                }
+            }
+        }
+        let by = if total > 0.0 { common.map(|sum| sum / total) } else { [0.0, self.own_turn, 0.0, 0.0] };
+        let own = |k: usize| if k == 1 { self.own_turn } else { 0.0 };
+        let beyond = (0..4).map(|k| (by[k] - own(k)).abs() * self.h[k]).sum();
+        CommonTurn { by, beyond }
+    }
+
+    /// How u_j moves.
+    #[inline(always)]
+    pub fn moved(&self, j: usize, common: &CommonTurn) -> Moved {
+        let (h, ranges, p_high) = (&self.h, &self.ranges, self.p_high);
+        let flat = (self.chord[j] + common.beyond).min(2.0);
+        let mut own = [0.0; 4];
+        let mut rest = flat;
+        let mut slopes = [0.0; 4];
+        if self.smooth[j] {
+            let mut linear = 0.0;
+            let mut quadratic = 0.0;
+            let mut t = [0.0; 4];
+            for k in 0..4 {
+                t[k] = self.gradient[j][k] - common.by[k];
+                linear += t[k].abs() * h[k];
+                quadratic += self.second[j][k];
+            }
+            let far = linear + quadratic + self.gradient_error[j];
+            let expanded = quadratic + 0.5 * far * far + self.gradient_error[j];
+            if expanded < flat {
+                rest = expanded;
+                slopes = t;
+                for k in 0..4 {
+                    own[k] = self.second[j][k] + 0.5 * far * t[k].abs() * h[k];
+                }
+            }
+        }
+        if rest == flat {
+            // The chord's parts.
+            let steep = 1.0 / self.near_f[j].max(NEAR);
+            let by_phi = ranges.gamma_phi(p_high, self.near_f[j].max(NEAR)) + p_high * steep;
+            own = [2.0 * steep * h[0], by_phi * h[1], h[2], h[3]];
+        }
+        rest += self.u_error[j] * (2.0 + rest);
+        Moved { t: slopes, rest, own }
+    }
+}
