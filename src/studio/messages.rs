@@ -227,12 +227,17 @@ impl Shown {
     /// A real linkage through nine points, judged; `None` where it cannot be.
     pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
         let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
-        Some(Shown {
+        Some(Shown::judged(&judged, rank, linkage))
+    }
+
+    /// A real linkage through nine points that is judged already.
+    pub(super) fn judged(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+        Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
             certified_within: linkage.certified.map(|certified| certified.radius),
-            ..Shown::from(&judged)
-        })
+            ..Shown::from(judged)
+        }
     }
 }
 

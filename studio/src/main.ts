@@ -186,12 +186,15 @@ class Page {
       this.fitted = false;
       this.board.touched = false;
     }
-    this.draw();
-    // The controls can wait for a hand that moves; what is drawn cannot.
+    // The controls and the strip can wait for a hand that moves; the board cannot.
     clearTimeout(this.filling);
-    if (how.moving) this.filling = setTimeout(() => this.fill(), 100);
-    else this.fill();
-    this.keep();
+    if (how.moving) {
+      this.drawBoard();
+      this.filling = setTimeout(() => this.settle(), 100);
+    } else {
+      this.draw();
+      this.settle();
+    }
     document.body.dataset.asked = String(this.version);
     if (task.points.length < 3) {
       this.answer = null;
@@ -201,6 +204,12 @@ class Page {
     }
     const { moving, fresh } = how;
     this.connection?.send({ ...task, version: this.version, ...(moving ? { moving } : {}), ...(fresh ? { fresh } : {}) });
+  }
+
+  /** Brings the controls to what the task says, and remembers it. */
+  private settle() {
+    this.fill();
+    this.keep();
   }
 
   private hear(answer: Answer) {
@@ -244,16 +253,21 @@ class Page {
     const candidates = this.candidates();
     const { points } = this.task;
     this.shownAll = [...candidates, ...this.pinned].map((shown) => movingOf(shown, points));
-    const pins = this.shownAll.slice(candidates.length);
-    const shown = this.shownAll[this.chosen] ?? null;
-    this.board.show(this.task, shown, pins.filter((one) => one !== shown));
+    this.drawBoard();
     this.strip.show(this.shownAll, candidates.length, this.chosen, this.task.unit, points, this.task.closed);
     byId("nothing").hidden = this.shownAll.length > 0;
     this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
     this.showSteps();
-    byId<HTMLButtonElement>("linkage-file").disabled = !shown;
+    byId<HTMLButtonElement>("linkage-file").disabled = !this.shownAll[this.chosen];
+    this.strip.pose(this.part);
+  }
+
+  /** The board alone: the target as it stands, the linkage that was last answered. */
+  private drawBoard() {
+    const shown = this.shownAll[this.chosen] ?? null;
+    const pins = this.shownAll.slice(-this.pinned.length || this.shownAll.length);
+    this.board.show(this.task, shown, pins.filter((one) => one !== shown));
     this.board.pose(this.part);
-    this.strip.pose(this.part, true);
   }
 
   private showSteps() {
