@@ -473,7 +473,7 @@ mod tests {
     /// Nine points of which the last two lie `apart`.
     fn nine(version: u64, apart: f64) -> String {
         let mut points: Vec<[f64; 2]> =
-            (0..8).map(|i| f64::from(i)).map(|i| [4.0 * (0.5 * i).cos(), 3.0 * (0.55 * i).sin()]).collect();
+            (0..8).map(f64::from).map(|i| [4.0 * (0.5 * i).cos(), 3.0 * (0.55 * i).sin()]).collect();
         points.push([points[7][0] + apart, points[7][1]]);
         serde_json::json!({ "version": version, "points": points, "method": "continuation" }).to_string()
     }
