@@ -29,6 +29,8 @@ use crate::task::AngleOffset;
 use crate::toml_text::TomlText;
 use crate::toml_values::{Corners, Count, OnlyTable};
 use raw::{RawExpect, RawRequire, RawSolve};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use target::Whereabouts;
 
@@ -53,49 +55,68 @@ pub struct ProblemFile {
 }
 
 /// What is known of a problem's answer.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Expect {
     /// The least sum of squared errors that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub best_known_sum_sq: Option<f64>,
     /// What a run has to reach to count as a hit; absent: the best known sum.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal_sum_sq: Option<f64>,
     /// How many linkages there are through nine points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExpectedCensus>,
     /// Answers that were published.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Published>,
 }
 
 /// How many classes of exact linkages a problem has; what is not known is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct ExpectedCensus {
     /// Isolated solutions up to cognates.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub classes: Option<usize>,
     /// Those that are real linkages.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub real: Option<usize>,
     /// Of these, on one circuit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub one_circuit: Option<usize>,
     /// Of these, in the order of the points.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub in_order: Option<usize>,
     /// Of these, on one branch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_of_defects: Option<usize>,
 }
 
 /// A published answer.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Published {
     /// Author and year.
     pub source: String,
     /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians); or empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub vector: Vec<f64>,
     /// Which way it closes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<i64>")]
     pub t1: Option<AssemblyMode>,
     /// The crank angles that were published, degrees from the ground line.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crank_deg: Option<Vec<f64>>,
     /// The error that was printed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub printed_sum_sq: Option<f64>,
     /// The error that the vector has when this project evaluates it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recomputed_sum_sq: Option<f64>,
     /// A remark.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
 }
 

@@ -1,57 +1,30 @@
 // The desk of the studio in headless Chromium: details, files, saved searches, links, how fast it answers. See .ci/check-studio.
 
 import assert from "node:assert/strict";
-import { spawn, execFileSync } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { deflateRawSync } from "node:zlib";
-import { chromium } from "playwright-core";
+import { browser as launched, doing, endAll, opened as openedIn, program, shots, studio as begun } from "./harness.mjs";
 
-const program = process.env.LINKWRIGHT;
-const shots = process.env.SCREENSHOTS;
 const work = mkdtempSync(join(tmpdir(), "desk-"));
-const children = new Set();
 let browser;
 
 before(async () => {
   if (shots) mkdirSync(shots, { recursive: true });
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
+  browser = await launched();
 });
 after(async () => {
   await browser?.close();
-  // Where a test has failed.
-  for (const child of children) child.kill("SIGKILL");
+  endAll();
   rmSync(work, { recursive: true, force: true });
 });
 
-async function studio(port, folder) {
-  const child = spawn(program, ["studio", "--no-open", "--port", port, "--out", folder], { stdio: ["ignore", "pipe", "ignore"] });
-  children.add(child);
-  child.once("exit", () => children.delete(child));
-  const address = await new Promise((tell, fail) => {
-    child.stdout.once("data", (text) => tell(String(text).trim()));
-    child.once("exit", (code) => fail(new Error(`the studio ended with ${code}`)));
-  });
-  return { address, child, end: () => new Promise((ended) => { child.once("exit", ended); child.kill("SIGINT"); }) };
-}
-
-async function opened(address, context = null) {
-  context ??= await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true });
-  const page = await context.newPage();
-  const said = [];
-  page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
-  page.on("pageerror", (error) => said.push(`error: ${error.message}`));
-  await page.goto(address);
-  await page.waitForSelector("#strip li");
-  return { page, said, context };
-}
-
-const done = (page) => page.waitForFunction(() => document.body.dataset.doing === "done" && document.body.dataset.answered === document.body.dataset.asked, null, { timeout: 90_000 });
+const studio = (port, folder) => begun("--port", port, "--out", folder);
+const opened = (address, context) => openedIn(browser, address, { context });
+const done = (page) => doing(page, "done");
 const state = (page, name, what) => page.waitForFunction(([name, what]) => [...document.querySelectorAll("#jobs li")].some((row) => row.querySelector(".job-name").textContent === name && row.dataset.state === what), [name, what], { timeout: 60_000 });
 
 async function saved(page, act) {
@@ -138,11 +111,14 @@ test("saved searches: begun, watched, stopped, gone on, opened, compared; a relo
   await page.locator("#job-name").fill("long one");
   await page.locator("#job-start").click();
   await page.waitForFunction(() => /running|already/.test(document.querySelector("#desk-said").textContent));
+  await page.getByRole("button", { name: "Close this message" }).click();
+  assert.equal(await page.locator("#desk-said").textContent(), "");
   // A reload: it runs on.
   await page.reload();
   await state(page, "long one", "running");
   await row.getByRole("button", { name: "Stop" }).click();
   await state(page, "long one", "stopped");
+  await page.waitForFunction(() => document.querySelector("#desk-said").textContent.startsWith("long one: stopped."));
   await row.getByRole("button", { name: "Go on" }).click();
   await state(page, "long one", "running");
   // The studio ends, and another begins.

@@ -21,7 +21,7 @@ export function browser() {
 const running = new Set();
 
 /** Ends what a failed test has left. */
-export const endAll = () => running.forEach((child) => child.kill());
+export const endAll = () => running.forEach((child) => child.kill("SIGKILL"));
 
 /** A studio of its own; its address, and how to end it. */
 export async function studio(...options) {
@@ -35,10 +35,10 @@ export async function studio(...options) {
   return { address, child, end: () => new Promise((ended) => { child.once("exit", ended); child.kill("SIGINT"); }) };
 }
 
-/** A page of it, watched: what the console says is kept. */
-export async function opened(browser, address, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
-  if (built) {
+/** A page of it, watched: what the console says is kept. In a context of its own, or one more in `context`. */
+export async function opened(browser, address, { context: shared, ...options } = {}) {
+  const context = shared ?? (await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options }));
+  if (built && !shared) {
     const headers = { "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:" };
     for (const [path, file, contentType] of [["/app.js", "app.js", "text/javascript"], ["/style.css", "style.css", "text/css"], ["/", "index.html", "text/html; charset=utf-8"]]) {
       await context.route((url) => url.pathname === path && !url.search, (route) => route.fulfill({ body: readFileSync(`${built}/${file}`), contentType, headers }));
@@ -46,7 +46,7 @@ export async function opened(browser, address, options = {}) {
   }
   const page = await context.newPage();
   await page.goto(address);
-  if (built) await page.goto(new URL("/", address).href);
+  if (built && address.includes("token=")) await page.goto(new URL("/", address).href);
   const said = [];
   page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
   page.on("pageerror", (error) => said.push(`error: ${error.message}`));

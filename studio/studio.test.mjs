@@ -1,54 +1,27 @@
 // The studio in headless Chromium: see .ci/check-studio.
 
 import assert from "node:assert/strict";
-import { spawn, execFileSync } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { chromium } from "playwright-core";
+import { browser as launched, doing, endAll, opened as openedIn, program, shots, status, studio } from "./harness.mjs";
 
-const program = process.env.LINKWRIGHT;
-const shots = process.env.SCREENSHOTS;
 const work = mkdtempSync(join(tmpdir(), "studio-"));
 let browser;
 
 before(async () => {
   if (shots) mkdirSync(shots, { recursive: true });
-  browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-  });
+  browser = await launched();
 });
 after(async () => {
   await browser?.close();
+  endAll();
   rmSync(work, { recursive: true, force: true });
 });
 
-/** A studio of its own; its address, and how to end it. */
-async function studio(...options) {
-  const child = spawn(program, ["studio", "--no-open", ...options], { stdio: ["ignore", "pipe", "ignore"] });
-  const address = await new Promise((tell, fail) => {
-    child.stdout.once("data", (text) => tell(String(text).trim()));
-    child.once("exit", (code) => fail(new Error(`the studio ended with ${code}`)));
-  });
-  return { address, child, end: () => new Promise((ended) => { child.once("exit", ended); child.kill("SIGINT"); }) };
-}
-
-/** A page of it, watched. */
-async function opened(address, options = {}, context = null) {
-  context ??= await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options });
-  const page = await context.newPage();
-  const said = [];
-  page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
-  page.on("pageerror", (error) => said.push(`error: ${error.message}`));
-  await page.goto(address);
-  await page.waitForSelector("#strip li");
-  return { page, said, context };
-}
-
-const status = (page) => page.locator("#status").textContent();
-const doing = (page, what) => page.waitForFunction((what) => document.body.dataset.doing === what && document.body.dataset.answered === document.body.dataset.asked, what, { timeout: 60_000 });
+const opened = (address, options) => openedIn(browser, address, options);
 
 /** Draws a closed curve with the pen. */
 async function drawn(page) {
@@ -229,7 +202,7 @@ test("two sizes, light and dark, without a sideways scroll; ten tabs all progres
   }
   await page.setViewportSize({ width: 1280, height: 900 });
   const tabs = [page];
-  for (let i = 1; i < 10; i += 1) tabs.push((await opened("http://127.0.0.1:18475/", {}, context)).page);
+  for (let i = 1; i < 10; i += 1) tabs.push((await opened("http://127.0.0.1:18475/", { context })).page);
   await Promise.all(tabs.map((tab) => tab.evaluate(() => {
     const text = document.querySelector("#tolerance");
     text.value = "0.0001";

@@ -4,7 +4,7 @@ use crate::exact::{Completeness as Ended, Options, Reality, Solution, Solved, Ta
 use crate::problem::Problem;
 use crate::problem::precision::precision_points;
 use crate::record::{Census, Completeness};
-use crate::search::continuation::{Exact, listed};
+use crate::search::continuation::{Exact, glanced};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The solutions of nine points, kept to be followed when a point moves.
@@ -20,8 +20,8 @@ impl Nine {
     }
 
     /// All real linkages through the points of a problem, judged by its requirements, better first; from the solutions
-    /// before where there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is certified: that is
-    /// for a run. `None` where the problem has no nine precision points, or it was cancelled.
+    /// before where there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is certified, and no
+    /// distance to a whole curve is found ([`glanced`]): that is for a run. `None` where the problem has no nine precision points, or it was cancelled.
     pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
         let target = Target::new(precision_points(problem).ok()?).ok()?;
         let options = Options::default();
@@ -60,7 +60,7 @@ impl Nine {
             Ended::Incomplete { .. } => Completeness::Incomplete,
             Ended::Cancelled => Completeness::Cancelled,
         };
-        let exact = listed(problem, &target, census, completeness, &real);
+        let exact = glanced(problem, &target, census, completeness, &real);
         // Points in special position lose classes: from there the way back is the start set.
         self.solved = (solved.completeness() == Ended::Complete).then_some(solved);
         Some(exact)
@@ -101,6 +101,7 @@ mod tests {
             });
             let found = found.expect("the run has it too");
             assert_eq!((followed.accepted, followed.in_order), (found.accepted, found.in_order));
+            assert!(followed.certified.is_none() && found.certified.is_some());
         }
         // Ten points are no nine.
         let mut spec = points(0.0).spec().clone();

@@ -5,7 +5,7 @@
 //! that a requirement forbids are no starts for that: they led to no better answer than those that are drawn, at a
 //! tenth to a third more evaluations.
 
-use super::exact_linkages::{Class, classes};
+use super::exact_linkages::{Class, Depth, classes};
 use super::rank::{count_distinct, divided, exact_sum_sq};
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::exact::certificate::{Certificate, certify, certify_all};
@@ -33,7 +33,7 @@ pub struct Exact {
     pub classes: Vec<Class>,
 }
 
-/// Counts what is listed into a census of paths and classes, and lists the classes.
+/// Counts what is listed into a census of paths and classes, and lists the classes, each with its proof where it has one.
 pub fn listed(
     problem: &Problem,
     target: &Target,
@@ -41,16 +41,40 @@ pub fn listed(
     completeness: Completeness,
     real: &[Solution],
 ) -> Exact {
-    let classes = classes(problem, target, real);
+    let classes = classes(problem, target, real, Depth::Whole);
+    let proofs = classes.par_iter().map(|class| certified(target, &class.best)).collect();
+    counted(census, completeness, real.len(), classes, proofs)
+}
+
+/// As [`listed`] at a glance, for a target that moves: without proofs and distances to whole curves.
+pub fn glanced(
+    problem: &Problem,
+    target: &Target,
+    census: Census,
+    completeness: Completeness,
+    real: &[Solution],
+) -> Exact {
+    let classes = classes(problem, target, real, Depth::Glance);
+    let proofs = vec![None; classes.len()];
+    counted(census, completeness, real.len(), classes, proofs)
+}
+
+fn counted(
+    census: Census,
+    completeness: Completeness,
+    real: usize,
+    classes: Vec<Class>,
+    proofs: Vec<Option<Certified>>,
+) -> Exact {
     let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
     let census = Census {
-        degenerate: real.len() - classes.len(),
+        degenerate: real - classes.len(),
         one_circuit: count(|c| c.one_circuit),
         in_order: count(|c| c.in_order),
         free_of_defects: count(|c| c.free_of_defects),
         ..census
     };
-    let linkages = classes.par_iter().map(|class| class.listed(certified(target, &class.best))).collect();
+    let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
     let generic = census.classes == GENERIC_CLASSES;
     Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
 }

@@ -11,7 +11,8 @@ use crate::exact::mechanisms::solution_of;
 use crate::exact::{Mechanism, Solution, Target, mechanisms};
 use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
-use crate::record::{Candidate, Certified, ExactForm, ExactLinkage};
+use crate::record::{Candidate, Certified, CurveErrorRecord, ExactForm, ExactLinkage};
+use crate::task::error::rms;
 use rayon::prelude::*;
 
 /// A real class with its mechanisms judged.
@@ -29,11 +30,21 @@ pub struct Class {
     pub others: Vec<ExactForm>,
 }
 
+/// How much is found out of a class.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// Every figure.
+    Whole,
+    /// All but the distances to the whole curve, most of the cost, in whose place those at the points stand: of an exact
+    /// linkage both are rounding, and the curve is nowhere farther from a point.
+    Glance,
+}
+
 /// The classes of real solutions, better first. One that makes no linkage (a link of no length, or of one too large)
 /// is left out.
-pub fn classes(problem: &Problem, target: &Target, real: &[Solution]) -> Vec<Class> {
+pub fn classes(problem: &Problem, target: &Target, real: &[Solution], depth: Depth) -> Vec<Class> {
     let judged: Vec<Option<Class>> =
-        real.par_iter().map(|solution| class(problem, target, solution)).collect();
+        real.par_iter().map(|solution| class(problem, target, solution, depth)).collect();
     let mut classes: Vec<Class> = judged.into_iter().flatten().collect();
     // Stable: equals stay in the order of the solver.
     classes.sort_by(|one, other| compare(problem, &one.best, &other.best));
@@ -41,7 +52,7 @@ pub fn classes(problem: &Problem, target: &Target, real: &[Solution]) -> Vec<Cla
 }
 
 /// A real solution's class; `None` where none of the six is a linkage that passes the points.
-pub fn class(problem: &Problem, target: &Target, solution: &Solution) -> Option<Class> {
+pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Depth) -> Option<Class> {
     let list = mechanisms(problem.task(), target, solution);
     let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
     let mut to_curve = None;
@@ -50,6 +61,9 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution) -> Option<
         let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
         let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
         // One curve, and on it one circuit through the first point: its distances are known after the first.
+        if depth == Depth::Glance {
+            to_curve = at_points(problem, &mechanism.linkage, &crank_deg, &t1_at);
+        }
         let judged = assess_on_curve(problem, &mechanism.linkage, &crank_deg, &t1_at, to_curve);
         if let Some(form) = judged {
             to_curve.get_or_insert(form.error.to_curve);
@@ -58,9 +72,11 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution) -> Option<
     }
     forms.sort_by_cached_key(Merit::of);
     let mut forms = forms.into_iter();
-    let best = forms.next()?;
-    // Its figures are its own.
-    let best = assess(problem, &best.linkage, &best.crank_deg, &best.t1_at)?;
+    let mut best = forms.next()?;
+    if depth == Depth::Whole {
+        // Its figures are its own.
+        best = assess(problem, &best.linkage, &best.crank_deg, &best.t1_at)?;
+    }
     let other =
         |c: Candidate| ExactForm { linkage: c.linkage, linkage_type: c.linkage_type, defects: c.defects };
     Some(Class {
@@ -69,6 +85,22 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution) -> Option<
         in_order: any(Mechanism::in_order),
         free_of_defects: any(Mechanism::is_free_of_defects),
         others: forms.map(other).collect(),
+    })
+}
+
+/// The errors at the points, as those to the curve.
+fn at_points(
+    problem: &Problem,
+    linkage: &FourBar,
+    crank_deg: &[f64],
+    t1_at: &[AssemblyMode],
+) -> Option<CurveErrorRecord> {
+    let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = problem.task().errors(linkage, &angles, t1_at)?;
+    Some(CurveErrorRecord {
+        sum_sq: error.sum_sq,
+        rms: rms(error.sum_sq, problem.task().len()),
+        max: error.max,
     })
 }
 

@@ -1,8 +1,8 @@
 //! What a tab asks as the text of a problem file, and a problem file as what a tab asks.
 
-use super::messages::Ask;
+use super::messages::{Ask, Known};
 use crate::problem::spec::{DesignSpec, ProblemSpec, RawPoints, SolveSpec};
-use crate::problem_file::{self, ProblemFile};
+use crate::problem_file::{self, Expect, ProblemFile};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write};
@@ -86,7 +86,23 @@ impl Ask {
         let _ = self.write_require(&mut text);
         let _ = self.write_solve(&mut text);
         text.push_str(&solve);
+        if let Some(expect) = self.expect_text(&text) {
+            text.push_str(&expect);
+        }
         Ok(text)
+    }
+
+    /// What is known of the answer, where `text` asks the problem that it is known of.
+    fn expect_text(&self, text: &str) -> Option<String> {
+        #[derive(Serialize)]
+        struct Table<'a> {
+            expect: &'a Expect,
+        }
+        let known = self.expect.as_ref()?;
+        let asked = problem_file::parse("drawing", text, None, &[]).ok()?;
+        let table = Table { expect: &known.answer };
+        let text = (told(&asked.spec) == known.of).then(|| toml::to_string(&table).ok())??;
+        Some(format!("\n{text}"))
     }
 
     /// The lines of what is kept, under `design` and under `solve`.
@@ -221,7 +237,7 @@ impl Ask {
         })
     }
 
-    /// What to ask for a problem: everything that its file says but what is known of the answer.
+    /// What to ask for a problem: everything that its file says.
     ///
     /// # Errors
     /// [`NotHere`] where the studio cannot hold it.
@@ -261,11 +277,15 @@ impl Ask {
             method: solve.method,
             objective: solve.objective,
             kept,
+            expect: problem.expect.clone().map(|answer| Known { of: told(&problem.spec), answer }),
             seed: solve.seed,
             moving: false,
             fresh: false,
         };
         match ask.problem() {
+            Ok(again) if again.expect != problem.expect => {
+                Err(NotHere::Other("what is known of its answer is another when it is read back".into()))
+            }
             Ok(again) if again.spec == problem.spec => Ok(ask),
             // Digitised points that are too many to be carried along: what was made of them is the target all the same.
             Ok(again) if without_raw(&again.spec) == without_raw(&problem.spec) => Ok(ask),
@@ -273,6 +293,17 @@ impl Ask {
             Err(why) => Err(NotHere::Other(why)),
         }
     }
+}
+
+/// Tells problems apart whose best answers may differ: by target, bounds, requirements and objective.
+fn told(spec: &ProblemSpec) -> String {
+    let ProblemSpec { task, design, require, solve } = &without_raw(spec);
+    let text = serde_json::to_string(&(task, design, require, solve.objective)).unwrap_or_default();
+    // FNV-1a.
+    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
 }
 
 fn without_raw(spec: &ProblemSpec) -> ProblemSpec {
@@ -340,6 +371,7 @@ fn solve_lines(solve: &SolveSpec) -> BTreeMap<String, String> {
 mod tests {
     use super::*;
     use crate::problem_file::{load, load_any, parse};
+    use crate::record::Unit;
     use std::path::Path;
 
     fn root() -> &'static Path {
@@ -348,7 +380,7 @@ mod tests {
 
     #[test]
     fn every_problem_of_the_collection_is_carried_through() {
-        let mut count = 0;
+        let (mut count, mut known) = (0, 0);
         for folder in ["examples", "literature", "exact"] {
             for entry in std::fs::read_dir(root().join("problems").join(folder)).expect("a folder") {
                 let path = entry.expect("an entry").path();
@@ -363,6 +395,8 @@ mod tests {
                 assert_eq!(wire, ask);
                 let again = wire.problem().expect("a problem");
                 assert_eq!(again.spec, problem.spec, "{}", path.display());
+                assert_eq!(again.expect, problem.expect, "{}", path.display());
+                known += usize::from(again.expect.is_some());
                 assert_eq!(
                     (again.name, again.source, again.unit),
                     (problem.name, problem.source, problem.unit)
@@ -370,7 +404,7 @@ mod tests {
                 count += 1;
             }
         }
-        assert!(count > 20, "{count}");
+        assert!(count > 20 && known > 10, "{count} {known}");
     }
 
     #[test]
@@ -407,6 +441,38 @@ mod tests {
         ask.points[0][0] += 1.0;
         let moved = ask.problem().expect("a problem").spec.task.path;
         assert!(moved.raw.is_none() && moved.points == ask.points);
+    }
+
+    #[test]
+    fn what_is_known_of_an_answer_holds_for_its_problem_alone() {
+        let problem = load(&root().join("problems/literature/k18.toml"), &[]).expect("a problem");
+        let ask = Ask::of(&problem).expect("it fits");
+        let expect = |ask: &Ask| ask.problem().expect("a problem").expect;
+        assert!(problem.expect.as_ref().is_some_and(|known| known.published.len() == 3));
+        // Of how it is searched, and of what it is called, the answer does not depend.
+        let mut same = Ask { name: "other".into(), seed: 9, unit: Some(Unit::Mm), ..ask.clone() };
+        same.kept.insert("solve.evaluations".into(), "1000".into());
+        assert_eq!(expect(&same), problem.expect);
+        let mut moved = ask.clone();
+        moved.points[3][0] += 1e-9;
+        let mut bounded = ask.clone();
+        bounded.kept.insert("design.a".into(), "[0, 40]".into());
+        let required = Ask { transmission_deg_min: Some(30.0), ..ask.clone() };
+        let untimed = Ask { timing: None, ..ask.clone() };
+        for other in [&moved, &bounded, &required, &untimed] {
+            assert_eq!(expect(other), None);
+            assert!(!other.problem_text().expect("a text").contains("expect"));
+        }
+        // And back.
+        moved.points = ask.points;
+        assert_eq!(expect(&moved), problem.expect);
+        // What it says is written as what it is.
+        let known = moved.expect.as_mut().expect("known");
+        known.answer.published[0].source = "x\"\n[task.path]\nfile = \"/etc/passwd".into();
+        let again = expect(&moved).expect("known");
+        assert!(again.published[0].source.starts_with("x\"\n[task"));
+        moved.expect.as_mut().expect("known").answer.best_known_sum_sq = Some(-1.0);
+        assert!(moved.problem().is_err());
     }
 
     #[test]

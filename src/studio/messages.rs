@@ -7,6 +7,7 @@ use crate::problem::Problem;
 use crate::problem::spec::{
     DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec, TransmissionOver,
 };
+use crate::problem_file::Expect;
 use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation, Unit};
 use crate::report::exact;
 use crate::report::html::Drive;
@@ -89,6 +90,9 @@ pub struct Ask {
     /// Where the problem comes from, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
+    /// What is known of the answer; not read where the problem is another by now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expect: Option<Known>,
     /// Where every draw comes from.
     #[serde(default = "one")]
     pub seed: u64,
@@ -98,6 +102,16 @@ pub struct Ask {
     /// The target has nothing to do with the one before: nothing is to follow it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub fresh: bool,
+}
+
+/// What is known of a problem's answer, as it stands under `[expect]` in its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Known {
+    /// Tells the problem that it is known of: its target, bounds, requirements and objective.
+    pub of: String,
+    /// The figures.
+    pub answer: Expect,
 }
 
 fn unnamed() -> String {
@@ -227,12 +241,17 @@ impl Shown {
     /// A real linkage through nine points, judged; `None` where it cannot be.
     pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
         let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
-        Some(Shown {
+        Some(Shown::judged(&judged, rank, linkage))
+    }
+
+    /// A real linkage through nine points that is judged already.
+    pub(super) fn judged(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+        Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
             certified_within: linkage.certified.map(|certified| certified.radius),
-            ..Shown::from(&judged)
-        })
+            ..Shown::from(judged)
+        }
     }
 }
 

@@ -283,11 +283,16 @@ async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgrade) -> Res
 }
 
 /// Carries what a tab says to its mailbox and the latest answer to the tab.
-async fn tab(mut socket: WebSocket, house: Arc<House>, _place: OwnedSemaphorePermit) {
+///
+/// Its place is free again when its worker has ended.
+async fn tab(mut socket: WebSocket, house: Arc<House>, place: OwnedSemaphorePermit) {
     let mail = Arc::new(Mailbox::default());
     let (tell, mut told) = watch::channel::<Told>(None);
     let (mine, searches) = (Arc::clone(&mail), Arc::clone(&house.searches));
-    let worker = std::thread::Builder::new().name("tab".into()).spawn(move || work(mine, tell, searches));
+    let worker = std::thread::Builder::new().name("tab".into()).spawn(move || {
+        let _place = place;
+        work(mine, tell, searches);
+    });
     if worker.is_err() {
         return;
     }

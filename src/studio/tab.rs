@@ -13,6 +13,7 @@ use crate::problem::spec::Method;
 use crate::problem_file::ProblemFile;
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::run::{Context, Job, run};
+use crate::search::continuation::Exact;
 use crate::search::{Budget, HitsSoFar, Progress};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -25,6 +26,9 @@ const REST: Duration = Duration::from_millis(150);
 /// Progress is told at most so often.
 const TELL_EVERY: Duration = Duration::from_millis(120);
 
+/// What is said where a thread has panicked.
+const BUG: &str = "this is a bug of linkwright: please report it";
+
 /// What a tab is told: the latest answer as JSON.
 pub(super) type Told = Option<Arc<str>>;
 
@@ -33,13 +37,14 @@ pub(super) type Told = Option<Arc<str>>;
 pub(super) struct Mailbox {
     waiting: Mutex<Waiting>,
     bell: Condvar,
+    /// Set with [`close`](Mailbox::close): what is under way ends early.
+    closed: AtomicBool,
 }
 
 #[derive(Default)]
 struct Waiting {
     edit: Option<String>,
     news: Vec<News>,
-    closed: bool,
 }
 
 /// What a search tells, with the number of the edit that it is for.
@@ -72,7 +77,10 @@ impl Mailbox {
 
     /// Ends the tab's work.
     pub(super) fn close(&self) {
-        self.lock().closed = true;
+        // Under the lock: whoever is about to wait has seen it.
+        let waiting = self.lock();
+        self.closed.store(true, Ordering::SeqCst);
+        drop(waiting);
         self.bell.notify_one();
     }
 
@@ -93,7 +101,7 @@ impl Mailbox {
     fn wait(&self, until: Option<Instant>) -> Option<(Option<String>, Vec<News>)> {
         let mut waiting = self.lock();
         loop {
-            if waiting.closed {
+            if self.closed.load(Ordering::SeqCst) {
                 return None;
             }
             let left = until.map(|until| until.saturating_duration_since(Instant::now()));
@@ -169,29 +177,16 @@ struct Tab {
 
 /// Works for a tab until its mailbox is closed.
 pub(super) fn work(mail: Arc<Mailbox>, told: watch::Sender<Told>, searches: Arc<Searches>) {
-    let session = Session::new();
-    let mut tab = Tab {
-        mail,
-        told,
-        searches,
-        session,
-        nine: Nine::new(),
-        exact: None,
-        helps: Vec::new(),
-        current: None,
-        edits: 0,
-        begin: None,
-        running: None,
-    };
+    let mut tab = Tab::new(mail, told, searches);
     loop {
         // A search that was cancelled has to end before the next begins.
         let until = tab.begin.filter(|_| tab.running.is_none());
         let Some((edit, news)) = tab.mail.wait(until) else { break };
         for news in news {
-            tab.hear(news);
+            tab.surviving(|tab| tab.hear(news));
         }
         if let Some(edit) = edit {
-            tab.take(&edit);
+            tab.surviving(|tab| tab.take(&edit));
         }
         if tab.running.is_none() && tab.begin.is_some_and(|begin| begin <= Instant::now()) {
             tab.search();
@@ -201,6 +196,34 @@ pub(super) fn work(mail: Arc<Mailbox>, told: watch::Sender<Told>, searches: Arc<
 }
 
 impl Tab {
+    fn new(mail: Arc<Mailbox>, told: watch::Sender<Told>, searches: Arc<Searches>) -> Tab {
+        Tab {
+            mail,
+            told,
+            searches,
+            session: Session::new(),
+            nine: Nine::new(),
+            exact: None,
+            helps: Vec::new(),
+            current: None,
+            edits: 0,
+            begin: None,
+            running: None,
+        }
+    }
+
+    /// Does what must not end the tab: a panic is told, and everything that it may have left half done is forgotten.
+    fn surviving(&mut self, act: impl FnOnce(&mut Tab)) {
+        if catch_unwind(AssertUnwindSafe(|| act(self))).is_err() {
+            self.cancel();
+            self.edits += 1;
+            self.nine = Nine::new();
+            self.helps.clear();
+            let version = self.current.as_ref().map_or(0, |current| current.version);
+            self.refuse(version, BUG.into());
+        }
+    }
+
     fn cancel(&mut self) {
         self.begin = None;
         if let Some(running) = &self.running {
@@ -261,15 +284,17 @@ impl Tab {
 
     /// Brings what is there to a problem: all linkages through nine points, or the few that follow the hand.
     fn follow(&mut self, problem: &Problem) {
-        let never = AtomicBool::new(false);
+        let closed = &self.mail.closed;
         self.exact = None;
         if problem.spec().solve.method == Method::Continuation {
-            if let Some(exact) = self.nine.follow(problem, &never) {
-                self.exact = Some(all_of(problem, &exact.record));
+            match self.nine.follow(problem, closed) {
+                Some(exact) => self.exact = Some(all_followed(&exact)),
+                // What was found for other points is nothing for these.
+                None => self.session.clear(),
             }
         } else {
             self.nine = Nine::new();
-            self.session.follow(problem, &Budget::new(&never, None));
+            self.session.follow(problem, &Budget::new(closed, None));
         }
     }
 
@@ -305,7 +330,7 @@ impl Tab {
                 searched(&job, &problem, first, threads, &token, |what| mail.tell(edit, what));
             }));
             if searched.is_err() {
-                mail.tell(edit, What::Failed("this is a bug of linkwright: please report it".into()));
+                mail.tell(edit, What::Failed(BUG.into()));
             }
             mail.tell(edit, What::Left);
         });
@@ -350,6 +375,13 @@ impl Tab {
             What::Left => {}
         }
     }
+}
+
+/// The same of those that follow the hand, which are judged already.
+fn all_followed(exact: &Exact) -> (Counted, Vec<Shown>) {
+    let judged = exact.classes.iter().map(|class| &class.best).zip(&exact.record.linkages);
+    let shown = (1..).zip(judged).map(|(rank, (best, linkage))| Shown::judged(best, rank, linkage));
+    (Counted::of(&exact.record), shown.collect())
 }
 
 /// All real linkages of an exact solution, ready to be shown.
@@ -416,5 +448,49 @@ mod tests {
         assert_eq!((edit.as_deref(), news.len()), (Some("999"), 1));
         mail.close();
         assert!(mail.wait(None).is_none());
+    }
+
+    fn answer(told: &watch::Receiver<Told>) -> serde_json::Value {
+        serde_json::from_str(told.borrow().as_deref().expect("an answer")).expect("JSON")
+    }
+
+    fn tab() -> (Tab, watch::Receiver<Told>) {
+        let (tell, told) = watch::channel::<Told>(None);
+        (Tab::new(Arc::default(), tell, Arc::default()), told)
+    }
+
+    #[test]
+    fn a_panic_is_told_and_the_next_edit_is_taken() {
+        let (mut tab, told) = tab();
+        tab.surviving(|_| panic!("on purpose"));
+        let said = answer(&told);
+        assert_eq!((said["doing"].as_str(), said["said"].as_str()), (Some("refused"), Some(BUG)));
+        tab.surviving(|tab| tab.take(r#"{"version":7,"points":[[0,0],[1,1],[2,0]]}"#));
+        let said = answer(&told);
+        assert_eq!((said["doing"].as_str(), said["version"].as_u64()), (Some("following"), Some(7)));
+    }
+
+    /// Nine points of which the last two lie `apart`.
+    fn nine(version: u64, apart: f64) -> String {
+        let mut points: Vec<[f64; 2]> =
+            (0..8).map(f64::from).map(|i| [4.0 * (0.5 * i).cos(), 3.0 * (0.55 * i).sin()]).collect();
+        points.push([points[7][0] + apart, points[7][1]]);
+        serde_json::json!({ "version": version, "points": points, "method": "continuation" }).to_string()
+    }
+
+    #[test]
+    fn points_without_exact_linkages_show_none_of_other_points_and_a_closed_tab_follows_no_more() {
+        let (mut tab, told) = tab();
+        tab.take(r#"{"version":1,"points":[[0,0],[1,1],[2,1.5],[3,1],[2,-1]],"closed":true}"#);
+        let current = tab.current.as_ref().expect("a problem");
+        let found = first_look(&current.problem, &Budget::new(&AtomicBool::new(false), None));
+        tab.session.join(&current.problem, found);
+        assert!(!tab.session.candidates().is_empty());
+        tab.take(&nine(2, 0.0));
+        let said = answer(&told);
+        assert!(said["nine"].is_null() && said["candidates"].as_array().is_some_and(Vec::is_empty), "{said}");
+        tab.mail.close();
+        tab.take(&nine(3, 1.0));
+        assert!(tab.exact.is_none());
     }
 }

@@ -316,8 +316,10 @@ export class Board {
       this.tellCorner();
     } else if ((event.key === "Delete" || event.key === "Backspace") && this.corner) {
       this.hand.grasp();
+      this.say(`${cornerInWords(this.corner).replace(/,.*/, "")} removed.`);
       this.hand.box(this.corner.kind, null, true);
     } else if ((event.key === "Delete" || event.key === "Backspace") && this.selected >= 0) {
+      this.say(`Point ${this.selected} removed; ${n - 1} are left.`);
       this.hand.remove(this.selected);
     } else if (event.key === "+" || event.key === "-") {
       this.touched = true;
@@ -328,6 +330,7 @@ export class Board {
       const now = toleranceAt(task, index) ?? 0.01 * Math.hypot(size[2] - size[0], size[3] - size[1]);
       this.hand.grasp();
       this.hand.tolerance(index, now * (event.key === "]" ? 1.25 : 0.8), true);
+      this.tellTolerance(index);
     } else if (way && this.corner) {
       const box = task[this.corner.kind];
       if (!box) return;
@@ -349,6 +352,13 @@ export class Board {
     if (!this.corner || !box) return this.say("There is no box: tick one among the requirements.");
     const [x, y] = cornerOf(box, this.corner.corner);
     return this.say(`${cornerInWords(this.corner)} at ${figure(x, 4)}, ${figure(y, 4)}`);
+  }
+
+  private tellTolerance(index: number) {
+    const { task } = this;
+    if (!task) return;
+    const where = task.tolerances ? `at point ${index}` : "at every point";
+    this.say(`Largest error ${where}: ${figure(toleranceAt(task, index) ?? 0, 3)}${task.unit ? ` ${task.unit}` : ""}`);
   }
 
   private tellPoint() {

@@ -1,4 +1,4 @@
-// The WebSocket: the latest edit goes out at most once a frame, a lost connection is tried again.
+// The WebSocket: the latest edit goes out and the latest answer comes in at most once a frame, a lost connection is tried again.
 
 import type { Answer, Ask } from "./messages";
 
@@ -7,6 +7,7 @@ export class Connection {
   private waiting: Ask | null = null;
   private last: Ask | null = null;
   private lost = 0;
+  private answer: string | null = null;
 
   constructor(private hear: (answer: Answer) => void, private state: (open: boolean, tries: number) => void) {
     this.open();
@@ -20,13 +21,27 @@ export class Connection {
       this.state(true, 0);
       if (this.last) this.send({ ...this.last, moving: false });
     });
-    socket.addEventListener("message", (event) => this.hear(JSON.parse(event.data) as Answer));
+    socket.addEventListener("message", (event) => this.take(event.data as string));
     socket.addEventListener("close", () => {
       this.socket = null;
       this.lost += 1;
       this.state(false, this.lost);
       setTimeout(() => this.open(), Math.min(500 * this.lost, 5000));
     });
+  }
+
+  /** Of the answers that come within a frame the latest holds: it replaces those before it. */
+  private take(text: string) {
+    const first = this.answer === null;
+    this.answer = text;
+    if (document.hidden) this.tell();
+    else if (first) requestAnimationFrame(() => this.tell());
+  }
+
+  private tell() {
+    const { answer } = this;
+    this.answer = null;
+    if (answer !== null) this.hear(JSON.parse(answer) as Answer);
   }
 
   send(ask: Ask) {

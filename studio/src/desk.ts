@@ -14,8 +14,8 @@ export interface Host {
   take(task: Task): void;
   /** Keeps a linkage to compare others with. */
   keep(shown: Shown): void;
-  /** Says something that stays until it can have been read. */
-  say(text: string): void;
+  /** Says something that stays until it can have been read; what went wrong stays until it is closed. */
+  say(text: string, wrong?: boolean): void;
 }
 
 /** Milliseconds that a word stays, and more for each letter. */
@@ -27,11 +27,13 @@ export class Desk {
   private share: Share;
 
   private said = element("p", { id: "desk-said", role: "status", "aria-live": "polite" }) as HTMLParagraphElement;
+  private close = element("button", { type: "button", class: "drop", "aria-label": "Close this message", hidden: "" }, ["×"]) as HTMLButtonElement;
   private timer = 0;
 
   constructor(place: HTMLElement, sharePlace: HTMLElement, page: Omit<Host, "say">) {
-    const host: Host = { ...page, say: (text) => this.say(text) };
-    document.body.append(this.said);
+    const host: Host = { ...page, say: (text, wrong) => this.say(text, wrong) };
+    document.body.append(element("div", { id: "desk-message" }, [this.said, this.close]));
+    this.close.addEventListener("click", () => this.say(""));
     this.details = new DetailsPanel(place, host);
     const jobs = new JobsPanel(place, host, (name, rank) => this.details.ofJob(name, rank));
     this.share = new Share(sharePlace, host);
@@ -39,10 +41,11 @@ export class Desk {
   }
 
   /** Beside the status, which the next answer of the search replaces. */
-  private say(text: string) {
+  say(text: string, wrong = false) {
     clearTimeout(this.timer);
     this.said.textContent = text;
-    this.timer = setTimeout(() => { this.said.textContent = ""; }, STAYS + A_LETTER * text.length) as unknown as number;
+    this.close.hidden = text === "";
+    if (text !== "" && !wrong) this.timer = setTimeout(() => this.say(""), STAYS + A_LETTER * text.length) as unknown as number;
   }
 
   /** Takes what the address holds, if it holds a problem. */

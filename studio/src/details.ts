@@ -183,7 +183,7 @@ export class DetailsPanel {
       api.saved(await api.exported(of, format[0]), `${name}.${format[1]}`);
       return this.host.say(`Saved as ${name}.${format[1]}.`);
     } catch (error) {
-      return this.host.say(`This cannot be saved: ${api.wordsOf(error)}`);
+      return this.host.say(`This cannot be saved: ${api.wordsOf(error)}`, true);
     }
   }
 }

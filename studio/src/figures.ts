@@ -6,16 +6,29 @@ import type { Point, Shown } from "./messages";
 
 export type Toward = (p: Point) => Point;
 
-/** A linkage made ready to move. */
-export class Moving {
-  readonly cycle: Cycle;
-  readonly curve: (Point | null)[];
+type Joints = { C: Point; D: Point; P: Point } | null;
 
-  constructor(readonly shown: Shown, points: Point[]) {
-    const mechanism = { key: "", name: "", ...shown };
+/** A linkage made ready to move, as far as it is looked at: of many through nine points few are in sight. */
+export class Moving {
+  private made: Cycle | null = null;
+  private joints: Joints[] | null = null;
+
+  constructor(readonly shown: Shown, private points: Point[]) {}
+
+  get cycle(): Cycle {
+    const mechanism = { key: "", name: "", ...this.shown };
     // Between a moved target and its answer the two may differ in length.
-    this.cycle = new Cycle(mechanism as never, { points: points.slice(0, shown.crank_deg.length) });
-    this.curve = this.cycle.circuit().map((joints: { P: Point } | null) => joints && joints.P);
+    this.made ??= new Cycle(mechanism as never, { points: this.points.slice(0, this.shown.crank_deg.length) });
+    return this.made;
+  }
+
+  private get circuit(): Joints[] {
+    this.joints ??= this.cycle.circuit() as Joints[];
+    return this.joints;
+  }
+
+  get curve(): (Point | null)[] {
+    return this.circuit.map((joints) => joints && joints.P);
   }
 
   /** q at a part (0 to 1) of the motion: round and round, or to and fro over what the points use. */
@@ -30,7 +43,7 @@ export class Moving {
   box(): number[] {
     const box = [Infinity, Infinity, -Infinity, -Infinity];
     const { A, B } = this.shown.linkage;
-    const joints = this.cycle.circuit().flatMap((j: { C: Point; D: Point; P: Point } | null) => (j ? [j.C, j.D, j.P] : []));
+    const joints = this.circuit.flatMap((j) => (j ? [j.C, j.D, j.P] : []));
     for (const [x, y] of [A, B, ...joints]) {
       box[0] = Math.min(box[0], x);
       box[1] = Math.min(box[1], y);
@@ -44,9 +57,19 @@ export class Moving {
 /** Linkages that were made ready before, by what they are. */
 let made = new Map<string, Moving>();
 const MOST_MADE = 400;
+/** The same of an answer that is drawn again. */
+const known = new WeakMap<Shown, { points: Point[]; moving: Moving }>();
 
 /** A linkage made ready to move, once. */
 export function movingOf(shown: Shown, points: Point[]): Moving {
+  const before = known.get(shown);
+  if (before?.points === points) return before.moving;
+  const moving = keyed(shown, points);
+  known.set(shown, { points, moving });
+  return moving;
+}
+
+function keyed(shown: Shown, points: Point[]): Moving {
   const key = JSON.stringify([shown, points]);
   const moving = made.get(key) ?? new Moving(shown, points);
   if (made.size >= MOST_MADE) made = new Map();

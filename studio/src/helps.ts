@@ -62,6 +62,13 @@ export class Helps {
   }
 }
 
+/** `best sum of squares 0.00903, 3 published answers; until the target or a requirement changes` */
+function knownInWords({ best_known_sum_sq: best, published, exact }: NonNullable<Task["expect"]>["answer"]): string {
+  const n = published?.length ?? 0;
+  const known = [best === undefined ? "" : `best sum of squares ${figure(best, 3)}`, n > 0 ? `${n} published ${n === 1 ? "answer" : "answers"}` : "", exact ? "how many linkages there are" : ""];
+  return `${known.filter((one) => one).join(", ") || "nothing"}; until the target or a requirement changes`;
+}
+
 /** What is kept of a problem file though the page has no control for it. */
 export class Kept {
   constructor(private place: HTMLElement, private change: (task: (task: Task) => Task) => void) {}
@@ -70,6 +77,7 @@ export class Kept {
     const all = Object.entries(task.kept ?? {});
     if (task.method && task.method !== EXACT && task.method !== "auto") all.push(["solve.method", task.method]);
     if (task.raw) all.push(["smoothing", `${task.raw.points.length} digitised points, until a point is moved`]);
+    if (task.expect) all.push(["expect", knownInWords(task.expect.answer)]);
     this.place.hidden = all.length === 0;
     const list = this.place.querySelector("ul");
     const key = JSON.stringify(all);

@@ -43,6 +43,11 @@ class Row {
     this.node.append(element("div", { class: "row" }, [this.chosen, this.name, this.state, this.figures, ...Object.values(this.buttons)]), this.bar, this.said);
   }
 
+  /** What the list says of it. */
+  get words() {
+    return [this.figures, this.said].map((one) => one.textContent).filter((text) => text).join(". ");
+  }
+
   show(job: api.JobShown) {
     const { progress, result } = job;
     this.node.dataset.state = job.state;
@@ -123,7 +128,10 @@ export class JobsPanel {
         row = new Row(job.name, (what, name) => void this.act(what, name));
         this.rows.set(job.name, row);
       }
+      // The end of one that was seen to run is news.
+      const ran = row.node.dataset.state === "running" && job.state !== "running";
       row.show(job);
+      if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words}`, job.state === "failed");
       return row.node;
     });
     const same = nodes.length === this.list.childElementCount && nodes.every((node, i) => this.list.children[i] === node);
@@ -149,7 +157,7 @@ export class JobsPanel {
       this.replace.checked = false;
       this.host.say(`The search ${job.name} has begun.`);
     } catch (error) {
-      this.host.say(`The search cannot begin: ${api.wordsOf(error)}`);
+      this.host.say(`The search cannot begin: ${api.wordsOf(error)}`, true);
     }
     await this.refresh();
   }
@@ -160,7 +168,7 @@ export class JobsPanel {
       else if (what === "resume") await api.resume(name);
       else await this.open(name);
     } catch (error) {
-      this.host.say(`${name}: ${api.wordsOf(error)}`);
+      this.host.say(`${name}: ${api.wordsOf(error)}`, true);
     }
     await this.refresh();
   }
@@ -200,7 +208,7 @@ export class JobsPanel {
         ...notes.map((note) => element("p", { class: "quiet" }, [note])),
       );
     } catch (error) {
-      this.host.say(`These cannot be compared: ${api.wordsOf(error)}`);
+      this.host.say(`These cannot be compared: ${api.wordsOf(error)}`, true);
     }
   }
 
@@ -208,7 +216,7 @@ export class JobsPanel {
     try {
       api.saved(await api.comparedAs(this.chosen(), "html"), "comparison.html");
     } catch (error) {
-      this.host.say(`These cannot be compared: ${api.wordsOf(error)}`);
+      this.host.say(`These cannot be compared: ${api.wordsOf(error)}`, true);
     }
   }
 }

@@ -18,8 +18,9 @@ import { fillRequirements, listenToRequirements } from "./requirements";
 import { Strip, inWords } from "./strip";
 import { Table } from "./table";
 import { moved } from "./target";
-import { settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt } from "./task";
+import { settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt, withoutStale } from "./task";
 import { type Placed, Underlay } from "./underlay";
+import { Voice } from "./voice";
 
 /** Seconds of a turn. */
 const TURN = 5;
@@ -57,6 +58,7 @@ class Page {
   private connection: Connection | null = null;
   private desk: Desk;
   private pace = new Pace();
+  private voice = new Voice();
   private guide = new Guide();
   private underlay = new Underlay(() => this.showUnderlay());
   private photograph = new PhotographPanel(this.underlay, () => this.board, (tool) => this.use(tool), (text) => this.say(text), () => this.note());
@@ -177,7 +179,9 @@ class Page {
   }
 
   /** Takes a task: shown, remembered, sent. */
-  private put(task: Task, how: { moving?: boolean; fresh?: boolean }) {
+  private put(edited: Task, how: { moving?: boolean; fresh?: boolean }) {
+    const task = withoutStale(this.task, edited);
+    if (edited.expect && !task.expect) this.desk.say("The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.");
     this.task = task;
     this.version += 1;
     if (how.fresh) {
@@ -186,12 +190,15 @@ class Page {
       this.fitted = false;
       this.board.touched = false;
     }
-    this.draw();
-    // The controls can wait for a hand that moves; what is drawn cannot.
+    // The controls and the strip can wait for a hand that moves; the board cannot.
     clearTimeout(this.filling);
-    if (how.moving) this.filling = setTimeout(() => this.fill(), 100);
-    else this.fill();
-    this.keep();
+    if (how.moving) {
+      this.drawBoard();
+      this.filling = setTimeout(() => this.settle(), 100);
+    } else {
+      this.draw();
+      this.settle();
+    }
     document.body.dataset.asked = String(this.version);
     if (task.points.length < 3) {
       this.answer = null;
@@ -201,6 +208,12 @@ class Page {
     }
     const { moving, fresh } = how;
     this.connection?.send({ ...task, version: this.version, ...(moving ? { moving } : {}), ...(fresh ? { fresh } : {}) });
+  }
+
+  /** Brings the controls to what the task says, and remembers it. */
+  private settle() {
+    this.fill();
+    this.keep();
   }
 
   private hear(answer: Answer) {
@@ -228,7 +241,8 @@ class Page {
     const near = best?.ability ? "exactly through the points" : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     this.desk.changed(answer.doing === "done");
-    this.say(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
+    this.voice.answered(answer, head + answer.said);
+    this.tell(head + answer.said, answer.doing === "searching" ? answer.progress : undefined);
   }
 
   /** The candidates that are shown: of many through nine points those that were chosen. */
@@ -244,16 +258,21 @@ class Page {
     const candidates = this.candidates();
     const { points } = this.task;
     this.shownAll = [...candidates, ...this.pinned].map((shown) => movingOf(shown, points));
-    const pins = this.shownAll.slice(candidates.length);
-    const shown = this.shownAll[this.chosen] ?? null;
-    this.board.show(this.task, shown, pins.filter((one) => one !== shown));
+    this.drawBoard();
     this.strip.show(this.shownAll, candidates.length, this.chosen, this.task.unit, points, this.task.closed);
     byId("nothing").hidden = this.shownAll.length > 0;
     this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
     this.showSteps();
-    byId<HTMLButtonElement>("linkage-file").disabled = !shown;
+    byId<HTMLButtonElement>("linkage-file").disabled = !this.shownAll[this.chosen];
+    this.strip.pose(this.part);
+  }
+
+  /** The board alone: the target as it stands, the linkage that was last answered. */
+  private drawBoard() {
+    const shown = this.shownAll[this.chosen] ?? null;
+    const pins = this.shownAll.slice(-this.pinned.length || this.shownAll.length);
+    this.board.show(this.task, shown, pins.filter((one) => one !== shown));
     this.board.pose(this.part);
-    this.strip.pose(this.part, true);
   }
 
   private showSteps() {
@@ -292,7 +311,13 @@ class Page {
     remember({ task: this.task, pinned: this.pinned, begunWith: this.begunWith, hints: this.hints });
   }
 
-  private say(text: string, progress?: number) {
+  /** Says what was done or cannot be: seen until the next answer, and heard. */
+  private say(text: string) {
+    this.voice.say(text);
+    this.tell(text);
+  }
+
+  private tell(text: string, progress?: number) {
     if (this.status.textContent !== text) this.status.textContent = text;
     const bar = byId<HTMLProgressElement>("progress");
     bar.hidden = progress === undefined;

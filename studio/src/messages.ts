@@ -31,6 +31,8 @@ export interface Ask {
   objective?: "sum-of-squares" | "max-deviation";
   /** Other keys of the problem file, as they are typed there. */
   kept?: Record<string, string>;
+  /** What is known of the problem's answer: the studio reads it where the problem is still the one it is known of. */
+  expect?: { of: string; answer: { best_known_sum_sq?: number; published?: unknown[]; exact?: unknown } };
   seed: number;
   moving?: boolean;
   fresh?: boolean;

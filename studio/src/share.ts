@@ -97,7 +97,7 @@ export class Share {
         return this.host.say("The link stands in the field: copy it from there.");
       }
     } catch (error) {
-      return this.host.say(`No link can be made: ${api.wordsOf(error)}`);
+      return this.host.say(`No link can be made: ${api.wordsOf(error)}`, true);
     }
   }
 
@@ -107,7 +107,7 @@ export class Share {
     try {
       return await this.read(await unpacked(link.slice(at + MARK.length).trim()), "The link");
     } catch (error) {
-      return this.host.say(`The link cannot be read: ${api.wordsOf(error)}`);
+      return this.host.say(`The link cannot be read: ${api.wordsOf(error)}`, true);
     }
   }
 
@@ -116,7 +116,7 @@ export class Share {
       const { version: _, ...task } = (await api.askOf(text)) as Task & { version?: number };
       this.host.take(task);
     } catch (error) {
-      this.host.say(`${from} holds no problem that can be drawn: ${api.wordsOf(error)}`);
+      this.host.say(`${from} holds no problem that can be drawn: ${api.wordsOf(error)}`, true);
     }
   }
 }

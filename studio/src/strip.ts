@@ -32,9 +32,12 @@ export function nearness(shown: Shown, unit: string | undefined): string {
 
 /** One card of the strip. */
 class Card {
-  seen = true;
+  /** Whether it is in sight: only then its picture is drawn. */
+  seen = false;
+  private drawn: unknown[] = [];
   private moving: Moving | null = null;
-  private points: Point[] | null = null;
+  private points: Point[] = [];
+  private closed = false;
   private key = "";
   private picture = new Figure(0.55);
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
@@ -54,9 +57,25 @@ class Card {
 
   show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
     const { shown } = moving;
-    const key = JSON.stringify([name, unit, chosen, pinned, closed]);
-    if (moving === this.moving && points === this.points && key === this.key) return;
-    [this.moving, this.points, this.key] = [moving, points, key];
+    Object.assign(this, { moving, points, closed });
+    if (this.seen) this.draw();
+    const texts = [name, `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`, inWords(shown)];
+    const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
+    if (key === this.key) return;
+    this.key = key;
+    [this.title.textContent, this.figures.textContent, this.verdict.textContent] = texts;
+    this.verdict.classList.toggle("good", shown.accepted);
+    setAll(this.pick, { "aria-pressed": String(chosen) });
+    this.pin.textContent = pinned ? "Unpin" : "Pin";
+    setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
+  }
+
+  /** Draws what is to be shown, unless it is drawn already. */
+  draw() {
+    const { moving, points, closed } = this;
+    const now = [moving, points, closed];
+    if (!moving || now.every((one, i) => one === this.drawn[i])) return;
+    this.drawn = now;
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
     const scale = Math.min((W - 16) / w, (H - 16) / h);
@@ -64,13 +83,6 @@ class Card {
     const line = points.map(toward);
     setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
-    this.title.textContent = name;
-    this.figures.textContent = `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`;
-    this.verdict.textContent = inWords(shown);
-    this.verdict.classList.toggle("good", shown.accepted);
-    setAll(this.pick, { "aria-pressed": String(chosen) });
-    this.pin.textContent = pinned ? "Unpin" : "Pin";
-    setAll(this.pin, { "aria-label": `${pinned ? "Unpin" : "Pin"} ${name.toLowerCase()}` });
   }
 
   pose(part: number) {
@@ -81,11 +93,17 @@ class Card {
 export class Strip {
   private cards: Card[] = [];
   private count = 0;
-  /** Only what is in sight moves. */
+  private part = 0;
+  /** Only what is in sight is drawn and moves. */
   private sight = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.find((one) => one.node === entry.target);
-      if (card) card.seen = entry.isIntersecting;
+      if (!card) continue;
+      card.seen = entry.isIntersecting;
+      if (card.seen) {
+        card.draw();
+        card.pose(this.part);
+      }
     }
   });
 
@@ -110,7 +128,8 @@ export class Strip {
     this.list.classList.toggle("many", all.length > 12);
   }
 
-  pose(part: number, all = false) {
-    for (let i = 0; i < this.count; i += 1) if (all || this.cards[i].seen) this.cards[i].pose(part);
+  pose(part: number) {
+    this.part = part;
+    for (let i = 0; i < this.count; i += 1) if (this.cards[i].seen) this.cards[i].pose(part);
   }
 }

@@ -108,25 +108,25 @@ export class Table {
     this.pages.hidden = n <= PAGE;
     this.earlier.disabled = this.from === 0;
     this.later.disabled = this.from + PAGE >= n;
-    this.label.textContent = `${this.from + 1}–${this.from + rows} of ${n}`;
+    this.label.textContent = `${this.from}–${this.from + rows - 1} of ${n}`;
   }
 
   private build(columns: Column[], rows: number) {
     const heads = columns.map((column) => element("th", { scope: "col", title: HEADS[column][1] }, [HEADS[column][0]]));
-    this.head.replaceChildren(element("tr", {}, [element("th", { scope: "col" }, ["#"]), ...heads, element("th")]));
+    this.head.replaceChildren(element("tr", {}, [element("th", { scope: "col", title: "Points count from 0, as in the reports" }, ["#"]), ...heads, element("th")]));
     this.inputs = [];
     this.body.replaceChildren(...Array.from({ length: rows }, (_, i) => {
       const row = this.from + i;
       const cells = columns.map((column) => {
-        const input = element("input", { type: "number", step: "any", "aria-label": `Point ${row + 1}, ${HEADS[column][1]}` }) as HTMLInputElement;
+        const input = element("input", { type: "number", step: "any", "aria-label": `Point ${row}, ${HEADS[column][1]}` }) as HTMLInputElement;
         input.addEventListener("change", () => this.take(column, row, input));
         input.addEventListener("keydown", (event: KeyboardEvent) => this.go(event, i, columns.indexOf(column)));
         return input;
       });
       this.inputs.push(cells);
-      const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row + 1}` }, ["×"]);
+      const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row}` }, ["×"]);
       drop.addEventListener("click", () => this.task && this.edit(withRemoved(this.task, row)));
-      return element("tr", {}, [element("th", { scope: "row" }, [String(row + 1)]), ...cells.map((cell) => element("td", {}, [cell])), element("td", {}, [drop])]);
+      return element("tr", {}, [element("th", { scope: "row" }, [String(row)]), ...cells.map((cell) => element("td", {}, [cell])), element("td", {}, [drop])]);
     }));
   }
 
@@ -135,7 +135,7 @@ export class Table {
     const wrong = !Number.isFinite(value) ? "is no number" : column === "weight" && value <= 0 ? "must be above 0" : column === "tolerance" && value < 0 ? "must be 0 or more" : null;
     if (!this.task) return;
     if (wrong) {
-      this.say(`Point ${row + 1}: the ${HEADS[column][1]} ${wrong}.`);
+      this.say(`Point ${row}: the ${HEADS[column][1]} ${wrong}.`);
       input.value = String(valueAt(this.task, column, row));
       return;
     }

@@ -117,6 +117,18 @@ export function spaceAround(points: Point[]): Box {
   return rounded([left - size, low - 1.5 * size, right + size, high + 0.5 * size]);
 }
 
+/** What the best answer depends on, and nothing else. */
+function asked(task: Task): string {
+  const { name: _n, source: _s, unit: _u, seed: _d, expect: _e, method: _m, raw: _r, kept, ...rest } = task;
+  return JSON.stringify([Object.entries(rest).filter(([, value]) => value !== undefined).sort(), Object.entries(kept ?? {}).filter(([key]) => key.startsWith("design.")).sort()]);
+}
+
+/** An edited task: what was known of the answer of the one before goes where it is no longer the same problem. */
+export function withoutStale(before: Task, task: Task): Task {
+  const { expect, ...rest } = task;
+  return expect && expect.of === before.expect?.of && asked(task) !== asked(before) ? rest : task;
+}
+
 /** The task of an Ask: the rest is the connection's. */
 export function taskOf(ask: Ask): Task {
   const { version: _v, moving: _m, fresh: _f, ...task } = ask;

@@ -208,6 +208,42 @@ fn begun_at(job: &Value) -> f64 {
 }
 
 #[test]
+fn a_problem_that_is_opened_and_not_touched_is_saved_and_run_with_all_that_its_file_says() {
+    let folder = TempDir::new().expect("a folder");
+    let k18 = include_str!("../../problems/literature/k18.toml");
+    let text = k18.replace("\n[solve]\n", "\n[solve]\nevaluations = 20000\n");
+    assert!(text.len() > k18.len());
+    fs::write(folder.path().join("k18.toml"), &text).expect("written");
+    let saved = folder.path().join("results");
+    let studio = studio(&saved, "18449");
+    let guest = Guest::of(&studio);
+    let opened = value(&guest.posts("/read", &json!({"kind": "problem", "name": "k18.toml", "text": text})));
+    assert_eq!(opened["whole"], true);
+    let ask = &opened["ask"];
+    assert_eq!(ask["expect"]["answer"]["published"].as_array().map(Vec::len), Some(3));
+    // Saved: the answers that are known stand in the file, and it is the same problem.
+    let again = body(&guest.posts("/problem.toml", ask)).to_owned();
+    let table = |text: &str| -> toml::Table {
+        let whole: toml::Table = text.parse().expect("TOML");
+        whole["expect"].as_table().expect("a table").clone()
+    };
+    assert_eq!(table(&again), table(&text));
+    // Run: the bytes of synth.
+    assert_eq!(guest.posts("/jobs", &json!({ "ask": ask })).status(), 201);
+    guest.waits_for("k18", "done");
+    linkwright(folder.path(), &["synth", "k18.toml", "--out", "own"]);
+    let (studios, synths) = (files(&saved.join("k18")), files(&folder.path().join("own")));
+    assert_eq!(studios.keys().collect::<Vec<_>>(), synths.keys().collect::<Vec<_>>());
+    for (name, bytes) in &studios {
+        assert!(synths[name] == *bytes, "{name} differs");
+    }
+    // Another target is another problem.
+    let mut moved = ask.clone();
+    moved["points"][2][1] = json!(1.05);
+    assert!(!body(&guest.posts("/problem.toml", &moved)).contains("expect"));
+}
+
+#[test]
 fn a_job_that_was_stopped_goes_on_to_the_same_bytes_and_so_does_one_whose_studio_was_killed() {
     let folder = TempDir::new().expect("a folder");
     let saved = folder.path().join("results");
