@@ -2,7 +2,8 @@
 
 import { element, figure, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import { Figure, Moving } from "./figures";
-import type { Point, Shown } from "./messages";
+import { changing, setChildren } from "./focus";
+import type { Point, Shown, Task } from "./messages";
 
 const [W, H] = [150, 96];
 
@@ -34,7 +35,7 @@ export function nearness(shown: Shown, unit: string | undefined): string {
 class Card {
   seen = true;
   private moving: Moving | null = null;
-  private points: Point[] | null = null;
+  private task: Task | null = null;
   private key = "";
   private picture = new Figure(0.55);
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
@@ -52,11 +53,12 @@ class Card {
     this.pin.addEventListener("click", onPin);
   }
 
-  show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
+  show(moving: Moving, name: string, task: Task, chosen: boolean, pinned: boolean) {
     const { shown } = moving;
+    const { points, closed, unit } = task;
     const key = JSON.stringify([name, unit, chosen, pinned, closed]);
-    if (moving === this.moving && points === this.points && key === this.key) return;
-    [this.moving, this.points, this.key] = [moving, points, key];
+    if (moving === this.moving && points === this.task?.points && key === this.key) return;
+    [this.moving, this.task, this.key] = [moving, task, key];
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
     const scale = Math.min((W - 16) / w, (H - 16) / h);
@@ -91,8 +93,8 @@ export class Strip {
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
-  /** Shows candidates, then what is pinned. */
-  show(all: Moving[], found: number, chosen: number, unit: string | undefined, points: Point[], closed: boolean) {
+  /** Shows candidates, then what is pinned, each over the target that it was found for. */
+  show(all: Moving[], tasks: Task[], found: number, chosen: number) {
     while (this.cards.length < all.length) {
       const i = this.cards.length;
       const card = new Card(() => this.pick(i), () => this.pin(i));
@@ -101,10 +103,11 @@ export class Strip {
     }
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.cards[i].show(moving, name, unit, i === chosen, i >= found, points, closed);
+      this.cards[i].show(moving, name, tasks[i], i === chosen, i >= found);
     });
-    if (this.count !== all.length || this.list.childElementCount !== all.length) {
-      this.list.replaceChildren(...this.cards.slice(0, all.length).map((card) => card.node));
+    if (this.count !== all.length) {
+      const heading = this.list.parentElement?.querySelector("h2") ?? this.list;
+      changing(this.list, () => setChildren(this.list, this.cards.slice(0, all.length).map((card) => card.node)), heading);
     }
     this.count = all.length;
     this.list.classList.toggle("many", all.length > 12);
