@@ -63,8 +63,13 @@ test("what is chosen stays chosen while candidates come, go and change places", 
   await button(page, "Pin linkage 1").click();
   await page.locator(".pick", { hasText: "Pinned 1" }).click();
   const pin = await linkage(page);
+  // So does the control that has the focus, though cards come before it.
+  const focused = () => page.evaluate(() => document.activeElement.getAttribute("aria-label"));
   most = 9;
-  await again(19);
+  await page.locator("#ratio").fill("19");
+  await button(page, "Unpin pinned 1").focus();
+  await doing(page, "done");
+  assert.equal(await focused(), "Unpin pinned 1");
   const count = await page.locator("#strip li").count();
   assert.ok(count > 2, `${count} cards`);
   assert.deepEqual(await pressed(page), ["Pinned 1"]);

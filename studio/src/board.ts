@@ -349,6 +349,7 @@ export class Board {
     } else if ((event.key === "[" || event.key === "]") && n > 0) {
       const index = Math.max(this.selected, 0);
       const now = toleranceAt(task, index) || 0.01 * sizeOf(task.points);
+      if (event.key === "[" && toleranceAt(task, index) === 0) return;
       this.hand.grasp();
       this.hand.tolerance(index, now * (event.key === "]" ? 1.25 : 0.8), true);
     } else if (way && this.corner) {

@@ -81,39 +81,45 @@ class Card {
 }
 
 export class Strip {
-  private cards: Card[] = [];
-  private count = 0;
+  /** Those of candidates and those of what is pinned: a pin's card stays its own when candidates come and go. */
+  private cards: [Card[], Card[]] = [[], []];
+  private shown: Card[] = [];
+  private found = 0;
   /** Only what is in sight moves. */
   private sight = new IntersectionObserver((entries) => {
     for (const entry of entries) {
-      const card = this.cards.find((one) => one.node === entry.target);
+      const card = this.cards.flat().find((one) => one.node === entry.target);
       if (card) card.seen = entry.isIntersecting;
     }
   });
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
+  private card(kind: 0 | 1, i: number): Card {
+    const place = () => (kind === 0 ? i : this.found + i);
+    const card = this.cards[kind][i] ?? new Card(() => this.pick(place()), () => this.pin(place()));
+    if (!this.cards[kind][i]) this.sight.observe(card.node);
+    this.cards[kind][i] = card;
+    return card;
+  }
+
   /** Shows candidates, then what is pinned, each over the target that it was found for. */
   show(all: Moving[], tasks: Task[], found: number, chosen: number) {
-    while (this.cards.length < all.length) {
-      const i = this.cards.length;
-      const card = new Card(() => this.pick(i), () => this.pin(i));
-      this.cards.push(card);
-      this.sight.observe(card.node);
-    }
+    const before = this.shown;
+    this.found = found;
+    this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.cards[i].show(moving, name, tasks[i], i === chosen, i >= found);
+      this.shown[i].show(moving, name, tasks[i], i === chosen, i >= found);
     });
-    if (this.count !== all.length) {
+    if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
       const heading = this.list.parentElement?.querySelector("h2") ?? this.list;
-      changing(this.list, () => setChildren(this.list, this.cards.slice(0, all.length).map((card) => card.node)), heading);
+      changing(this.list, () => setChildren(this.list, this.shown.map((card) => card.node)), heading);
     }
-    this.count = all.length;
     this.list.classList.toggle("many", all.length > 12);
   }
 
   pose(part: number, all = false) {
-    for (let i = 0; i < this.count; i += 1) if (all || this.cards[i].seen) this.cards[i].pose(part);
+    for (const card of this.shown) if (all || card.seen) card.pose(part);
   }
 }
