@@ -307,7 +307,8 @@ impl Sources<'_> {
         }
         let mut given = Vec::new();
         for (i, source) in ask.of.iter().enumerate() {
-            let Found { record, index } = self.find(source, false)?;
+            // With costs: they are worked out again where the record is proved.
+            let Found { record, index } = self.find(source, true)?;
             let named = match source {
                 Source::Job(of) => self.shelf.folder().join(&of.name).display().to_string(),
                 Source::Drawn(_) => format!("drawing {}", i + 1),

@@ -1,6 +1,6 @@
 // What the page asks of the studio over HTTP: see /openapi.json.
 
-import type { Point, Shown, Task } from "./messages";
+import type { Point, Shown, Solution, Task } from "./messages";
 
 export interface JobShown {
   name: string;
@@ -56,7 +56,23 @@ export const exported = async (of: Source, format: string) => (await answered("/
 export const compared = async (of: Source[]) => (await answered("/compare", { of })).json() as Promise<Compared>;
 export const comparedAs = async (of: Source[], form: string) => (await answered("/compare", { of, form })).blob();
 export const askOf = async (text: string) => (await answered("/ask.json", undefined, text)).json() as Promise<Task>;
+/** A linkage as it stands, as a source of details, files and comparisons. */
+export function drawn({ shown: { linkage, crank_deg, t1_at }, task }: Solution): Source {
+  return { drawn: { ask: task, linkage, crank_deg, t1_at } };
+}
+export const beginning = async () => (await answered("/beginning.json")).text();
+export const linkageOf = async (name: string, { shown, task }: Solution) => (await answered("/linkage.toml", { name, unit: task.unit, linkage: shown.linkage })).text();
 export const problemOf = async (task: Task) => (await answered("/problem.toml", { ...task, version: 0 })).text();
+
+/** Why the studio gives this tab no connection, in words. */
+export async function whyClosed(): Promise<string> {
+  try {
+    if ((await fetch("/beginning.json")).ok) return "The studio answers, but serves no more tabs at once: close another one, and this one goes on.";
+  } catch {
+    // It has ended.
+  }
+  return "The studio does not answer. Start it again with `linkwright studio` and open the address that it prints; your drawing is kept here.";
+}
 
 /** Saves a file where the browser saves files. */
 export function saved(what: Blob, name: string) {

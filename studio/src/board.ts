@@ -4,9 +4,13 @@ import { figure, pathThrough, px, roundLength, setAll, shape } from "../../src/r
 import { type BoxKind, type Corner, between, boxShapes, cornerOf, inWords as cornerInWords, nextCorner, resized } from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Box, Point, Task } from "./messages";
-import { ofStroke } from "./target";
-import { boxOf, toleranceAt } from "./task";
+import { type Grip, dragging, watchPointers } from "./pointers";
+import { ofStroke, segmentAt } from "./target";
+import { sizeOf, toleranceAt } from "./task";
 import type { Underlay } from "./underlay";
+
+/** A click so near to the path, in pixels, is meant for it. */
+const NEAR = 9;
 
 export type Tool = "draw" | "points" | BoxKind | "photo-move" | "photo-scale";
 
@@ -15,10 +19,12 @@ export interface Hand {
   drawn(points: Point[], closed: boolean): void;
   /** A point is about to be moved, or the box. */
   grasp(): void;
+  /** What was done since then is given up. */
+  letGo(): void;
   /** A point is being moved. */
   drag(index: number, to: Point, last: boolean): void;
-  /** A point is added. */
-  add(at: Point): void;
+  /** A point is added after another. */
+  add(at: Point, after: number): void;
   remove(index: number): void;
   /** A box of the requirements is drawn, or a corner of it moves; null removes it. */
   box(kind: BoxKind, box: Box | null, last: boolean): void;
@@ -54,7 +60,7 @@ export class Board {
   constructor(private place: HTMLElement, private hand: Hand, private say: (text: string) => void, private underlay: Underlay) {
     this.svg.append(this.underlay.group, this.back, this.boxGroup, this.sketch, this.pins, this.mechanism.group, this.marks, this.stroke, this.scaleBar);
     place.append(this.svg);
-    this.svg.addEventListener("pointerdown", (event: PointerEvent) => this.down(event));
+    watchPointers(this.svg, (event) => this.take(event), (one, other) => this.pinch(one, other));
     this.svg.addEventListener("wheel", (event: WheelEvent) => {
       event.preventDefault();
       this.touched = true;
@@ -184,76 +190,89 @@ export class Board {
     this.boxGroup.replaceChildren(...(this.task ? boxShapes(this.task, this.toPixel, this.corner) : []));
   }
 
-  private down(event: PointerEvent) {
-    if (event.button !== 0 || !this.task) return;
+  /** What a pointer that goes down here holds. */
+  private take(event: PointerEvent): Grip | null {
     const target = event.target as Element;
-    const point = target.getAttribute("data-point");
-    const corner = target.getAttribute("data-corner");
-    event.preventDefault();
+    const [point, corner, rim] = ["point", "corner", "rim"].map((name) => target.getAttribute(`data-${name}`));
     this.svg.focus({ preventScroll: true });
-    this.svg.setPointerCapture(event.pointerId);
-    if (event.shiftKey) return this.follow(this.pan(event));
-    const rim = target.getAttribute("data-rim");
-    if (this.tool === "photo-move" && this.underlay.there) return this.follow(this.moveUnderlay(event));
+    if (!this.task) return null;
+    if (event.shiftKey) return this.pan(event);
+    if (this.tool === "photo-move" && this.underlay.there) return this.moveUnderlay(event);
     if (this.tool === "photo-scale" && this.underlay.there) {
       this.underlay.mark(this.at(event));
-      return this.hand.marked();
+      this.hand.marked();
+      return null;
     }
-    if (this.tool === "pivots_in" || this.tool === "footprint_in") return this.follow(this.sketchBox(this.tool, this.at(event)));
-    if (corner) return this.follow(this.resize(corner));
-    if (rim !== null) return this.follow(this.widen(Number(rim)));
-    if (point !== null) return this.follow(this.carry(Number(point), this.at(event)));
-    if (this.tool === "points") {
-      this.hand.add(this.at(event));
-      this.selected = (this.task?.points.length ?? 0) - 1;
-      return this.follow(this.carry(this.selected, this.at(event)));
-    }
-    return this.follow(this.pen(event));
+    if (this.tool === "pivots_in" || this.tool === "footprint_in") return this.sketchBox(this.tool, this.at(event));
+    if (corner) return this.resize(corner, event);
+    if (rim !== null) return this.widen(Number(rim), event);
+    if (point !== null) return this.carry(Number(point), event);
+    return this.tool === "points" ? this.addPoint(event) : this.pen(event);
   }
 
-  /** Sends every move to `step` until the pointer goes up. */
-  private follow(step: (event: PointerEvent, last: boolean) => void) {
-    const move = (event: PointerEvent) => step(event, false);
-    const end = (event: PointerEvent) => {
-      for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]] as const) this.svg.removeEventListener(name, listener);
-      step(event, true);
-    };
-    for (const [name, listener] of [["pointermove", move], ["pointerup", end], ["pointercancel", end]] as const) this.svg.addEventListener(name, listener);
+  /** A grip that changes something from the first real movement on; what it had changed can be given up. */
+  private changing(start: PointerEvent, step: Grip["step"]): Grip {
+    return dragging(start, () => this.hand.grasp(), step, () => this.hand.letGo());
   }
 
-  private pan(start: PointerEvent) {
+  private pan(start: PointerEvent): Grip {
     const held = this.at(start);
     this.touched = true;
-    return (event: PointerEvent) => {
+    const step = (event: PointerEvent) => {
       const now = this.at(event);
       this.view.x += held[0] - now[0];
       this.view.y += held[1] - now[1];
       this.draw();
     };
+    return { step, abort: () => {} };
   }
 
-  private carry(index: number, from: Point) {
-    this.selected = index;
-    this.hand.grasp();
+  /** Two fingers hold two points of the plane. */
+  private pinch(one: PointerEvent, other: PointerEvent) {
+    const [p, q] = [this.at(one), this.at(other)];
+    const apart = Math.max(Math.hypot(q[0] - p[0], q[1] - p[1]), 1e-9);
+    this.touched = true;
+    return (one: PointerEvent, other: PointerEvent) => {
+      const now = [this.at(one), this.at(other)];
+      this.zoom(Math.hypot(now[1][0] - now[0][0], now[1][1] - now[0][1]) / apart);
+      const [a, b] = [this.at(one), this.at(other)];
+      this.view.x += (p[0] + q[0] - a[0] - b[0]) / 2;
+      this.view.y += (p[1] + q[1] - a[1] - b[1]) / 2;
+      this.draw();
+    };
+  }
+
+  private carry(index: number, start: PointerEvent, begin = () => this.hand.grasp()): Grip {
+    const from = this.at(start);
+    this.select(index);
     const held = this.task?.points[index] ?? from;
-    return (event: PointerEvent, last: boolean) => {
+    return dragging(start, begin, (event, last) => {
       const now = this.at(event);
       this.hand.drag(index, [held[0] + now[0] - from[0], held[1] + now[1] - from[1]], last);
-    };
+    }, () => this.hand.letGo());
   }
 
-  private resize(name: string) {
-    this.hand.grasp();
+  /** A point is added where the path is clicked, or behind its last point; it can be carried on at once. */
+  private addPoint(start: PointerEvent): Grip {
+    const [at, points] = [this.at(start), this.task?.points ?? []];
+    const after = segmentAt(points, at, this.task?.closed === true, NEAR / this.view.scale) ?? points.length - 1;
+    this.hand.add(at, after);
+    const { step } = this.carry(after + 1, start, () => {});
+    return { step, abort: () => this.hand.letGo() };
+  }
+
+  private resize(name: string, start: PointerEvent): Grip {
     const [kind, corner] = name.split(":") as [BoxKind, string];
     this.corner = { kind, corner: Number(corner) };
-    return (event: PointerEvent, last: boolean) => {
+    this.drawBox();
+    return this.changing(start, (event, last) => {
       const box = this.task?.[kind];
       if (box) this.hand.box(kind, resized(box, Number(corner), this.at(event), 12 / this.view.scale), last);
-    };
+    });
   }
 
-  private sketchBox(kind: BoxKind, from: Point) {
-    return (event: PointerEvent, last: boolean) => {
+  private sketchBox(kind: BoxKind, from: Point): Grip {
+    const step = (event: PointerEvent, last: boolean) => {
       const box = between(from, this.at(event), 12 / this.view.scale);
       setAll(this.sketch, { visibility: box && !last ? "visible" : "hidden" });
       if (box) {
@@ -266,29 +285,28 @@ export class Board {
         this.hand.box(kind, box, true);
       } else this.say("Drag from one corner of the box to the opposite one.");
     };
+    return { step, abort: () => setAll(this.sketch, { visibility: "hidden" }) };
   }
 
-  private widen(index: number) {
-    this.selected = index;
-    this.hand.grasp();
-    return (event: PointerEvent, last: boolean) => {
+  private widen(index: number, start: PointerEvent): Grip {
+    this.select(index);
+    return this.changing(start, (event, last) => {
       const [centre, now] = [this.task?.points[index] ?? [0, 0], this.at(event)];
       this.hand.tolerance(index, Math.hypot(now[0] - centre[0], now[1] - centre[1]), last);
-    };
+    });
   }
 
-  private moveUnderlay(start: PointerEvent) {
+  private moveUnderlay(start: PointerEvent): Grip {
     const [from, placed] = [this.at(start), this.underlay.placed];
-    this.hand.grasp();
-    return (event: PointerEvent, last: boolean) => {
+    return this.changing(start, (event, last) => {
       const now = this.at(event);
       if (placed) this.underlay.place({ x: placed.x + now[0] - from[0], y: placed.y + now[1] - from[1] }, last);
-    };
+    });
   }
 
-  private pen(start: PointerEvent) {
+  private pen(start: PointerEvent): Grip {
     const line: Point[] = [this.at(start)];
-    return (event: PointerEvent, last: boolean) => {
+    const step = (event: PointerEvent, last: boolean) => {
       const more = event.getCoalescedEvents?.() ?? [];
       for (const one of more.length > 0 ? more : [event]) line.push(this.at(one));
       setAll(this.stroke, { d: last ? "" : pathThrough(line.map(this.toPixel)) });
@@ -296,6 +314,12 @@ export class Board {
       const target = ofStroke(line, 40 / this.view.scale);
       if (target) this.hand.drawn(target.points, target.closed);
     };
+    return { step, abort: () => setAll(this.stroke, { d: "" }) };
+  }
+
+  private select(index: number) {
+    this.selected = index;
+    this.draw();
   }
 
   private key(event: KeyboardEvent) {
@@ -326,8 +350,8 @@ export class Board {
       this.zoom(event.key === "+" ? 1.25 : 0.8);
     } else if ((event.key === "[" || event.key === "]") && n > 0) {
       const index = Math.max(this.selected, 0);
-      const size = boxOf(task.points) ?? [0, 0, 1, 1];
-      const now = toleranceAt(task, index) ?? 0.01 * Math.hypot(size[2] - size[0], size[3] - size[1]);
+      const now = toleranceAt(task, index) || 0.01 * sizeOf(task.points);
+      if (event.key === "[" && toleranceAt(task, index) === 0) return;
       this.hand.grasp();
       this.hand.tolerance(index, now * (event.key === "]" ? 1.25 : 0.8), true);
       this.tellTolerance(index);

@@ -2,6 +2,7 @@
 
 import { px, shape } from "../../src/report/html/player/svg.mjs";
 import type { Box, Point, Task } from "./messages";
+import { roundTo } from "./task";
 
 export type BoxKind = "pivots_in" | "footprint_in";
 export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
@@ -19,7 +20,7 @@ export interface Corner {
 /** A box with one of its corners elsewhere, never narrower than `least`. */
 export function resized(box: Box, corner: number, to: Point, least: number): Box {
   const [i, j] = CORNERS[corner];
-  const [x, y] = to.map((value) => Number(value.toPrecision(4)));
+  const [x, y] = to.map((value) => roundTo(value, Math.hypot(box[2] - box[0], box[3] - box[1]) || least, 4));
   const next = [...box] as Box;
   next[i] = i === 0 ? Math.min(x, box[2] - least) : Math.max(x, box[0] + least);
   next[j] = j === 1 ? Math.min(y, box[3] - least) : Math.max(y, box[1] + least);
@@ -28,8 +29,8 @@ export function resized(box: Box, corner: number, to: Point, least: number): Box
 
 /** The box between two points; null where it would be too small to be meant. */
 export function between(from: Point, to: Point, least: number): Box | null {
-  const [x, y] = to.map((value) => Number(value.toPrecision(4)));
-  const [x0, y0] = from.map((value) => Number(value.toPrecision(4)));
+  const size = Math.max(Math.hypot(to[0] - from[0], to[1] - from[1]), least);
+  const [x0, y0, x, y] = [...from, ...to].map((value) => roundTo(value, size, 4));
   const box: Box = [Math.min(x0, x), Math.min(y0, y), Math.max(x0, x), Math.max(y0, y)];
   return box[2] - box[0] >= least && box[3] - box[1] >= least ? box : null;
 }

@@ -3,17 +3,19 @@
 import { element } from "../../src/report/html/player/svg.mjs";
 import { DetailsPanel } from "./details";
 import { JobsPanel } from "./jobs";
-import type { Shown, Task } from "./messages";
+import type { Solution, Task } from "./messages";
 import { Share } from "./share";
 
 export interface Host {
   task(): Task;
   /** The linkage that is chosen in the strip. */
-  chosen(): Shown | null;
+  chosen(): Solution | null;
+  /** What is pinned, to be compared. */
+  pinned(): Solution[];
   /** Takes another problem. */
   take(task: Task): void;
   /** Keeps a linkage to compare others with. */
-  keep(shown: Shown): void;
+  keep(one: Solution): void;
   /** Says something that stays until it can have been read; what went wrong stays until it is closed. */
   say(text: string, wrong?: boolean): void;
 }
@@ -24,6 +26,7 @@ const A_LETTER = 60;
 
 export class Desk {
   private details: DetailsPanel;
+  private jobs: JobsPanel;
   private share: Share;
 
   private said = element("p", { id: "desk-said", role: "status", "aria-live": "polite" }) as HTMLParagraphElement;
@@ -35,9 +38,9 @@ export class Desk {
     document.body.append(element("div", { id: "desk-message" }, [this.said, this.close]));
     this.close.addEventListener("click", () => this.say(""));
     this.details = new DetailsPanel(place, host);
-    const jobs = new JobsPanel(place, host, (name, rank) => this.details.ofJob(name, rank));
+    this.jobs = new JobsPanel(place, host, (name, task) => this.details.ofJob(name, 1, task));
     this.share = new Share(sharePlace, host);
-    void jobs.refresh();
+    void this.jobs.refresh();
   }
 
   /** Beside the status, which the next answer of the search replaces. */
@@ -56,6 +59,7 @@ export class Desk {
   /** Another linkage is chosen, or the same has new figures. */
   changed(settled: boolean) {
     this.details.changed(settled);
+    this.jobs.suggest();
   }
 
   /** A card of the strip was chosen by hand. */

@@ -6,6 +6,7 @@ import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
   ["dxf", "dxf", "DXF: skeleton, curve, target"], ["dxf-plates", "dxf", "DXF: plates to cut"], ["svg", "svg", "SVG in millimetres"],
@@ -83,7 +84,11 @@ export class DetailsPanel {
   private words = element("div", { class: "details-words" });
   private nothing = element("p", { class: "quiet" });
   private job: { name: string; rank: number } | null = null;
+  /** The problem of that result, where a tab can hold it. */
+  private jobTask: Task | null = null;
+  /** What is shown, where it came from, and what its files are called. */
   private details: api.Details | null = null;
+  private of: { source: api.Source; task: Task | null; name: string } | null = null;
   private player: AnglesPlayer | null = null;
   private shownOf = "";
   private loading = "";
@@ -99,17 +104,19 @@ export class DetailsPanel {
       else this.player?.pause();
     });
     this.candidates.addEventListener("change", () => {
-      if (this.job) this.ofJob(this.job.name, Number(this.candidates.value));
+      if (this.job) this.ofJob(this.job.name, Number(this.candidates.value), this.jobTask);
     });
     this.keep.addEventListener("click", () => {
-      if (this.details) this.host.keep(this.details.shown);
+      const [shown, task] = [this.details?.shown, this.of?.task];
+      if (shown && task) this.host.keep({ shown, task });
     });
     this.save.addEventListener("click", () => void this.export());
   }
 
   /** Shows a candidate of a saved result. */
-  ofJob(name: string, rank: number) {
+  ofJob(name: string, rank: number, task: Task | null) {
     this.job = { name, rank };
+    this.jobTask = task;
     this.panel.open = true;
     this.changed(true);
   }
@@ -120,35 +127,35 @@ export class DetailsPanel {
     this.changed(true);
   }
 
-  private source(): api.Source | null {
-    if (this.job) return { job: this.job };
-    const shown = this.host.chosen();
-    if (!shown) return null;
-    const { linkage, crank_deg, t1_at } = shown;
-    return { drawn: { ask: this.host.task(), linkage, crank_deg, t1_at } };
+  private wanted(): typeof this.of {
+    if (this.job) return { source: { job: this.job }, task: this.jobTask, name: `${this.job.name}-${this.job.rank}` };
+    const chosen = this.host.chosen();
+    return chosen && { source: api.drawn(chosen), task: chosen.task, name: chosen.task.name };
   }
 
   /** While the hand moves nothing is asked; a moment after it rests, once. */
   changed(settled: boolean) {
     clearTimeout(this.timer);
-    if (!this.panel.open || (this.job && this.shownOf === JSON.stringify(this.job))) return;
+    if (!this.panel.open || (this.job && this.shownOf === keyOf({ job: this.job }))) return;
+    this.tell();
     if (settled) this.timer = setTimeout(() => void this.load(), 150) as unknown as number;
   }
 
   private async load() {
     const { job } = this;
-    const of = this.source();
+    const of = this.wanted();
     this.nothing.hidden = of !== null;
     this.nothing.textContent = "None is chosen.";
     if (!of) return;
-    const key = JSON.stringify(this.job ?? of);
+    const key = keyOf(of.source);
     if (key === this.shownOf) return;
     this.loading = key;
     try {
-      const details = await api.details(of);
+      const details = await api.details(of.source);
       // Another one may have been asked for since.
       if (this.loading !== key || this.job !== job) return;
       this.shownOf = key;
+      this.of = of;
       this.show(details);
     } catch (error) {
       if (this.loading !== key || this.job !== job) return;
@@ -157,10 +164,19 @@ export class DetailsPanel {
     }
   }
 
+  /** Says which one is shown: what has changed since is not it. */
+  private tell() {
+    if (!this.details) return;
+    const now = this.wanted();
+    const same = now !== null && keyOf(now.source) === this.shownOf;
+    this.title.textContent = `${this.details.name}, ${this.of && "job" in this.of.source ? "candidate" : same ? "as it stands" : "as it stood"}`;
+  }
+
   private show(details: api.Details) {
     this.details = details;
     const { shown } = details;
-    this.title.textContent = this.job ? `${details.name}, candidate` : `${details.name}, as it stands`;
+    this.tell();
+    this.keep.disabled = this.of?.task == null;
     this.candidates.hidden = this.job === null;
     this.candidates.replaceChildren(...Array.from({ length: details.candidates }, (_, i) => element("option", { value: i + 1 }, [`${i + 1} of ${details.candidates}`])));
     this.candidates.value = String(this.job?.rank ?? 1);
@@ -175,18 +191,20 @@ export class DetailsPanel {
   }
 
   private async export() {
-    const of = this.source();
+    const { of } = this;
     const format = FORMATS.find(([name]) => name === this.format.value);
     if (!of || !format) return this.host.say("There is no linkage to save.");
-    const name = this.job ? `${this.job.name}-${this.job.rank}` : this.host.task().name;
+    const { name } = of;
     try {
-      api.saved(await api.exported(of, format[0]), `${name}.${format[1]}`);
+      api.saved(await api.exported(of.source, format[0]), `${name}.${format[1]}`);
       return this.host.say(`Saved as ${name}.${format[1]}.`);
     } catch (error) {
       return this.host.say(`This cannot be saved: ${api.wordsOf(error)}`, true);
     }
   }
 }
+
+const keyOf = (of: api.Source) => JSON.stringify("job" in of ? of.job : of);
 
 /** What the report has written: every foreign text in it stands as text, and the page's policy runs no script of it. */
 function marked(markup: string, chosen: string): Element[] {

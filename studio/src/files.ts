@@ -48,6 +48,9 @@ export async function taskOfText(text: string, name: string, task: Task, samples
   return { task: next, said };
 }
 
+/** Whether what is typed or pasted there is a text of its own. */
+export const takesText = (target: EventTarget | null) => (target as Element | null)?.closest?.("textarea, input:not([type=checkbox], [type=range], [type=file])") != null;
+
 /** Watches for files and texts that come from outside; pictures and texts go different ways. */
 export function watchFiles(board: HTMLElement, chooser: HTMLInputElement, text: (text: string, name: string) => void, picture: (file: Blob) => void) {
   const take = async (file: File) => {
@@ -69,7 +72,7 @@ export function watchFiles(board: HTMLElement, chooser: HTMLInputElement, text: 
     else if (plain) text(plain, "");
   });
   document.addEventListener("paste", (event) => {
-    if ((event.target as Element | null)?.closest?.("input, textarea, select")) return;
+    if (takesText(event.target)) return;
     const file = event.clipboardData?.files[0];
     const plain = event.clipboardData?.getData("text/plain");
     if (file) void take(file);

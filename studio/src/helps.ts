@@ -1,10 +1,11 @@
 // What stands in the way: changes that help, each a button; and what of a problem file the page does not show.
 
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
+import { changing } from "./focus";
 import { EXACT } from "./task";
 import type { Relaxation, Task, Value } from "./messages";
 
-const NAMES: Record<string, [string, string]> = {
+export const NAMES: Record<string, [string, string]> = {
   "require.type": ["driven by", ""],
   "require.transmission_deg_min": ["least transmission angle", "°"],
   "require.link_ratio_max": ["longest over shortest link", ""],
@@ -52,13 +53,16 @@ export class Helps {
     const key = JSON.stringify([relaxations, unit]);
     if (key === this.told) return;
     this.told = key;
-    this.list.hidden = relaxations.length === 0;
-    this.list.replaceChildren(...relaxations.map(({ set, rms }) => {
+    const items = relaxations.map(({ set, rms }) => {
       const what = set.map((change) => inWords(change.key, change.from, change.to, unit)).join(" and ");
       const button = element("button", { type: "button" }, [what]);
       button.addEventListener("click", () => this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what));
       return element("li", {}, [button, element("span", {}, [`gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`])]);
-    }));
+    });
+    changing(this.list, () => {
+      this.list.hidden = items.length === 0;
+      this.list.replaceChildren(...items);
+    }, document.querySelector<SVGElement>("#board svg") ?? this.list);
   }
 }
 
@@ -78,12 +82,11 @@ export class Kept {
     if (task.method && task.method !== EXACT && task.method !== "auto") all.push(["solve.method", task.method]);
     if (task.raw) all.push(["smoothing", `${task.raw.points.length} digitised points, until a point is moved`]);
     if (task.expect) all.push(["expect", knownInWords(task.expect.answer)]);
-    this.place.hidden = all.length === 0;
     const list = this.place.querySelector("ul");
     const key = JSON.stringify(all);
     if (!list || list.dataset.key === key) return;
     list.dataset.key = key;
-    list.replaceChildren(...all.map(([name, value]) => {
+    const items = all.map(([name, value]) => {
       const item = element("li", {}, [element("code", {}, [`${name} = ${value}`])]);
       if (task.kept?.[name] === undefined) return item;
       const drop = element("button", { type: "button", class: "drop", "aria-label": `Let go ${name}` }, ["×"]);
@@ -93,6 +96,10 @@ export class Kept {
       }));
       item.append(drop);
       return item;
-    }));
+    });
+    changing(this.place, () => {
+      this.place.hidden = all.length === 0;
+      list.replaceChildren(...items);
+    }, document.querySelector<SVGElement>("#board svg") ?? this.place);
   }
 }

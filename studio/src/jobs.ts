@@ -3,11 +3,13 @@
 import { element, figure } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import { changing, setChildren } from "./focus";
+import type { Task } from "./messages";
+import { taskOf } from "./task";
 
 /** Milliseconds between looks while something runs, and while nothing does. */
 const SOON = 700;
 const LATER = 10_000;
-const BUDGET = 2_000_000;
 
 const STATES: Record<api.JobShown["state"], string> = {
   running: "searching", done: "done", stopped: "stopped", "broken-off": "broken off", elsewhere: "in use elsewhere", failed: "failed", unreadable: "unreadable",
@@ -33,7 +35,7 @@ class Row {
   constructor(name: string, act: (what: "open" | "stop" | "resume", name: string) => void) {
     const button = (what: "open" | "stop" | "resume", words: string) => {
       const made = element("button", { type: "button", "aria-label": `${words} ${name}` }, [words]) as HTMLButtonElement;
-      made.addEventListener("click", () => act(what, name));
+      made.addEventListener("click", () => made.getAttribute("aria-disabled") !== "true" && act(what, name));
       return made;
     };
     this.buttons = { open: button("open", "Open"), stop: button("stop", "Stop"), resume: button("resume", "Go on") };
@@ -71,7 +73,8 @@ class Row {
     if (!whole) this.chosen.checked = false;
     this.buttons.open.hidden = !result;
     this.buttons.stop.hidden = job.state !== "running";
-    this.buttons.stop.disabled = job.said.startsWith("Stopping");
+    // Not disabled: it would lose the focus.
+    this.buttons.stop.setAttribute("aria-disabled", String(job.said.startsWith("Stopping")));
     this.buttons.resume.hidden = !job.resumable;
   }
 }
@@ -80,22 +83,23 @@ export class JobsPanel {
   private list = element("ul", { id: "jobs", "aria-label": "Saved searches" });
   private none = element("p", { class: "quiet" });
   private name = element("input", { id: "job-name", maxlength: 64, autocomplete: "off" }) as HTMLInputElement;
-  private budget = element("input", { id: "job-budget", type: "number", min: 1000, step: 1000, value: BUDGET }) as HTMLInputElement;
+  private budget = element("input", { id: "job-budget", type: "number", min: 1000, step: 1000, placeholder: "as usual" }) as HTMLInputElement;
   private replace = element("input", { id: "job-replace", type: "checkbox" }) as HTMLInputElement;
   private comparison = element("div", { id: "comparison" });
+  private heading = element("h2", {}, ["Saved searches"]) as HTMLElement;
   private rows = new Map<string, Row>();
   private timer = 0;
 
-  constructor(place: HTMLElement, private host: Host, private details: (name: string, rank: number) => void) {
+  constructor(place: HTMLElement, private host: Host, private details: (name: string, task: Task | null) => void) {
     const begin = element("button", { type: "button", id: "job-start" }, ["Search long"]);
-    const compare = element("button", { type: "button", id: "job-compare" }, ["Compare the chosen ones"]);
+    const compare = element("button", { type: "button", id: "job-compare" }, ["Compare"]);
     const page = element("button", { type: "button", id: "job-compare-page" }, ["Save the comparison"]);
     const form = element("div", { class: "row job-form" }, [
       element("label", {}, ["Name ", this.name]), element("label", {}, ["tries at most ", this.budget]), element("label", { class: "check" }, [this.replace, "replace an earlier one"]), begin,
     ]);
     place.append(element("section", { class: "desk-card", "aria-label": "Saved searches" }, [
-      element("h2", {}, ["Saved searches"]), element("p", { class: "quiet" }, ["A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed."]),
-      form, this.none, this.list, element("div", { class: "row" }, [compare, page]), this.comparison,
+      this.heading, element("p", { class: "quiet" }, ["A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed."]),
+      form, this.none, this.list, element("div", { class: "row" }, [compare, page, element("span", { class: "quiet" }, ["the ticked ones, the pinned ones and the one on the board"])]), this.comparison,
     ]));
     begin.addEventListener("click", () => void this.start());
     compare.addEventListener("click", () => void this.compare());
@@ -121,6 +125,11 @@ export class JobsPanel {
   }
 
   private show(jobs: api.JobShown[]) {
+    changing(this.list, () => this.fill(jobs), this.heading);
+    this.suggest();
+  }
+
+  private fill(jobs: api.JobShown[]) {
     for (const name of this.rows.keys()) if (!jobs.some((job) => job.name === name)) this.rows.delete(name);
     const nodes = jobs.map((job) => {
       let row = this.rows.get(job.name);
@@ -130,13 +139,16 @@ export class JobsPanel {
       }
       // The end of one that was seen to run is news.
       const ran = row.node.dataset.state === "running" && job.state !== "running";
-      row.show(job);
+      changing(row.node, () => row.show(job), this.heading);
       if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words}`, job.state === "failed");
       return row.node;
     });
-    const same = nodes.length === this.list.childElementCount && nodes.every((node, i) => this.list.children[i] === node);
-    if (!same) this.list.replaceChildren(...nodes);
-    if (document.activeElement !== this.name && this.name.value === "") this.name.value = this.free();
+    setChildren(this.list, nodes);
+  }
+
+  /** The name that a search of what is drawn takes where none is typed. */
+  suggest() {
+    this.name.placeholder = this.free();
   }
 
   /** A name that no result has. */
@@ -152,7 +164,9 @@ export class JobsPanel {
     const name = this.name.value.trim() || this.free();
     const ask = { ...this.host.task(), name };
     try {
-      const job = await api.start({ ask, set: { "solve.evaluations": String(Math.round(this.budget.valueAsNumber) || BUDGET) }, ...(this.replace.checked ? { replace: true } : {}) });
+      const evaluations = Math.round(this.budget.valueAsNumber);
+      const set = evaluations > 0 ? { set: { "solve.evaluations": String(evaluations) } } : {};
+      const job = await api.start({ ask, ...set, ...(this.replace.checked ? { replace: true } : {}) });
       this.name.value = "";
       this.replace.checked = false;
       this.host.say(`The search ${job.name} has begun.`);
@@ -175,37 +189,38 @@ export class JobsPanel {
 
   private async open(name: string) {
     const opened = await api.open(name);
-    if (opened.ask) {
-      const { version: _, ...task } = opened.ask;
-      this.host.take(task);
-    } else this.host.say(`${name} is shown below; it cannot be drawn anew here: ${opened.why_not ?? ""}`);
-    if (opened.candidates.length > 0) this.details(name, 1);
+    const task = opened.ask ? taskOf({ ...opened.ask, version: 0 }) : null;
+    if (task) this.host.take(task);
+    else this.host.say(`${name} is shown below; it cannot be drawn anew here: ${opened.why_not ?? ""}`);
+    if (opened.candidates.length > 0) this.details(name, task);
   }
 
-  private chosen(): api.Source[] {
+  /** What is compared; of what is drawn the names are noted. */
+  private compared(named: Map<string, string>): api.Source[] {
     const of = [...this.rows].filter(([, row]) => row.chosen.checked).map(([name]): api.Source => ({ job: { name, rank: 1 } }));
-    const shown = this.host.chosen();
-    if (shown && of.length < 2) {
-      const { linkage, crank_deg, t1_at } = shown;
-      of.push({ drawn: { ask: this.host.task(), linkage, crank_deg, t1_at } });
-    }
-    return of;
+    const [pinned, chosen] = [this.host.pinned(), this.host.chosen()];
+    const drawn = [...pinned, ...(chosen && !pinned.includes(chosen) ? [chosen] : [])];
+    // The studio calls them by their numbers in this list.
+    drawn.forEach((one, i) => named.set(`drawing ${of.length + i + 1}`, pinned.includes(one) ? `pinned ${i + 1}` : "on the board"));
+    return [...of, ...drawn.map(api.drawn)];
   }
 
   private async compare() {
     try {
-      const { rows, unit, notes } = await api.compared(this.chosen());
+      const named = new Map<string, string>();
+      const { rows, unit, notes } = await api.compared(this.compared(named));
+      const own = (text: string) => text.replace(/(drawing \d+)(:\d+)?/g, (whole, name) => named.get(name) ?? whole);
       const cell = (value: number | null, of = "") => element("td", { class: "n" }, [value === null ? "–" : `${figure(value, 4)}${of}`]);
       const head = ["linkage", `rms${unit ? ` ${unit}` : ""}`, "largest", "transmission", "ratio", "size", "type", "accepted"];
       this.comparison.replaceChildren(
         element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" }, [element("table", {}, [
           element("thead", {}, [element("tr", {}, head.map((text) => element("th", { scope: "col" }, [text])))]),
           element("tbody", {}, rows.map((row) => element("tr", {}, [
-            element("th", { scope: "row" }, [`${row.rank}. ${row.label}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
+            element("th", { scope: "row" }, [`${row.rank}. ${own(row.label)}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
             cell(row.figures.link_ratio), cell(row.figures.size), element("td", {}, [row.type]), element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
           ]))),
         ])]),
-        ...notes.map((note) => element("p", { class: "quiet" }, [note])),
+        ...notes.map((note) => element("p", { class: "quiet" }, [own(note)])),
       );
     } catch (error) {
       this.host.say(`These cannot be compared: ${api.wordsOf(error)}`, true);
@@ -214,7 +229,7 @@ export class JobsPanel {
 
   private async compareAsPage() {
     try {
-      api.saved(await api.comparedAs(this.chosen(), "html"), "comparison.html");
+      api.saved(await api.comparedAs(this.compared(new Map()), "html"), "comparison.html");
     } catch (error) {
       this.host.say(`These cannot be compared: ${api.wordsOf(error)}`, true);
     }

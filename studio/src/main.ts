@@ -1,24 +1,28 @@
 // The page: the target and what is asked of the linkage on one side, the studio's answers on the other.
 
 import { figure } from "../../src/report/html/player/svg.mjs";
+import * as api from "./api";
 import { Board, type Tool } from "./board";
+import { type Choice, followed, placeOf } from "./choice";
 import { Connection } from "./connection";
 import { Desk } from "./desk";
 import { EXAMPLES } from "./examples";
 import { Moving, movingOf } from "./figures";
-import { taskOfText, watchFiles } from "./files";
+import { taskOfText, takesText, watchFiles } from "./files";
+import { changing } from "./focus";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
 import { Steps, remember, remembered } from "./memory";
-import type { Answer, Point, Shown, Task } from "./messages";
+import type { Answer, Point, Solution, Task } from "./messages";
 import { Nine } from "./nine";
 import { Pace } from "./pace";
 import { PhotographPanel } from "./photograph";
 import { fillRequirements, listenToRequirements } from "./requirements";
+import { Stays } from "./stays";
 import { Strip, inWords } from "./strip";
 import { Table } from "./table";
 import { moved } from "./target";
-import { settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt, withoutStale } from "./task";
+import { drawnAnew, pathAlone, settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt, withoutStale } from "./task";
 import { type Placed, Underlay } from "./underlay";
 import { Voice } from "./voice";
 
@@ -41,12 +45,16 @@ class Page {
   private task: Task = EXAMPLES[0][1];
   private steps = new Steps<{ task: Task; photo: Placed | null }>();
   private version = 0;
+  /** The edit that began this target: what is said of earlier ones belongs to another. */
+  private since = 0;
+  private heard = 0;
   private answer: Answer | null = null;
-  private chosen = 0;
-  private pinned: Shown[] = [];
+  private choice: Choice = null;
+  private pinned: Solution[] = [];
+  /** What the board and the strip show: the candidates, then what is pinned. */
+  private moving: Moving[] = [];
   private hints = true;
   private begunWith = "null";
-  private shownAll: Moving[] = [];
   private fitNext = true;
   private fitted = false;
   private filling: ReturnType<typeof setTimeout> | undefined;
@@ -63,11 +71,18 @@ class Page {
   private underlay = new Underlay(() => this.showUnderlay());
   private photograph = new PhotographPanel(this.underlay, () => this.board, (tool) => this.use(tool), (text) => this.say(text), () => this.note());
   private table = new Table(byId("table"), (task) => this.replace(task), (text) => this.say(text));
-  private nine = new Nine(byId("nine"), () => this.draw());
+  private nine = new Nine(byId("nine"), () => {
+    this.choice = followed(this.choice, this.candidates());
+    this.draw();
+  });
   private helps = new Helps(byId("helps"), (make, said) => {
     this.replace(make(this.task));
     this.say(`Changed: ${said}.`);
   });
+  private stays = new Stays(byId("stays"), () => this.replace(pathAlone(this.task)));
+  private coordinates = byId<HTMLTextAreaElement>("coordinates");
+  /** What the page has written there; anything else is the user's, until it is taken. */
+  private written = "";
   private kept = new Kept(byId("kept"), (make) => this.replace(make(this.task)));
 
   constructor() {
@@ -76,11 +91,16 @@ class Page {
         this.fitNext = true;
         this.pace.penUp();
         this.guide.done("draw");
-        this.replace({ ...withPoints(this.task, points, closed), name: "drawing", source: undefined }, { fresh: true });
+        this.replace(drawnAnew(this.task, points, closed), { fresh: true });
+        this.stays.show(this.task);
       },
       grasp: () => this.note(),
+      letGo: () => {
+        const before = this.steps.giveUp();
+        if (before) this.restore(before);
+      },
       drag: (index, to, last) => this.drag(index, to, last),
-      add: (at) => this.replace(withAdded(this.task, this.task.points.length - 1, at)),
+      add: (at, after) => this.replace(withAdded(this.task, after, at)),
       remove: (index) => this.replace(withRemoved(this.task, index)),
       box: (kind, box, last) => {
         this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
@@ -92,32 +112,30 @@ class Page {
     this.strip = new Strip(byId("strip"), (i) => this.choose(i), (i) => this.pin(i));
     this.desk = new Desk(byId("desk"), byId("share"), {
       task: () => this.task,
-      chosen: () => this.shownAll[this.chosen]?.shown ?? null,
+      chosen: () => this.chosen(),
+      pinned: () => this.pinned,
       take: (task) => {
         this.fitNext = true;
         this.replace(taskOf({ ...task, version: 0 }), { fresh: true });
       },
-      keep: (shown) => this.keepShown(shown),
+      keep: (one) => this.keepShown(one),
     });
     this.listen();
   }
 
   async begin() {
     const kept = remembered();
+    if (kept) ({ task: this.task, pinned: this.pinned, hints: this.hints, begunWith: this.begunWith } = kept);
     try {
-      const reply = await fetch("/beginning.json");
-      this.begunWith = reply.ok ? await reply.text() : "null";
+      const begunWith = await api.beginning();
+      const given = JSON.parse(begunWith) as Task | null;
+      if (given && this.begunWith !== begunWith) {
+        if (kept) this.note();
+        this.task = taskOf({ ...given, version: 0 });
+      }
+      this.begunWith = begunWith;
     } catch {
-      // The studio has ended: what is remembered is shown all the same.
-    }
-    const given = JSON.parse(this.begunWith) as (Task & { version?: number }) | null;
-    if (given && kept?.begunWith !== this.begunWith) {
-      this.task = taskOf({ ...given, version: 0 });
-      this.hints = kept?.hints ?? true;
-    } else if (kept) {
-      this.task = kept.task;
-      this.pinned = kept.pinned;
-      this.hints = kept.hints;
+      // The studio has ended or is busy: what is remembered is shown all the same, and what was given waits for a reload.
     }
     byId("hints").hidden = !this.hints;
     this.board.show(this.task, null, []);
@@ -125,7 +143,7 @@ class Page {
     this.showUnderlay();
     this.connection = new Connection((answer) => this.hear(answer), (open, tries) => {
       document.body.dataset.connected = String(open);
-      if (!open && tries > 1) this.say("The studio does not answer. Start it again with `linkwright studio` and open the address that it prints; your drawing is kept here.");
+      if (!open && tries > 1) void api.whyClosed().then((why) => document.body.dataset.connected === "false" && this.say(why));
     });
     this.put(this.task, {});
     void this.desk.begin();
@@ -144,13 +162,12 @@ class Page {
 
   /** A change that can be undone. */
   private change(part: Partial<Task>, how: { fresh?: boolean } = {}) {
-    this.note();
-    this.put({ ...this.task, ...part }, how);
+    this.replace({ ...this.task, ...part }, how);
   }
 
   /** Another task in place of the one that stands, which can be undone. */
   private replace(task: Task, how: { fresh?: boolean } = {}) {
-    this.note();
+    if (JSON.stringify(task) !== JSON.stringify(this.task)) this.note();
     this.put(task, how);
   }
 
@@ -162,6 +179,7 @@ class Page {
 
   private use(tool: Tool) {
     this.board.tool = tool;
+    if (tool === "points" && this.task.points.length > 0) this.desk.say("A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.");
     for (const button of document.querySelectorAll("[id^=tool-]")) button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
   }
 
@@ -173,6 +191,7 @@ class Page {
   private async takeText(text: string, name: string) {
     const read = await taskOfText(text, name, this.task, input("samples").valueAsNumber || undefined);
     if (typeof read === "string") return this.say(`These are no coordinates: ${read}`);
+    if (text === this.coordinates.value) this.written = text;
     this.fitNext = true;
     this.replace(read.task, { fresh: true });
     return this.say(`Taken: ${read.said}.`);
@@ -184,12 +203,18 @@ class Page {
     if (edited.expect && !task.expect) this.desk.say("The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.");
     this.task = task;
     this.version += 1;
-    if (how.fresh) {
-      this.chosen = 0;
+    const short = task.points.length < 3;
+    if (how.fresh || short) {
+      this.since = this.version;
+      this.choice = null;
       this.answer = null;
+      this.nine.hear(null);
+    }
+    if (how.fresh) {
       this.fitted = false;
       this.board.touched = false;
     }
+    this.stays.show(null);
     // The controls and the strip can wait for a hand that moves; the board cannot.
     clearTimeout(this.filling);
     if (how.moving) {
@@ -200,14 +225,10 @@ class Page {
       this.settle();
     }
     document.body.dataset.asked = String(this.version);
-    if (task.points.length < 3) {
-      this.answer = null;
-      this.draw();
-      this.say("A path has at least three points: draw on the board, or click points.");
-      return;
-    }
-    const { moving, fresh } = how;
-    this.connection?.send({ ...task, version: this.version, ...(moving ? { moving } : {}), ...(fresh ? { fresh } : {}) });
+    if (short) this.say("A path has at least three points: draw on the board, or click points.");
+    // Too few points are sent all the same: they end the search. Until a new target is answered it is said to be new.
+    const fresh = this.heard < this.since;
+    this.connection?.send({ ...task, version: this.version, ...(how.moving ? { moving: true } : {}), ...(fresh ? { fresh } : {}) });
   }
 
   /** Brings the controls to what the task says, and remembers it. */
@@ -217,16 +238,20 @@ class Page {
   }
 
   private hear(answer: Answer) {
+    if (answer.version !== 0 && answer.version < this.since) return;
+    this.heard = answer.version || this.heard;
     if (answer.doing === "refused") {
       if (answer.version !== 0 && answer.version !== this.version) return;
-      this.say(`This cannot be searched: ${answer.said}`);
+      if (this.task.points.length >= 3) this.say(`This cannot be searched: ${answer.said}`);
       document.body.dataset.doing = "refused";
       return;
     }
     this.answer = answer;
     this.pace.answered(answer, this.version);
     this.nine.hear(answer);
-    if (this.chosen < this.count() || this.chosen >= this.shownAll.length) this.chosen = Math.min(this.chosen, Math.max(answer.candidates.length - 1, 0));
+    const choice = followed(this.choice, this.candidates());
+    if (this.choice && !choice && answer.candidates.length > 0) this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
+    this.choice = choice;
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
     this.draw();
@@ -250,27 +275,36 @@ class Page {
     return this.nine.filtered(this.answer?.candidates ?? []);
   }
 
-  private count() {
-    return this.candidates().length;
+  /** What the strip shows: candidates for what stands, then what is pinned, each with its own task. */
+  private all(): Solution[] {
+    return [...this.candidates().map((shown) => ({ shown, task: this.task })), ...this.pinned];
+  }
+
+  private place() {
+    return placeOf(this.choice, this.candidates(), this.pinned);
+  }
+
+  private chosen(): Solution | null {
+    return this.all()[this.place()] ?? null;
   }
 
   private draw() {
-    const candidates = this.candidates();
-    const { points } = this.task;
-    this.shownAll = [...candidates, ...this.pinned].map((shown) => movingOf(shown, points));
+    const all = this.all();
+    const found = all.length - this.pinned.length;
+    this.moving = all.map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
-    this.strip.show(this.shownAll, candidates.length, this.chosen, this.task.unit, points, this.task.closed);
-    byId("nothing").hidden = this.shownAll.length > 0;
+    this.strip.show(this.moving, all.map(({ task }) => task), found, this.place());
+    byId("nothing").hidden = all.length > 0;
     this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
     this.showSteps();
-    byId<HTMLButtonElement>("linkage-file").disabled = !this.shownAll[this.chosen];
+    byId<HTMLButtonElement>("linkage-file").disabled = !this.chosen();
     this.strip.pose(this.part);
   }
 
   /** The board alone: the target as it stands, the linkage that was last answered. */
   private drawBoard() {
-    const shown = this.shownAll[this.chosen] ?? null;
-    const pins = this.shownAll.slice(-this.pinned.length || this.shownAll.length);
+    const shown = this.moving[this.place()] ?? null;
+    const pins = this.moving.slice(this.moving.length - this.pinned.length);
     this.board.show(this.task, shown, pins.filter((one) => one !== shown));
     this.board.pose(this.part);
   }
@@ -281,28 +315,29 @@ class Page {
   }
 
   private choose(index: number) {
-    this.chosen = index;
+    const one = this.all()[index];
+    this.choice = index < this.candidates().length ? { candidate: one.shown } : { pin: one };
     this.draw();
     this.desk.chose();
   }
 
   /** Keeps a linkage to compare others with. */
-  private keepShown(shown: Shown) {
-    this.pinned = [...this.pinned, shown].slice(-MOST_PINNED);
+  private keepShown(one: Solution) {
+    if (this.pinned.length >= MOST_PINNED) return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
+    this.pinned = [...this.pinned, one];
     this.keep();
     this.draw();
   }
 
   /** Pins a candidate to compare others with it, or lets a pinned one go. */
   private pin(index: number) {
-    const found = this.count();
-    if (index >= found) {
-      this.pinned = this.pinned.filter((_, i) => i !== index - found);
-      if (this.chosen >= found) this.chosen = 0;
-    } else if (this.answer) {
+    const one = this.all()[index];
+    if (index < this.candidates().length) {
       this.guide.done("pin");
-      return this.keepShown(this.candidates()[index]);
+      return this.keepShown(one);
     }
+    this.pinned = this.pinned.filter((pin) => pin !== one);
+    if (this.choice && "pin" in this.choice && this.choice.pin === one) this.choice = null;
     this.keep();
     this.draw();
   }
@@ -338,13 +373,14 @@ class Page {
     byId<HTMLSelectElement>("type").value = key ?? "as-given";
     byId("as-given").hidden = key !== undefined;
     for (const unit of document.querySelectorAll(".unit")) unit.textContent = task.unit ?? "";
-    const example = EXAMPLES.findIndex(([, one]) => one.name === task.name);
-    byId<HTMLSelectElement>("example-choice").value = example < 0 ? "" : String(example);
     fillRequirements(task);
     this.kept.show(task);
     this.table.show(task);
-    const text = byId<HTMLTextAreaElement>("coordinates");
-    if (document.activeElement !== text) text.value = task.points.map((p) => p.join(", ")).join("\n");
+    const text = this.coordinates;
+    if (document.activeElement !== text && [this.written, ""].includes(text.value)) {
+      text.value = task.points.map((p) => p.join(", ")).join("\n");
+      this.written = text.value;
+    }
     byId("point-count").textContent = String(task.points.length);
   }
 
@@ -359,12 +395,11 @@ class Page {
     click("clear", () => this.replace(withPoints(this.task, [], this.task.closed), { fresh: true }));
     const choice = byId<HTMLSelectElement>("example-choice");
     choice.replaceChildren(new Option("choose one", ""), ...EXAMPLES.map(([name], i) => new Option(name, String(i))));
-    const example = () => {
+    click("example", () => {
+      if (choice.value === "") return this.desk.say("Choose first which example.");
       this.fitNext = true;
-      this.replace(EXAMPLES[Number(choice.value || 0)][1], { fresh: true });
-    };
-    click("example", example);
-    choice.addEventListener("change", example);
+      return this.replace(EXAMPLES[Number(choice.value)][1], { fresh: true });
+    });
     listenToRequirements(() => this.task, (task) => this.replace(task), () => this.board.fit());
     watchFiles(byId("board"), input("file"), (text, name) => void this.takeText(text, name), (file) => void this.photograph.take(file));
     click("fit", () => this.board.fit());
@@ -377,14 +412,15 @@ class Page {
     this.showPlaying();
     click("hide-hints", () => {
       this.hints = false;
-      byId("hints").hidden = true;
+      changing(byId("hints"), () => { byId("hints").hidden = true; }, this.board.svg);
       this.keep();
     });
-    click("problem-file", () => void this.save("/problem.toml", { ...this.task, version: this.version }, this.task.name));
+    click("problem-file", () => void this.save(this.task.name, api.problemOf(this.task)));
     click("linkage-file", () => {
-      const shown = this.shownAll[this.chosen]?.shown;
-      const name = `${this.task.name}-${this.chosen + 1}`.slice(-64);
-      if (shown) void this.save("/linkage.toml", { name, unit: this.task.unit, linkage: shown.linkage }, name);
+      const [chosen, place, found] = [this.chosen(), this.place(), this.candidates().length];
+      if (!chosen) return;
+      const name = `${chosen.task.name}-${place < found ? place + 1 : `pinned-${place - found + 1}`}`.slice(-64);
+      void this.save(name, api.linkageOf(name, chosen));
     });
     input("closed").addEventListener("change", () => this.replace(settled({ ...this.task, closed: input("closed").checked })));
     const number = (id: string, key: "tolerance" | "transmission_deg_min" | "link_ratio_max") => {
@@ -398,10 +434,9 @@ class Page {
     number("ratio", "link_ratio_max");
     const type = byId<HTMLSelectElement>("type");
     type.addEventListener("change", () => this.change({ types: TYPES[type.value] ?? this.task.types }));
-    click("take-coordinates", () => void this.takeText(byId<HTMLTextAreaElement>("coordinates").value, ""));
+    click("take-coordinates", () => void this.takeText(this.coordinates.value, ""));
     document.addEventListener("keydown", (event) => {
-      const typing = (event.target as Element).closest("input, textarea, select");
-      if (typing || !(event.ctrlKey || event.metaKey)) return;
+      if (takesText(event.target) || !(event.ctrlKey || event.metaKey)) return;
       const key = event.key.toLowerCase();
       if (key !== "z" && key !== "y") return;
       event.preventDefault();
@@ -425,24 +460,20 @@ class Page {
 
   private back(way: "undo" | "redo") {
     const then = way === "undo" ? this.steps.undo(this.now()) : this.steps.redo(this.now());
-    if (!then) return;
+    if (then) this.restore(then);
+  }
+
+  private restore(then: { task: Task; photo: Placed | null }) {
     if (then.photo) this.underlay.place(then.photo);
     this.put(then.task, {});
   }
 
-  private async save(path: string, what: unknown, name: string) {
+  private async save(name: string, text: Promise<string>) {
     try {
-      const reply = await fetch(path, { method: "POST", body: JSON.stringify(what), headers: { "Content-Type": "application/json" } });
-      const text = await reply.text();
-      if (!reply.ok) return this.say(`This cannot be saved: ${text.trim()}`);
-      const link = document.createElement("a");
-      link.href = URL.createObjectURL(new Blob([text], { type: "application/toml" }));
-      link.download = `${name}.toml`;
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
-      return this.say(`Saved as ${name}.toml.`);
-    } catch {
-      return this.say("The studio does not answer: nothing was saved.");
+      api.saved(new Blob([await text], { type: "application/toml" }), `${name}.toml`);
+      this.say(`Saved as ${name}.toml.`);
+    } catch (error) {
+      this.say(`This cannot be saved: ${api.wordsOf(error)}`);
     }
   }
 }

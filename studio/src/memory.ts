@@ -1,33 +1,45 @@
 // What is remembered: steps to go back, and everything over a reload.
 
-import type { Shown, Task } from "./messages";
+import type { Solution, Task } from "./messages";
 
 const KEY = "linkwright-studio";
 const STEPS = 200;
 
 export interface Remembered {
   task: Task;
-  pinned: Shown[];
+  pinned: Solution[];
   begunWith: string;
   hints: boolean;
 }
 
-export function remembered(): Remembered | null {
+/** What this tab has kept under a name; of a new tab what the latest has. */
+export function kept<What>(key: string): What | null {
   try {
-    const kept = JSON.parse(localStorage.getItem(KEY) ?? "null") as Remembered | null;
-    return kept && Array.isArray(kept.task?.points) && Array.isArray(kept.pinned) ? kept : null;
+    return JSON.parse(sessionStorage.getItem(key) ?? localStorage.getItem(key) ?? "null") as What | null;
   } catch {
     return null;
   }
 }
 
-export function remember(what: Remembered) {
-  try {
-    localStorage.setItem(KEY, JSON.stringify(what));
-  } catch {
-    // A browser that keeps nothing: the page works until it is closed.
+/** Keeps something for this tab, and for the next new one. */
+export function keep(key: string, what: unknown) {
+  const text = JSON.stringify(what);
+  for (const store of [() => sessionStorage, () => localStorage]) {
+    try {
+      store().setItem(key, text);
+    } catch {
+      // A browser that keeps nothing, or not so much: the page works until it is closed.
+    }
   }
 }
+
+export function remembered(): Remembered | null {
+  const what = kept<Remembered>(KEY);
+  if (!what || !Array.isArray(what.task?.points) || !Array.isArray(what.pinned)) return null;
+  return { ...what, pinned: what.pinned.filter((one) => one?.shown?.linkage && Array.isArray(one.task?.points)) };
+}
+
+export const remember = (what: Remembered) => keep(KEY, what);
 
 /** The steps back and forth between states. */
 export class Steps<State> {
@@ -41,6 +53,12 @@ export class Steps<State> {
     this.back.push(text);
     if (this.back.length > STEPS) this.back.shift();
     this.forth = [];
+  }
+
+  /** The state before the latest change, which is given up and not to be redone. */
+  giveUp(): State | null {
+    const text = this.back.pop();
+    return text === undefined ? null : (JSON.parse(text) as State);
   }
 
   undo(now: State): State | null {

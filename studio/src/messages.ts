@@ -59,6 +59,12 @@ export interface Shown {
   certified_within?: number;
 }
 
+/** A linkage with what was asked of it. */
+export interface Solution {
+  shown: Shown;
+  task: Task;
+}
+
 /** The linkages through nine points, counted. */
 export interface Counted {
   classes: number;

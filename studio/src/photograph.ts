@@ -2,6 +2,7 @@
 
 import { figure } from "../../src/report/html/player/svg.mjs";
 import type { Board, Tool } from "./board";
+import { changing } from "./focus";
 import type { Underlay } from "./underlay";
 
 const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -17,9 +18,16 @@ export class PhotographPanel {
     byId("photo-remove").addEventListener("click", () => {
       underlay.remove();
       this.use("draw");
+      input("photo").focus();
     });
-    input("photo-opacity").addEventListener("input", () => underlay.place({ opacity: input("photo-opacity").valueAsNumber }));
-    input("photo-opacity").addEventListener("pointerdown", () => this.note());
+    // A change by many small steps is one: it begins with the first and ends when the control is let go.
+    let begun = false;
+    input("photo-opacity").addEventListener("input", () => {
+      if (!begun) this.note();
+      begun = true;
+      underlay.place({ opacity: input("photo-opacity").valueAsNumber });
+    });
+    input("photo-opacity").addEventListener("change", () => { begun = false; });
     byId("set-length").addEventListener("click", () => this.setLength());
     input("known-length").addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.setLength();
@@ -57,8 +65,10 @@ export class PhotographPanel {
   }
 
   private setLength() {
+    const length = input("known-length").valueAsNumber;
+    if (!this.underlay.canBe(length)) return this.say("The length must be a number above 0.");
     this.note();
-    if (!this.underlay.setLength(input("known-length").valueAsNumber)) return this.say("The length must be a number above 0.");
+    changing(byId("photo-length"), () => this.underlay.setLength(length), this.board().svg);
     this.use("draw");
     this.board().fit();
     return this.say("The photograph has its scale. Draw over it.");

@@ -2,7 +2,8 @@
 
 import { element, figure, setAll, shape } from "../../src/report/html/player/svg.mjs";
 import { Figure, Moving } from "./figures";
-import type { Point, Shown } from "./messages";
+import { changing, setChildren } from "./focus";
+import type { Point, Shown, Task } from "./messages";
 
 const [W, H] = [150, 96];
 
@@ -36,8 +37,7 @@ class Card {
   seen = false;
   private drawn: unknown[] = [];
   private moving: Moving | null = null;
-  private points: Point[] = [];
-  private closed = false;
+  private task: Task | null = null;
   private key = "";
   private picture = new Figure(0.55);
   private svg = shape("svg", { class: "stage", viewBox: `0 0 ${W} ${H}`, width: W, height: H, "aria-hidden": "true" });
@@ -55,10 +55,11 @@ class Card {
     this.pin.addEventListener("click", onPin);
   }
 
-  show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
+  show(moving: Moving, name: string, task: Task, chosen: boolean, pinned: boolean) {
     const { shown } = moving;
-    Object.assign(this, { moving, points, closed });
+    Object.assign(this, { moving, task });
     if (this.seen) this.draw();
+    const { unit } = task;
     const texts = [name, `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`, inWords(shown)];
     const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
@@ -72,9 +73,11 @@ class Card {
 
   /** Draws what is to be shown, unless it is drawn already. */
   draw() {
-    const { moving, points, closed } = this;
+    const { moving, task } = this;
+    if (!moving || !task) return;
+    const { points, closed } = task;
     const now = [moving, points, closed];
-    if (!moving || now.every((one, i) => one === this.drawn[i])) return;
+    if (now.every((one, i) => one === this.drawn[i])) return;
     this.drawn = now;
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
@@ -91,13 +94,15 @@ class Card {
 }
 
 export class Strip {
-  private cards: Card[] = [];
-  private count = 0;
+  /** Those of candidates and those of what is pinned: a pin's card stays its own when candidates come and go. */
+  private cards: [Card[], Card[]] = [[], []];
+  private shown: Card[] = [];
+  private found = 0;
   private part = 0;
   /** Only what is in sight is drawn and moves. */
   private sight = new IntersectionObserver((entries) => {
     for (const entry of entries) {
-      const card = this.cards.find((one) => one.node === entry.target);
+      const card = this.cards.flat().find((one) => one.node === entry.target);
       if (!card) continue;
       card.seen = entry.isIntersecting;
       if (card.seen) {
@@ -109,27 +114,32 @@ export class Strip {
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
-  /** Shows candidates, then what is pinned. */
-  show(all: Moving[], found: number, chosen: number, unit: string | undefined, points: Point[], closed: boolean) {
-    while (this.cards.length < all.length) {
-      const i = this.cards.length;
-      const card = new Card(() => this.pick(i), () => this.pin(i));
-      this.cards.push(card);
-      this.sight.observe(card.node);
-    }
+  private card(kind: 0 | 1, i: number): Card {
+    const place = () => (kind === 0 ? i : this.found + i);
+    const card = this.cards[kind][i] ?? new Card(() => this.pick(place()), () => this.pin(place()));
+    if (!this.cards[kind][i]) this.sight.observe(card.node);
+    this.cards[kind][i] = card;
+    return card;
+  }
+
+  /** Shows candidates, then what is pinned, each over the target that it was found for. */
+  show(all: Moving[], tasks: Task[], found: number, chosen: number) {
+    const before = this.shown;
+    this.found = found;
+    this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.cards[i].show(moving, name, unit, i === chosen, i >= found, points, closed);
+      this.shown[i].show(moving, name, tasks[i], i === chosen, i >= found);
     });
-    if (this.count !== all.length || this.list.childElementCount !== all.length) {
-      this.list.replaceChildren(...this.cards.slice(0, all.length).map((card) => card.node));
+    if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
+      const heading = this.list.parentElement?.querySelector("h2") ?? this.list;
+      changing(this.list, () => setChildren(this.list, this.shown.map((card) => card.node)), heading);
     }
-    this.count = all.length;
     this.list.classList.toggle("many", all.length > 12);
   }
 
   pose(part: number) {
     this.part = part;
-    for (let i = 0; i < this.count; i += 1) if (this.cards[i].seen) this.cards[i].pose(part);
+    for (const card of this.shown) if (card.seen) card.pose(part);
   }
 }

@@ -1,6 +1,7 @@
 // The points as a table to type in: coordinates, and where they are asked for crank angle, tolerance and weight.
 
 import { element } from "../../src/report/html/player/svg.mjs";
+import { changing } from "./focus";
 import type { Point, Task } from "./messages";
 import { withAdded, withMoved, withRemoved } from "./task";
 
@@ -100,14 +101,16 @@ export class Table {
     const columns = columnsOf(task);
     const rows = Math.min(PAGE, n - this.from);
     const shape = `${columns.join()} ${this.from} ${rows}`;
-    if (shape !== this.shape) this.build(columns, rows);
+    if (shape !== this.shape) changing(this.body, () => this.build(columns, rows), this.add);
     this.shape = shape;
     this.inputs.forEach((cells, i) => cells.forEach((input, j) => {
       if (document.activeElement !== input) input.value = String(Number(valueAt(task, columns[j], this.from + i).toPrecision(9)));
     }));
-    this.pages.hidden = n <= PAGE;
-    this.earlier.disabled = this.from === 0;
-    this.later.disabled = this.from + PAGE >= n;
+    changing(this.pages, () => {
+      this.pages.hidden = n <= PAGE;
+      this.earlier.disabled = this.from === 0;
+      this.later.disabled = this.from + PAGE >= n;
+    }, this.add);
     this.label.textContent = `${this.from}–${this.from + rows - 1} of ${n}`;
   }
 

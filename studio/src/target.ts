@@ -1,6 +1,7 @@
 // Targets: strokes of the hand made even, texts of coordinates read.
 
 import type { Point } from "./messages";
+import { roundTo, sizeOf } from "./task";
 
 /** Points of a drawn curve. */
 export const DRAWN = 60;
@@ -48,13 +49,8 @@ function smoothed(points: Point[], times: number, closed: boolean): Point[] {
   return line;
 }
 
-/** A number without digits that nobody drew: a thousandth of the size is the last that counts. */
-function rounded(points: Point[]): Point[] {
-  const size = Math.max(...points.map((p) => Math.max(Math.abs(p[0]), Math.abs(p[1]))), 1e-9);
-  const unit = 10 ** (Math.floor(Math.log10(size)) - 4);
-  const round = (x: number) => Number((Math.round(x / unit) * unit).toPrecision(12));
-  return points.map((p): Point => [round(p[0]), round(p[1])]);
-}
+/** Without digits that nobody drew: a thousandth of the extent is the last that counts, wherever the points lie. */
+const rounded = (p: Point, extent: number): Point => [roundTo(p[0], extent, 5), roundTo(p[1], extent, 5)];
 
 /** A stroke as a target; null where it is too short to be meant. Ends that meet close it. */
 export function ofStroke(stroke: Point[], least: number): { points: Point[]; closed: boolean } | null {
@@ -62,32 +58,61 @@ export function ofStroke(stroke: Point[], least: number): { points: Point[]; clo
   if (stroke.length < 8 || !(length > least)) return null;
   const closed = apart(stroke[0], stroke[stroke.length - 1]) < 0.12 * length;
   const fine = smoothed(resampled(stroke, 4 * DRAWN, closed), 24, closed);
-  return { points: rounded(resampled(fine, DRAWN, closed)), closed };
+  const even = resampled(fine, DRAWN, closed);
+  return { points: even.map((p) => rounded(p, sizeOf(even))), closed };
 }
 
 /** The points with one of them moved; of a dense curve its neighbours come along, less and less. */
 export function moved(points: Point[], index: number, to: Point, closed: boolean): Point[] {
   const n = points.length;
   const reach = n > SOFT ? Math.round(n / 9) : 0;
+  const extent = sizeOf(points);
   const [dx, dy] = [to[0] - points[index][0], to[1] - points[index][1]];
-  return rounded(points.map((p, i): Point => {
+  return points.map((p, i): Point => {
     let far = Math.abs(i - index);
     if (closed) far = Math.min(far, n - far);
-    const part = far > reach ? 0 : 0.5 + 0.5 * Math.cos((Math.PI * far) / (reach + 1));
-    return [p[0] + part * dx, p[1] + part * dy];
-  }));
+    if (far > reach) return p;
+    const part = 0.5 + 0.5 * Math.cos((Math.PI * far) / (reach + 1));
+    return rounded([p[0] + part * dx, p[1] + part * dy], extent);
+  });
 }
 
-/** Points of a text: two numbers a line, apart by a comma or blanks; a line of words (a header) is passed over. */
+/** The point of the path after which one is added that was clicked so near to the line, if it was. */
+export function segmentAt(points: Point[], at: Point, closed: boolean, near: number): number | null {
+  let [best, least] = [null as number | null, near];
+  points.forEach((p, i) => {
+    const q = points[i + 1] ?? (closed ? points[0] : null);
+    if (!q) return;
+    const [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+    const part = Math.min(Math.max(((at[0] - p[0]) * dx + (at[1] - p[1]) * dy) / (dx * dx + dy * dy || 1), 0), 1);
+    const far = apart(at, [p[0] + part * dx, p[1] + part * dy]);
+    if (far < least) [best, least] = [i, far];
+  });
+  return best;
+}
+
+/** What is wrong with a line that is not two numbers, and the remedy. */
+function wrongWith(line: string, cells: string[]): string {
+  const shown = line.slice(0, 40);
+  if (/;/.test(line)) return `\`${shown}\` has a semicolon: write 1.5, 2.5 with decimal points and a comma between`;
+  if (/\d,\d/.test(line) && (cells.length > 2 || cells.some((cell) => cell.includes(",")))) return `\`${shown}\`: if these are decimal commas write a decimal point, 1.5`;
+  if (cells.length > 2) return `\`${shown}\` has ${cells.length} cells: a header such as x,y,crank_deg must say what they are`;
+  return `\`${shown}\` is not two numbers`;
+}
+
+/**
+ * Points of a text: two numbers a line, apart by a tab, a comma or blanks; a first line of words (a header) is passed
+ * over. What could be read in two ways is refused.
+ */
 export function ofText(text: string): Point[] | string {
   const points: Point[] = [];
   for (const [i, raw] of text.split(/\r?\n/).entries()) {
     const line = raw.split("#")[0].trim();
     if (line === "") continue;
-    const cells = line.split(/[\s,;]+/).filter((cell) => cell !== "");
-    const numbers = cells.slice(0, 2).map(Number);
+    const cells = line.split(/\t/.test(line) ? /\s*\t\s*/ : /,/.test(line) ? /\s*,\s*/ : /\s+/);
+    const numbers = cells.map((cell) => (cell === "" ? NaN : Number(cell)));
     if (numbers.length === 2 && numbers.every(Number.isFinite)) points.push([numbers[0], numbers[1]]);
-    else if (points.length > 0 || !cells.every((cell) => /^[a-z_]+$/i.test(cell))) return `line ${i + 1} is not two numbers: ${line.slice(0, 40)}`;
+    else if (points.length > 0 || !cells.every((cell) => /^[a-z_]+$/i.test(cell))) return `line ${i + 1}: ${wrongWith(line, cells)}`;
   }
   return points;
 }

@@ -33,6 +33,13 @@ export function settled(task: Task): Task {
 /** A task with other points in place of all its points. */
 export const withPoints = (task: Task, points: Point[], closed: boolean): Task => settled({ ...task, points, closed });
 
+/** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
+export const drawnAnew = (task: Task, points: Point[], closed: boolean): Task =>
+  ({ ...task, points, closed, name: "drawing", source: undefined, timing: undefined, tolerances: undefined, weights: undefined, raw: undefined, kept: undefined, method: undefined });
+
+/** The path alone. */
+export const pathAlone = ({ name, unit, source, points, closed, seed }: Task): Task => ({ name, unit, source, points, closed, types: [], seed });
+
 /** Points that have moved, as many as before. */
 export const withMoved = (task: Task, points: Point[]): Task => settled({ ...task, points });
 
@@ -71,8 +78,7 @@ export function withTiming(task: Task, offset: "none" | "free" | "fixed" | "grou
 
 /** A hundredth of the size, to two digits: a tolerance to begin with. */
 export function usualTolerance(task: Task): number {
-  const [left, low, right, high] = boxOf(task.points) ?? [0, 0, 100, 100];
-  return Number((0.01 * Math.max(Math.hypot(right - left, high - low), 1e-9)).toPrecision(2));
+  return Number((0.01 * (task.points.length > 0 ? sizeOf(task.points) : 100)).toPrecision(2));
 }
 
 export function withTolerances(task: Task, each: boolean): Task {
@@ -97,7 +103,19 @@ export function boxOf(points: Point[]): Box | null {
   return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
 }
 
-const rounded = (box: Box) => box.map((value) => Number(value.toPrecision(3))) as Box;
+/** How large a target is: the diagonal of its box. */
+export function sizeOf(points: Point[]): number {
+  const [left, low, right, high] = boxOf(points) ?? [0, 0, 0, 0];
+  return Math.hypot(right - left, high - low) || 1;
+}
+
+/** A number to so many digits of a size that it belongs to, not of its own: far from the origin none of them is lost. */
+export function roundTo(value: number, size: number, digits: number): number {
+  const unit = 10 ** (Math.floor(Math.log10(size)) + 1 - digits);
+  return Number((Math.round(value / unit) * unit).toPrecision(15));
+}
+
+const rounded = (box: Box) => box.map((value) => roundTo(value, Math.hypot(box[2] - box[0], box[3] - box[1]), 3)) as Box;
 
 /** A box below the target, as wide as it. */
 export function pivotsBelow(points: Point[]): Box {

@@ -1,6 +1,7 @@
 // A photograph beneath the target: it stays in the browser. Placed by moving it, scaled by two clicks and a length.
 
 import { setAll, shape } from "../../src/report/html/player/svg.mjs";
+import { keep, kept } from "./memory";
 import type { Point } from "./messages";
 
 const KEY = "linkwright-studio-photograph";
@@ -32,12 +33,8 @@ export class Underlay {
 
   constructor(private changed: () => void) {
     this.group.append(this.image, this.ruler);
-    try {
-      const kept = JSON.parse(localStorage.getItem(KEY) ?? "null") as Photograph | null;
-      if (kept && /^data:image\/(jpeg|png);base64,/.test(kept.data) && [kept.x, kept.y, kept.scale, kept.opacity, kept.width, kept.height].every(Number.isFinite)) this.photo = kept;
-    } catch {
-      // Nothing is kept.
-    }
+    const photo = kept<Photograph>(KEY);
+    if (photo && /^data:image\/(jpeg|png);base64,/.test(photo.data) && [photo.x, photo.y, photo.scale, photo.opacity, photo.width, photo.height].every(Number.isFinite)) this.photo = photo;
   }
 
   get there() {
@@ -112,15 +109,19 @@ export class Underlay {
     if (this.photo && width > 0) this.place({ scale: width / this.photo.width });
   }
 
+  /** Whether the marked distance can be so long. */
+  canBe(length: number): boolean {
+    return (this.between ?? 0) > 0 && length > 0 && Number.isFinite(length);
+  }
+
   /** Makes the marked distance so long: the first end stays where it is. */
-  setLength(length: number): boolean {
+  setLength(length: number) {
     const now = this.between;
-    if (!this.photo || !now || !(length > 0) || !Number.isFinite(length)) return false;
+    if (!this.photo || !now || !this.canBe(length)) return;
     const by = length / now;
     const [[x0, y0]] = this.ends;
     this.ends = [];
     this.place({ scale: this.photo.scale * by, x: x0 + (this.photo.x - x0) * by, y: y0 + (this.photo.y - y0) * by });
-    return true;
   }
 
   draw(toPixel: (p: Point) => Point) {
@@ -137,12 +138,7 @@ export class Underlay {
   }
 
   private keep() {
-    try {
-      if (!this.photo || this.photo.data.length > MOST_KEPT) localStorage.removeItem(KEY);
-      else localStorage.setItem(KEY, JSON.stringify(this.photo));
-    } catch {
-      // A browser that keeps nothing.
-    }
+    keep(KEY, this.photo && this.photo.data.length <= MOST_KEPT ? this.photo : null);
     this.changed();
   }
 }

@@ -1,0 +1,218 @@
+// What is chosen, pinned, compared and saved, in headless Chromium; and what a tab is told that the studio does not serve.
+// See .ci/check-studio.
+
+import assert from "node:assert/strict";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { browser as launched, doing, endAll, opened, shots, status, studio } from "./harness.mjs";
+
+const work = mkdtempSync(join(tmpdir(), "studio-pins-"));
+const problems = new URL("../problems/", import.meta.url).pathname;
+let browser;
+let port = 18520;
+
+before(async () => {
+  browser = await launched();
+});
+after(async () => {
+  await browser?.close();
+  endAll();
+  rmSync(work, { recursive: true, force: true });
+});
+
+async function begun(...options) {
+  const running = await studio("--port", String(port += 1), "--out", join(work, `results-${port}`), ...options);
+  return { ...running, ...(await opened(browser, running.address)) };
+}
+
+const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
+const button = (page, name) => page.getByRole("button", { name, exact: true });
+const pressed = (page) => page.locator(".pick[aria-pressed=true] strong").allTextContents();
+const said = (page, says) => page.waitForFunction((says) => new RegExp(says).test(document.querySelector("#desk-said").textContent), says.source);
+
+async function saved(page, act) {
+  const [download] = await Promise.all([page.waitForEvent("download"), act()]);
+  return { name: download.suggestedFilename(), text: readFileSync(await download.path(), "utf8") };
+}
+
+/** The numbers of the linkage that the page saves, to what a search changes of one that it has found again. */
+const linkage = async (page) => (await saved(page, () => button(page, "Linkage file").click())).text.match(/(?<= |\[)-?\d+\.\d+(e-?\d+)?/g).map((number) => Number(number).toFixed(2).replace("-0.00", "0.00"));
+
+test("what is chosen stays chosen while candidates come, go and change places", async () => {
+  const { page, said: console_, context, end } = await begun();
+  // What the studio answers, as many as are let through, in a turned order.
+  let [most, turned] = [1, false];
+  await page.routeWebSocket(/live/, (socket) => {
+    const server = socket.connectToServer();
+    server.onMessage((text) => {
+      const answer = JSON.parse(text);
+      const candidates = turned ? answer.candidates.reverse() : answer.candidates;
+      socket.send(JSON.stringify({ ...answer, candidates: candidates.slice(0, most) }));
+    });
+  });
+  await page.reload();
+  await doing(page, "done");
+  const again = async (ratio) => {
+    await page.locator("#ratio").fill(String(ratio));
+    await page.keyboard.press("Tab");
+    await doing(page, "done");
+  };
+  assert.equal(await page.locator("#strip li").count(), 1);
+  await button(page, "Pin linkage 1").click();
+  await page.locator(".pick", { hasText: "Pinned 1" }).click();
+  const pin = await linkage(page);
+  // So does the control that has the focus, though cards come before it.
+  const focused = () => page.evaluate(() => document.activeElement.getAttribute("aria-label"));
+  most = 9;
+  await page.locator("#ratio").fill("19");
+  await button(page, "Unpin pinned 1").focus();
+  await doing(page, "done");
+  assert.equal(await focused(), "Unpin pinned 1");
+  const count = await page.locator("#strip li").count();
+  assert.ok(count > 2, `${count} cards`);
+  assert.deepEqual(await pressed(page), ["Pinned 1"]);
+  assert.deepEqual(await linkage(page), pin);
+  // A candidate keeps being the chosen one in another place.
+  await page.locator(".pick", { hasText: "Linkage 2" }).click();
+  const second = await linkage(page);
+  turned = true;
+  await again(18);
+  const [now] = await pressed(page);
+  assert.ok(now.startsWith("Linkage ") && now !== "Linkage 2", now);
+  assert.deepEqual(await linkage(page), second);
+  // One that is gone is not silently another.
+  [most, turned] = [1, false];
+  await again(17);
+  assert.deepEqual(await pressed(page), ["Linkage 1"]);
+  assert.match(await page.locator("#desk-said").textContent(), /not among these any more/);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("pins keep their target: shown, compared, saved beside another; none is dropped unasked", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await page.locator("#unit").selectOption("cm");
+  await doing(page, "done");
+  for (const rank of [1, 2]) await button(page, `Pin linkage ${rank}`).click();
+  await page.locator("#example-choice").selectOption("1");
+  await page.locator("#example").click();
+  await doing(page, "done");
+  await button(page, "Pin linkage 1").click();
+  await button(page, "Pin linkage 2").click();
+  await said(page, /3 are pinned already: unpin one/);
+  assert.equal(await page.locator(".pin-button", { hasText: "Unpin" }).count(), 3);
+  const card = page.locator(".pick", { hasText: "Pinned 2" });
+  assert.match(await card.textContent(), /rms [\d.]+ cm/, "its own unit");
+  // Everything about it, as it was found.
+  await card.click();
+  await page.locator("#details summary").click();
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.waitForSelector(".details-charts figure");
+  await page.locator("#format").selectOption("toml");
+  const file = await saved(page, () => page.locator("#export").click());
+  assert.equal(file.name, "walking-step.toml");
+  const own = await saved(page, () => button(page, "Linkage file").click());
+  assert.equal(own.name, "walking-step-pinned-2.toml");
+  // Compared with each other and with the one on the board, by the names that they have here.
+  await page.locator(".pick", { hasText: "Linkage 2" }).click();
+  await button(page, "Compare").click();
+  await page.waitForSelector("#comparison tbody tr:nth-child(4)");
+  const names = (await page.locator("#comparison tbody th").allTextContents()).map((text) => text.replace(/^\d+\. /, ""));
+  assert.deepEqual(names.sort(), ["on the board", "pinned 1", "pinned 2", "pinned 3"]);
+  assert.doesNotMatch(await page.locator("#comparison").textContent(), /not true/);
+  await shot(page, "compared");
+  // They are remembered with their targets.
+  await page.reload();
+  await doing(page, "done");
+  assert.match(await card.textContent(), /rms [\d.]+ cm/);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("the details say whether they are of what stands, and what they save is what they show", async () => {
+  const { page, said: console_, context, end } = await begun();
+  await doing(page, "done");
+  await page.locator("#details summary").click();
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.locator("#format").selectOption("json");
+  const save = async () => JSON.parse((await saved(page, () => page.locator("#export").click())).text);
+  const before = await save();
+  await page.locator("#board svg").scrollIntoViewIfNeeded();
+  const [x, y] = await page.evaluate(() => {
+    const { x, y, width, height } = document.querySelector(".handle[data-point='12']").getBoundingClientRect();
+    return [x + width / 2, y + height / 2];
+  });
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 10; i += 1) await page.mouse.move(x, y - i);
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stood");
+  assert.deepEqual(await page.evaluate(async () => {
+    const asked = [];
+    const { fetch } = window;
+    window.fetch = (path, init) => { asked.push([path, init?.body]); return fetch(path, init); };
+    document.querySelector("#export").click();
+    await new Promise((later) => { setTimeout(later, 500); });
+    window.fetch = fetch;
+    return asked.filter(([path]) => path === "/export").map(([, body]) => JSON.parse(body).of.drawn.linkage.a);
+  }), [before.a ?? before.linkage.a]);
+  await page.mouse.up();
+  await doing(page, "done");
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  assert.notDeepEqual(await save(), before);
+  assert.deepEqual(console_, []);
+  await context.close();
+  await end();
+});
+
+test("a long search is of what is drawn, under its name, with the budget of the problem where none is typed", async () => {
+  const { page, context, end } = await begun();
+  await doing(page, "done");
+  const asked = [];
+  page.on("request", (request) => request.url().endsWith("/jobs") && request.method() === "POST" && asked.push(request.postDataJSON()));
+  await page.locator("#example-choice").selectOption("1");
+  await page.locator("#example").click();
+  await doing(page, "done");
+  assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke");
+  assert.equal(await page.locator("#job-name").inputValue(), "");
+  await page.locator("#job-start").click();
+  await page.waitForFunction(() => document.querySelector("#jobs li")?.dataset.state === "done", null, { timeout: 60_000 });
+  assert.equal(asked.length, 1);
+  assert.deepEqual([asked[0].ask.name, asked[0].set], ["straight-stroke", undefined]);
+  assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke-2");
+  // Opened and pinned, it has its own target; the focus stays in its row.
+  await page.getByRole("button", { name: "Open straight-stroke" }).focus();
+  await page.keyboard.press("Enter");
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "straight-stroke, candidate");
+  assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Open straight-stroke");
+  await page.locator("#details-pin").click();
+  assert.equal(await button(page, "Unpin pinned 1").count(), 1);
+  await context.close();
+  await end();
+});
+
+test("a tab that is not served is told why; a beginning that did not come is asked for again", async () => {
+  const { page, context, end, address } = await begun(join(problems, "examples/pivot-box.toml"));
+  // As where all places are taken: the studio answers, the connection is refused.
+  const other = await context.newPage();
+  await other.routeWebSocket(/live/, (socket) => void socket.close());
+  await other.goto(new URL("/", address).href);
+  await other.waitForFunction(() => /serves no more tabs/.test(document.querySelector("#status").textContent));
+  assert.doesNotMatch(await status(other), /Start it again/);
+  await other.close();
+  // A busy studio gives no beginning: a reload gives it.
+  await page.evaluate(() => { sessionStorage.clear(); localStorage.clear(); });
+  await page.route("**/beginning.json", (route) => route.fulfill({ status: 429, body: "too many requests\n" }), { times: 1 });
+  await page.reload();
+  await page.waitForSelector("#strip li");
+  assert.equal(await page.locator("#name").inputValue(), "walking-step");
+  await page.reload();
+  await page.waitForSelector("#strip li");
+  assert.equal(await page.locator("#left").inputValue(), "-20");
+  await context.close();
+  await end();
+});

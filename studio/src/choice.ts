@@ -1,0 +1,32 @@
+// Which linkage is meant: one that is pinned, or one of the candidates, which move and change their places.
+
+import type { Shown, Solution } from "./messages";
+
+/** None: the best candidate, whichever that is. */
+export type Choice = { pin: Solution } | { candidate: Shown } | null;
+
+/** A linkage that differs by more, in parts of its size, is another one. */
+const ANOTHER = 0.3;
+
+/** How unlike two linkages are, in parts of their size. */
+function unlike({ linkage: p }: Shown, { linkage: q }: Shown): number {
+  if (p.t1 !== q.t1 || p.t2 !== q.t2) return Infinity;
+  const numbers = ({ A, B, a, b, c, d, e }: Shown["linkage"]) => [...A, ...B, a, b, c, d, e];
+  const [ps, qs] = [numbers(p), numbers(q)];
+  const size = Math.max(Math.hypot(p.B[0] - p.A[0], p.B[1] - p.A[1]), Math.abs(p.a), Math.abs(p.b), Math.abs(p.c));
+  return Math.max(...ps.map((value, i) => Math.abs(value - qs[i]))) / (size || 1);
+}
+
+/** The choice among candidates that have changed: the same linkage, or what it has become; null where it is gone. */
+export function followed(choice: Choice, candidates: Shown[]): Choice {
+  if (!choice || "pin" in choice) return choice;
+  const far = candidates.map((one) => unlike(choice.candidate, one));
+  const nearest = far.indexOf(Math.min(...far));
+  return far[nearest] < ANOTHER ? { candidate: candidates[nearest] } : null;
+}
+
+/** Its place among candidates and what is pinned behind them; -1: there is none. */
+export function placeOf(choice: Choice, candidates: Shown[], pinned: Solution[]): number {
+  if (!choice) return candidates.length > 0 ? 0 : -1;
+  return "pin" in choice ? candidates.length + pinned.indexOf(choice.pin) : candidates.indexOf(choice.candidate);
+}

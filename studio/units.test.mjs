@@ -1,0 +1,112 @@
+// What the page reckons without a browser: targets, texts of coordinates, steps back, choices. See .ci/check-studio.
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { build } from "esbuild";
+
+/** A module of the page. */
+async function part(name) {
+  const entry = new URL(`src/${name}.ts`, import.meta.url).pathname;
+  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false, logLevel: "error" });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+}
+
+const { moved, ofStroke, ofText, segmentAt } = await part("target");
+const { drawnAnew, pivotsBelow } = await part("task");
+const { followed, placeOf } = await part("choice");
+const { Steps } = await part("memory");
+const { resized } = await part("boxes");
+
+test("a moved point takes none with it of precise ones, and none is rounded that does not move", () => {
+  const far = [[1000.123, 500.4567], [1003.5671, 501.1], [1005.00213, 499.777], [1002.1234567890123, 498]];
+  const now = moved(far, 1, [1003.61234567, 501.2], false);
+  assert.deepEqual([now[0], now[2], now[3]], [far[0], far[2], far[3]]);
+  assert.deepEqual(now[1], [1003.6123, 501.2]);
+  // Of a dense curve the neighbours come along, and the far side stays to the last digit.
+  const circle = Array.from({ length: 60 }, (_, i) => [1000 + Math.cos((i * Math.PI) / 30), 2000 + Math.sin((i * Math.PI) / 30)]);
+  const pulled = moved(circle, 0, [1001.5, 2000], true);
+  assert.deepEqual(pulled.slice(10, 50), circle.slice(10, 50));
+  assert.ok(pulled[3][0] > circle[3][0] + 0.1);
+});
+
+test("a small stroke far from the origin keeps its shape", () => {
+  const stroke = Array.from({ length: 100 }, (_, i) => [5000 + Math.cos((i * 2 * Math.PI) / 99), 8000 + Math.sin((i * 2 * Math.PI) / 99)]);
+  const { points, closed } = ofStroke(stroke, 1);
+  assert.ok(closed);
+  for (const [x, y] of points) assert.ok(Math.abs(Math.hypot(x - 5000, y - 8000) - 1) < 0.03, `${x} ${y}`);
+});
+
+test("boxes far from the origin are as fine as their size", () => {
+  assert.deepEqual(resized([1000, 1000, 1002, 1003], 2, [1002.3456, 1003.777], 0.01), [1000, 1000, 1002.346, 1003.777]);
+  const [left, low, right, high] = pivotsBelow([[1000.2, 50], [1001.6, 51]]);
+  assert.ok(left < 1000.2 && right > 1001.6 && high < 50 && low < high && right - left < 4, `${left} ${low} ${right} ${high}`);
+});
+
+test("texts of bare numbers: what could be read in two ways is refused with its line and the remedy", () => {
+  for (const text of ["0,0\n10, 4\n20,5", "0 0\n10   4\n20\t5", "x,y\n0,0\n10,4\n20 5 # the last", "x y\n0\t0\r\n10\t4\r\n2e1\t5\r\n"]) {
+    assert.deepEqual(ofText(text), [[0, 0], [10, 4], [20, 5]], text);
+  }
+  for (const [text, says] of [
+    ["0,0\n1,5\t2,5", /^line 2: .*decimal point/],
+    ["1,5 2,5\n3,5 4,5", /^line 1: .*decimal point/],
+    ["1,5,2,5", /^line 1: .*decimal point/],
+    ["1,5;2,5", /^line 1: .*semicolon.*decimal points and a comma/],
+    ["1;2\n3;4", /^line 1: .*semicolon/],
+    ["0 0 10\n1 2 20", /^line 1: .*3 cells.*header/],
+    ["1, 2, 3", /^line 1: .*3 cells.*header/],
+    ["1, 2\nthree", /^line 2: .*not two numbers/],
+    ["1, 2\n4", /^line 2: .*not two numbers/],
+    ["1, ", /^line 1/],
+  ]) {
+    const read = ofText(text);
+    assert.equal(typeof read, "string", `${text} is read as ${JSON.stringify(read)}`);
+    assert.match(read, says);
+  }
+});
+
+test("a click on the line puts a point between, one beside it does not", () => {
+  const line = [[0, 0], [10, 0], [10, 10]];
+  assert.equal(segmentAt(line, [5, 0.4], false, 1), 0);
+  assert.equal(segmentAt(line, [10.5, 6], false, 1), 1);
+  assert.equal(segmentAt(line, [5, 5], false, 1), null);
+  assert.equal(segmentAt(line, [5, 5.2], true, 1), 2);
+  assert.equal(segmentAt([], [5, 5], true, 1), null);
+});
+
+test("a choice is a linkage, not a place in a list", () => {
+  const shown = (x, rms = 1) => ({ rms, linkage: { A: [x, 0], B: [100, 0], a: 20, b: 80, c: 60, d: 40, e: 10, t1: 1, t2: 1 } });
+  const all = [shown(0), shown(40), shown(-50)];
+  const choice = { candidate: all[1] };
+  // The same one, after another has come before it.
+  const more = [shown(90), shown(0), shown(40, 0.5)];
+  assert.equal(placeOf(followed(choice, more), more, []), 2);
+  // What it has become; what is gone; the other assembly is another linkage.
+  assert.equal(placeOf(followed(choice, [shown(0), shown(42)]), [shown(0)], []), -1);
+  assert.equal(followed(choice, [shown(-50), shown(42)]).candidate.linkage.A[0], 42);
+  assert.equal(followed(choice, [shown(-50), shown(-90)]), null);
+  assert.equal(followed(choice, []), null);
+  assert.equal(followed(choice, [{ ...all[1], linkage: { ...all[1].linkage, t1: -1 } }]), null);
+  // A pin stays itself, however many candidates there are.
+  const pin = { shown: shown(40), task: {} };
+  for (const candidates of [[], all, more]) assert.equal(placeOf(followed({ pin }, candidates), candidates, [{}, pin]), candidates.length + 1);
+  assert.deepEqual([placeOf(null, all, [pin]), placeOf(null, [], [pin])], [0, -1]);
+});
+
+test("a path that is drawn anew keeps what is asked of the linkage and nothing of the old points", () => {
+  const old = {
+    name: "old", unit: "mm", source: "a paper", points: [[0, 0]], closed: false, types: ["crank-rocker"], seed: 7, tolerance: 0.5, tolerances: [1], weights: [2],
+    timing: { crank_deg: [0], offset: "free" }, raw: { points: [[0, 0]] }, kept: { "design.a": "[1, 2]" }, method: "genetic", transmission_deg_min: 40, pivots_in: [0, 0, 1, 1],
+  };
+  const points = [[0, 0], [1, 1], [2, 0]];
+  assert.deepEqual(JSON.parse(JSON.stringify(drawnAnew(old, points, true))), {
+    name: "drawing", unit: "mm", points, closed: true, types: ["crank-rocker"], seed: 7, tolerance: 0.5, transmission_deg_min: 40, pivots_in: [0, 0, 1, 1],
+  });
+});
+
+test("a step that is given up is neither behind nor before", () => {
+  const steps = new Steps();
+  steps.note("a");
+  steps.note("b");
+  assert.equal(steps.giveUp(), "b");
+  assert.deepEqual([steps.canRedo, steps.undo("b"), steps.undo("a")], [false, "a", null]);
+});
