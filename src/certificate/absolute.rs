@@ -342,3 +342,22 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
 fn spread(z: &[Affine; 2]) -> f64 {
     z.iter().flat_map(|z| z.by).map(f64::abs).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ALL_ROUND, phi};
+
+    #[test]
+    fn the_range_of_the_grounds_angle_is_turned_round() {
+        use std::f64::consts::{PI, TAU};
+        let [low, high] = phi([0.25, 0.5]);
+        assert!(low <= -0.5 && -0.25 <= high && (high - low - 0.25).abs() < 1e-12);
+        let [low, high] = phi([0.25 + TAU, 0.5 + TAU]);
+        assert!(low <= -0.5 && -0.25 <= high && (high - low - 0.25).abs() < 1e-12);
+        // Across half a turn, and all of it: the whole chart.
+        assert_eq!(phi([PI - 0.5, PI + 0.5]), ALL_ROUND);
+        assert_eq!(phi([-7.0, 7.0]), ALL_ROUND);
+        assert_eq!(phi([1.0, 1.0 + TAU]), ALL_ROUND);
+        assert_eq!(phi([0.0, 0.0]), [0.0, 0.0]);
+    }
+}

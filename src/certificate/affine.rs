@@ -44,12 +44,6 @@ impl Affine {
         (self.by[0].abs() + self.by[1].abs() + self.by[2].abs() + self.by[3].abs()) * UP
     }
 
-    /// At least every absolute value.
-    #[inline(always)]
-    pub fn size(&self) -> f64 {
-        (self.mid.abs() + self.spread() + self.rest) * UP
-    }
-
     /// At most every value.
     #[inline(always)]
     pub fn low(&self) -> f64 {
@@ -151,5 +145,59 @@ impl Mul for Affine {
         let (size_a, size_b) = (self.mid.abs() + a, y.mid.abs() + b);
         let rest = a * b + self.rest * (size_b + y.rest) + size_a * y.rest;
         Affine::rounded(self.mid * y.mid, by, rest, size_a * size_b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Affine;
+
+    /// The linear part at e, and whether `value` is within the rest of it.
+    fn holds(x: &Affine, e: [f64; 4], value: f64) {
+        let linear = x.mid + (0..4).map(|k| x.by[k] * e[k]).sum::<f64>();
+        assert!((value - linear).abs() <= x.rest + 1e-14, "{x:?} {e:?}: {value}");
+        assert!(x.low() <= value + 1e-14 && value <= x.high() + 1e-14, "{x:?}: {value}");
+    }
+
+    #[test]
+    fn every_operation_encloses_the_function() {
+        // A sequence of numbers in [-1, 1] that fills the box.
+        let mut state = 0.5_f64;
+        let mut draw = move || {
+            state = (state + 0.618_033_988_749_894_9).fract();
+            2.0 * (state * 7919.0).fract() - 1.0
+        };
+        let mut inverses = 0;
+        for round in 0..2000 {
+            let size = 10.0_f64.powf(-2.0 * (round % 5) as f64 * 0.5);
+            let mut function = || {
+                let by = [0; 4].map(|_| size * draw());
+                Affine { mid: 2.0 * draw(), by, rest: 0.1 * size * draw().abs() }
+            };
+            let (x, y) = (function(), function());
+            let (product, square, difference) = (x * y, x.square(), x - y.times(3.0));
+            let positive = x.square() + Affine::exact(0.2);
+            let (root, inverse) = (positive.root(), y.inverse());
+            inverses += usize::from(inverse.is_some());
+            for corner in 0..16 {
+                let sign = |k: usize| if corner >> k & 1 == 0 { 1.0 } else { -1.0 };
+                let e = std::array::from_fn(|k| if round % 2 == 0 { sign(k) } else { draw() });
+                let at =
+                    |x: &Affine, off: f64| x.mid + (0..4).map(|k| x.by[k] * e[k]).sum::<f64>() + off * x.rest;
+                for (p, q) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 0.3), (0.0, 0.0)] {
+                    let (a, b) = (at(&x, p), at(&y, q));
+                    holds(&product, e, a * b);
+                    holds(&square, e, a * a);
+                    holds(&difference, e, a - 3.0 * b);
+                    holds(&positive, e, a * a + 0.2);
+                    holds(&root, e, (a * a + 0.2).sqrt());
+                    if let Some(inverse) = &inverse {
+                        let rest = inverse.rest + 1e-14 * (1.0 / b).abs();
+                        holds(&Affine { rest, ..*inverse }, e, 1.0 / b);
+                    }
+                }
+            }
+        }
+        assert!(inverses > 500, "{inverses}");
     }
 }

@@ -144,7 +144,15 @@ impl Question {
 
     fn bound(&self, target: &Target, cell: &Cell, wanted: f64) -> Bound {
         match &self.angles {
-            Angles::Axis(axis) => absolute::bound(target, self.class, cell, &axis.lengths, self.cap, wanted),
+            Angles::Axis(axis) => {
+                // With any complex K there is no larger least sum.
+                let any = bound(target, self.class, cell, self.cap, wanted);
+                if any.sum_sq >= wanted {
+                    return any;
+                }
+                let real = absolute::bound(target, self.class, cell, &axis.lengths, self.cap, wanted);
+                if real.sum_sq > any.sum_sq { real } else { any }
+            }
             _ => bound(target, self.class, cell, self.cap, wanted),
         }
     }

@@ -7,7 +7,7 @@ use super::subject::Subject;
 
 /// The words of a certificate.
 pub(super) struct Words {
-    /// No .. has a sum below the bound.
+    /// No .. whose coupler point is near enough has a sum below the bound.
     pub linkage: String,
     /// Where the crank angles are from.
     pub angles: &'static str,
@@ -41,7 +41,7 @@ impl Subject {
         let mut linkage = match self.classes[..] {
             [Class::CrankRocker] => "crank-rocker".to_owned(),
             [Class::DoubleCrank] => "double-crank".to_owned(),
-            _ => "four-bar linkage whose input turns fully".to_owned(),
+            _ => "four-bar linkage whose input turns fully and".to_owned(),
         };
         let mut covered = vec![
             format!("{class}, and linkages with change points as long as they stay in one assembly"),
@@ -59,7 +59,11 @@ impl Subject {
             )),
             Angles::Axis(axis) => {
                 let place = place(axis);
-                linkage = format!("{linkage} ({})", place.join("; "));
+                let known = place.join("; ");
+                linkage = match linkage.strip_suffix(" and") {
+                    Some(linkage) => format!("{linkage} ({known}) and"),
+                    None => format!("{linkage} ({known})"),
+                };
                 covered.extend(place);
                 covered.push(format!(
                     "any lengths of the other links, the coupler point at most {limit} from the crank pin"

@@ -167,3 +167,36 @@ fn what_has_no_certificate_is_told_so_and_nothing_is_written() {
         assert!(stderr.contains(words), "{arguments:?}: {stderr}");
     }
 }
+
+#[test]
+fn fixed_pivots_and_angles_from_the_x_axis_are_proved_and_checked() {
+    let folder = TempDir::new().expect("a folder");
+    let run = |arguments: &[&str]| linkwright(folder.path(), arguments);
+    // As it stands: A and the ground's direction are known. Then with both pivots known.
+    let text = fs::read_to_string(problem("e5")).expect("a problem");
+    let both = text
+        .replace("A = [0, 0]\nground_angle_deg = 0\nground = [0, 50]\n", "A = [0, 0]\nB = [3.67, 0]\n")
+        .replace("[expect]", "[unused]");
+    let both = &both[..both.find("[unused]").expect("the table")];
+    fs::write(folder.path().join("both.toml"), both).expect("written");
+    for (file, name, known) in [
+        (problem("e5"), "e5", "ground 0.000000 to 50.000000 long"),
+        ("both.toml".to_owned(), "both", "ground 3.670000 long"),
+    ] {
+        let (_, stdout, stderr) = run(&["synth", &file, "--out", name, "--quiet"]);
+        assert!(folder.path().join(name).join("record.json").exists(), "{stdout}{stderr}");
+        let (code, stdout, stderr) = run(&["certify", name, "--leaves", "--quiet"]);
+        assert_eq!(code, 0, "{stdout}{stderr}");
+        let after = record(&folder.path().join(name));
+        let certificate = after.certificate.expect("a certificate");
+        assert!(certificate.closed && certificate.gap <= 1e-4 && certificate.parts.len() == 1);
+        assert!((7.41e-7..7.4161e-7).contains(&certificate.lower_bound), "{certificate:?}");
+        let statement = certificate.statement;
+        for words in ["No crank-rocker (crank pivot at (0, 0); ground line at 0.000000 degrees", known] {
+            assert!(statement.contains(words), "{statement}");
+        }
+        let (code, stdout, stderr) = run(&["verify", name, "--leaves", "--certificate"]);
+        assert_eq!(code, 0, "{stdout}{stderr}");
+        assert!(stdout.contains("worked out again") && stdout.contains("arithmetic of its own"), "{stdout}");
+    }
+}

@@ -224,7 +224,10 @@ impl Claim {
     fn shown(&self, frame: &Frame, region: &Region, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
         match &self.axis {
             None => self.holds(frame, us, cost),
-            Some(axis) => self.holds_on_axis(frame, axis, region.side(0), us, cost),
+            // With any complex K there is no larger least sum.
+            Some(axis) => {
+                self.holds(frame, us, cost) || self.holds_on_axis(frame, axis, region.side(0), us, cost)
+            }
         }
     }
 
