@@ -43,9 +43,9 @@ class Row {
     this.node.append(element("div", { class: "row" }, [this.chosen, this.name, this.state, this.figures, ...Object.values(this.buttons)]), this.bar, this.said);
   }
 
-  /** What the list says of it. */
-  get words() {
-    return [this.figures, this.said].map((one) => one.textContent).filter((text) => text).join(". ");
+  /** What the list says of it, in short; of one that failed why. */
+  words(state: api.JobShown["state"]) {
+    return (state === "failed" ? this.said : this.figures).textContent ?? "";
   }
 
   show(job: api.JobShown) {
@@ -131,7 +131,7 @@ export class JobsPanel {
       // The end of one that was seen to run is news.
       const ran = row.node.dataset.state === "running" && job.state !== "running";
       row.show(job);
-      if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words}`, job.state === "failed");
+      if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words(job.state)}`, job.state === "failed");
       return row.node;
     });
     const same = nodes.length === this.list.childElementCount && nodes.every((node, i) => this.list.children[i] === node);
@@ -201,7 +201,7 @@ export class JobsPanel {
         element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" }, [element("table", {}, [
           element("thead", {}, [element("tr", {}, head.map((text) => element("th", { scope: "col" }, [text])))]),
           element("tbody", {}, rows.map((row) => element("tr", {}, [
-            element("th", { scope: "row" }, [`${row.rank}. ${row.label}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
+            element("th", { scope: "row" }, [`${row.rank}. ${row.label.replace(/^.*[/\\]/, "")}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
             cell(row.figures.link_ratio), cell(row.figures.size), element("td", {}, [row.type]), element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
           ]))),
         ])]),

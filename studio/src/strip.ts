@@ -5,6 +5,8 @@ import { Figure, Moving } from "./figures";
 import type { Point, Shown } from "./messages";
 
 const [W, H] = [150, 96];
+/** Of more than so many only the pictures in sight are drawn. */
+const MANY = 12;
 
 const WORDS: Record<string, string> = {
   type: "type",
@@ -23,16 +25,22 @@ const word = (key: string) => WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, 
 
 export const inWords = (shown: Shown) => (shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`);
 
+/** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
+export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {
+  return !ability && max < 1e-11 * Math.max(a, b, c, d, e);
+}
+
 /** How near it comes: to the last digit where it is one of the linkages through nine points. */
 export function nearness(shown: Shown, unit: string | undefined): string {
   const length = unit ? ` ${unit}` : "";
+  if (isExact(shown)) return "through the points to the last digit";
   if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
 }
 
 /** One card of the strip. */
 class Card {
-  /** Whether it is in sight: only then its picture is drawn. */
+  /** Whether it is in sight. */
   seen = false;
   private drawn: unknown[] = [];
   private moving: Moving | null = null;
@@ -55,10 +63,10 @@ class Card {
     this.pin.addEventListener("click", onPin);
   }
 
-  show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean) {
+  show(moving: Moving, name: string, unit: string | undefined, chosen: boolean, pinned: boolean, points: Point[], closed: boolean, part: number, all: boolean) {
     const { shown } = moving;
     Object.assign(this, { moving, points, closed });
-    if (this.seen) this.draw();
+    if (this.seen || all) this.draw(part);
     const texts = [name, `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`, inWords(shown)];
     const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
@@ -71,7 +79,7 @@ class Card {
   }
 
   /** Draws what is to be shown, unless it is drawn already. */
-  draw() {
+  draw(part: number) {
     const { moving, points, closed } = this;
     const now = [moving, points, closed];
     if (!moving || now.every((one, i) => one === this.drawn[i])) return;
@@ -83,6 +91,7 @@ class Card {
     const line = points.map(toward);
     setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
+    this.pose(part);
   }
 
   pose(part: number) {
@@ -94,18 +103,18 @@ export class Strip {
   private cards: Card[] = [];
   private count = 0;
   private part = 0;
-  /** Only what is in sight is drawn and moves. */
+  /** Only what is in sight moves. */
   private sight = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.find((one) => one.node === entry.target);
       if (!card) continue;
       card.seen = entry.isIntersecting;
       if (card.seen) {
-        card.draw();
+        card.draw(this.part);
         card.pose(this.part);
       }
     }
-  });
+  }, { rootMargin: "200px" });
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
@@ -119,13 +128,13 @@ export class Strip {
     }
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.cards[i].show(moving, name, unit, i === chosen, i >= found, points, closed);
+      this.cards[i].show(moving, name, unit, i === chosen, i >= found, points, closed, this.part, all.length <= MANY);
     });
     if (this.count !== all.length || this.list.childElementCount !== all.length) {
       this.list.replaceChildren(...this.cards.slice(0, all.length).map((card) => card.node));
     }
     this.count = all.length;
-    this.list.classList.toggle("many", all.length > 12);
+    this.list.classList.toggle("many", all.length > MANY);
   }
 
   pose(part: number) {
