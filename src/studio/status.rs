@@ -56,6 +56,11 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
             "Fairly sure: every kind of start was tried, and the last of them gave nothing better.".into()
         }
         Reason::EvaluationLimit => match hits {
+            Some(HitsSoFar { came, wanted }) if came >= wanted => {
+                format!(
+                    "Fairly sure: the best came {came} times; the budget ended before the search was done."
+                )
+            }
             Some(HitsSoFar { came, wanted }) => {
                 format!("Not sure: the budget ended when the best had come {came} of {wanted} times.")
             }
@@ -111,5 +116,30 @@ pub(super) fn census(record: &ExactRecord) -> Vec<String> {
         (0, Completeness::Complete) => vec![found, real],
         (0, _) => vec![format!("{} solutions up to cognates so far, not yet proved.", counted.classes), real],
         _ => vec![found, real, paths, proof],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem_file::parse;
+    use crate::run::{Context, Job, run};
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn a_budget_that_ends_after_the_best_came_often_enough_is_told_as_that() {
+        let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.2], [3, 1], [2, -1], [1, -1]]\nclosed = true\n\
+            [solve]\nevaluations = 300\n";
+        let spec = parse("egg", text, None, &[]).expect("a problem").spec;
+        let job = Job { name: "egg".into(), source: None, unit: None, spec };
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&job, &context).expect("it runs").record;
+        assert_eq!(record.termination.reason, Reason::EvaluationLimit);
+        let said = |came| sure(&record, Some(HitsSoFar { came, wanted: 4 }));
+        assert_eq!(said(3), "Not sure: the budget ended when the best had come 3 of 4 times.");
+        assert_eq!(
+            said(15),
+            "Fairly sure: the best came 15 times; the budget ended before the search was done."
+        );
     }
 }

@@ -52,6 +52,7 @@ export class Board {
   private moving: Moving | null = null;
   private pinned: Moving[] = [];
   private corner: Corner | null = null;
+  private part = 0;
   /** Whether the view was chosen by hand. */
   touched = false;
   tool: Tool = "draw";
@@ -145,6 +146,7 @@ export class Board {
   }
 
   pose(part: number) {
+    this.part = part;
     this.mechanism.pose(part);
     this.ghosts.forEach((ghost) => ghost.pose(part));
   }
@@ -158,7 +160,8 @@ export class Board {
     this.underlay.draw(this.toPixel);
     const radii = spots.map((_, i) => (toleranceAt(task, i) ?? 0) * this.view.scale);
     const circles = spots.flatMap(([cx, cy], i) => (radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : []));
-    this.back.replaceChildren(...circles, shape("path", { class: "target-line", d: pathThrough(closedLine) }));
+    const empty = spots.length === 0 ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, ["Draw a path here"])] : [];
+    this.back.replaceChildren(...empty, ...circles, shape("path", { class: "target-line", d: pathThrough(closedLine) }));
     const marks = spots.flatMap(([x, y], i) => {
       const [cx, cy] = [px(x), px(y)];
       const chosen = i === this.selected;
@@ -184,6 +187,8 @@ export class Board {
       shape("path", { class: "scale", d: `M14 ${y - 4}v4h${px(length * this.view.scale)}v-4` }),
       shape("text", { class: "scale-text", x: px(22 + length * this.view.scale), y }, [`${Number(length.toPrecision(3))}${task.unit ? ` ${task.unit}` : ""}`]),
     );
+    // Another view of one that stands still.
+    this.pose(this.part);
   }
 
   private drawBox() {

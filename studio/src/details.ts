@@ -26,7 +26,10 @@ class AnglesPlayer extends Player {
 
   makeCharts(place: HTMLElement, unit: string | null) {
     super.makeCharts(place, unit);
-    const read = (s: any) => `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
+    const read = (s: any) => {
+      this.place(s);
+      return `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
+    };
     const line = (kind: string, of: (s: any) => number) => ({ name: kind, kind, of });
     this.angles = new CycleChart(place, {
       title: "Angles of the links",
@@ -65,10 +68,15 @@ class AnglesPlayer extends Player {
     super.moveTo(q);
     if (!this.angles || !this.cycle) return;
     const sample = this.cycle.sample(this.q) as unknown as Sample | null;
+    if (sample && this.place(sample)) this.angles.at(this.q, sample);
+  }
+
+  /** The angles of a sample, as they lie on the curves of the chart; false where there are none. */
+  private place(sample: Sample): boolean {
     const around = (this.samples as unknown as (Sample | null)[]).filter((s) => s && s.coupler !== undefined) as Sample[];
-    if (!sample || around.length === 0) return;
-    this.turn(sample, around.reduce((best, s) => (Math.abs(s.q - this.q) < Math.abs(best.q - this.q) ? s : best)));
-    this.angles.at(this.q, sample);
+    if (around.length === 0) return false;
+    this.turn(sample, around.reduce((best, s) => (Math.abs(s.q - sample.q) < Math.abs(best.q - sample.q) ? s : best)));
+    return true;
   }
 }
 

@@ -18,6 +18,9 @@ export const NAMES: Record<string, [string, string]> = {
   "task.path.tolerance": ["largest error", "unit"],
 };
 
+/** What is less is no length that anybody has drawn. */
+const ROUNDING = 1e-11;
+
 /** A number as it would be typed. */
 const plain = (value: number) => minus(String(Number(value.toPrecision(5))));
 
@@ -57,7 +60,7 @@ export class Helps {
       const what = set.map((change) => inWords(change.key, change.from, change.to, unit)).join(" and ");
       const button = element("button", { type: "button" }, [what]);
       button.addEventListener("click", () => this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what));
-      return element("li", {}, [button, element("span", {}, [`gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`])]);
+      return element("li", {}, [button, element("span", {}, [rms < ROUNDING ? "goes exactly through the points" : `gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`])]);
     });
     changing(this.list, () => {
       this.list.hidden = items.length === 0;

@@ -45,9 +45,9 @@ class Row {
     this.node.append(element("div", { class: "row" }, [this.chosen, this.name, this.state, this.figures, ...Object.values(this.buttons)]), this.bar, this.said);
   }
 
-  /** What the list says of it. */
-  get words() {
-    return [this.figures, this.said].map((one) => one.textContent).filter((text) => text).join(". ");
+  /** What the list says of it, in short; of one that failed why. */
+  words(state: api.JobShown["state"]) {
+    return (state === "failed" ? this.said : this.figures).textContent ?? "";
   }
 
   show(job: api.JobShown) {
@@ -140,7 +140,7 @@ export class JobsPanel {
       // The end of one that was seen to run is news.
       const ran = row.node.dataset.state === "running" && job.state !== "running";
       changing(row.node, () => row.show(job), this.heading);
-      if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words}`, job.state === "failed");
+      if (ran) this.host.say(`${job.name}: ${STATES[job.state]}. ${row.words(job.state)}`, job.state === "failed");
       return row.node;
     });
     setChildren(this.list, nodes);

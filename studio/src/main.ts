@@ -19,7 +19,7 @@ import { Pace } from "./pace";
 import { PhotographPanel } from "./photograph";
 import { fillRequirements, listenToRequirements } from "./requirements";
 import { Stays } from "./stays";
-import { Strip, inWords } from "./strip";
+import { Strip, inWords, isExact } from "./strip";
 import { Table } from "./table";
 import { moved } from "./target";
 import { drawnAnew, pathAlone, settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt, withoutStale } from "./task";
@@ -263,7 +263,7 @@ class Page {
     }
     const best = answer.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
-    const near = best?.ability ? "exactly through the points" : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
+    const near = best && (best.ability || isExact(best)) ? "exactly through the points" : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     this.desk.changed(answer.doing === "done");
     this.voice.answered(answer, head + answer.said);

@@ -6,6 +6,8 @@ import { changing, setChildren } from "./focus";
 import type { Point, Shown, Task } from "./messages";
 
 const [W, H] = [150, 96];
+/** Of more than so many only the pictures in sight are drawn. */
+const MANY = 12;
 
 const WORDS: Record<string, string> = {
   type: "type",
@@ -24,16 +26,22 @@ const word = (key: string) => WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, 
 
 export const inWords = (shown: Shown) => (shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`);
 
+/** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
+export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {
+  return !ability && max < 1e-11 * Math.max(a, b, c, d, e);
+}
+
 /** How near it comes: to the last digit where it is one of the linkages through nine points. */
 export function nearness(shown: Shown, unit: string | undefined): string {
   const length = unit ? ` ${unit}` : "";
+  if (isExact(shown)) return "through the points to the last digit";
   if (!shown.ability) return `rms ${figure(shown.rms, 3)}${length}, at most ${figure(shown.max, 3)}${length}`;
   return `exactly through the points${shown.certified_within === undefined ? "" : ", proved"}; ${shown.ability}`;
 }
 
 /** One card of the strip. */
 class Card {
-  /** Whether it is in sight: only then its picture is drawn. */
+  /** Whether it is in sight. */
   seen = false;
   private drawn: unknown[] = [];
   private moving: Moving | null = null;
@@ -55,10 +63,10 @@ class Card {
     this.pin.addEventListener("click", onPin);
   }
 
-  show(moving: Moving, name: string, task: Task, chosen: boolean, pinned: boolean) {
+  show(moving: Moving, name: string, task: Task, chosen: boolean, pinned: boolean, part: number, all: boolean) {
     const { shown } = moving;
     Object.assign(this, { moving, task });
-    if (this.seen) this.draw();
+    if (this.seen || all) this.draw(part);
     const { unit } = task;
     const texts = [name, `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`, inWords(shown)];
     const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
@@ -72,7 +80,7 @@ class Card {
   }
 
   /** Draws what is to be shown, unless it is drawn already. */
-  draw() {
+  draw(part: number) {
     const { moving, task } = this;
     if (!moving || !task) return;
     const { points, closed } = task;
@@ -86,6 +94,7 @@ class Card {
     const line = points.map(toward);
     setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
     this.picture.show(moving, toward);
+    this.pose(part);
   }
 
   pose(part: number) {
@@ -99,18 +108,18 @@ export class Strip {
   private shown: Card[] = [];
   private found = 0;
   private part = 0;
-  /** Only what is in sight is drawn and moves. */
+  /** Only what is in sight moves. */
   private sight = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       const card = this.cards.flat().find((one) => one.node === entry.target);
       if (!card) continue;
       card.seen = entry.isIntersecting;
       if (card.seen) {
-        card.draw();
+        card.draw(this.part);
         card.pose(this.part);
       }
     }
-  });
+  }, { rootMargin: "200px" });
 
   constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
 
@@ -129,13 +138,13 @@ export class Strip {
     this.shown = all.map((_, i) => (i < found ? this.card(0, i) : this.card(1, i - found)));
     all.forEach((moving, i) => {
       const name = i < found ? `Linkage ${i + 1}` : `Pinned ${i - found + 1}`;
-      this.shown[i].show(moving, name, tasks[i], i === chosen, i >= found);
+      this.shown[i].show(moving, name, tasks[i], i === chosen, i >= found, this.part, all.length <= MANY);
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
       const heading = this.list.parentElement?.querySelector("h2") ?? this.list;
       changing(this.list, () => setChildren(this.list, this.shown.map((card) => card.node)), heading);
     }
-    this.list.classList.toggle("many", all.length > 12);
+    this.list.classList.toggle("many", all.length > MANY);
   }
 
   pose(part: number) {
