@@ -125,6 +125,13 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   assert.deepEqual(names.sort(), ["on the board", "pinned 1", "pinned 2", "pinned 3"]);
   assert.doesNotMatch(await page.locator("#comparison").textContent(), /not true/);
   await shot(page, "compared");
+  // A pin's target is drawn again, and that is one step.
+  await card.click();
+  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await button(page, "Draw its target").click();
+  assert.equal(await page.locator("#point-count").textContent(), "19");
+  await button(page, "Undo").click();
+  assert.equal(await page.locator("#point-count").textContent(), "9");
   // They are remembered with their targets.
   await page.reload();
   await doing(page, "done");

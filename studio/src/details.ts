@@ -6,6 +6,7 @@ import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
+import { changing } from "./focus";
 import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
@@ -85,6 +86,7 @@ export class DetailsPanel {
   private title = element("h3", { id: "details-title" });
   private candidates = element("select", { id: "details-candidate", "aria-label": "Candidate" }) as HTMLSelectElement;
   private keep = element("button", { type: "button", id: "details-pin" }, ["Pin it"]) as HTMLButtonElement;
+  private take = element("button", { type: "button", id: "details-take", hidden: "" }, ["Draw its target"]) as HTMLButtonElement;
   private format = element("select", { id: "format", "aria-label": "Format" }, FORMATS.map(([name, , words]) => element("option", { value: name }, [words]))) as HTMLSelectElement;
   private save = element("button", { type: "button", id: "export" }, ["Save"]) as HTMLButtonElement;
   private stage = element("div", { class: "details-stage" });
@@ -103,7 +105,7 @@ export class DetailsPanel {
   private timer = 0;
 
   constructor(place: HTMLElement, private host: Host) {
-    const head = element("div", { class: "row" }, [this.title, this.candidates, this.keep]);
+    const head = element("div", { class: "row" }, [this.title, this.candidates, this.keep, this.take]);
     const files = element("div", { class: "row" }, [element("label", {}, ["As a file: ", this.format]), this.save]);
     this.panel.append(element("summary", {}, [element("h2", {}, ["Everything about this linkage"])]), this.nothing, head, files, element("div", { class: "details-columns" }, [this.stage, this.charts]), this.words);
     place.append(this.panel);
@@ -118,6 +120,7 @@ export class DetailsPanel {
       const [shown, task] = [this.details?.shown, this.of?.task];
       if (shown && task) this.host.keep({ shown, task });
     });
+    this.take.addEventListener("click", () => this.of?.task && this.host.take(this.of.task));
     this.save.addEventListener("click", () => void this.export());
   }
 
@@ -177,6 +180,8 @@ export class DetailsPanel {
     if (!this.details) return;
     const now = this.wanted();
     const same = now !== null && keyOf(now.source) === this.shownOf;
+    const points = this.of?.task?.points;
+    changing(this.panel, () => { this.take.hidden = !points || JSON.stringify(points) === JSON.stringify(this.host.task().points); }, this.save);
     this.title.textContent = `${this.details.name}, ${this.of && "job" in this.of.source ? "candidate" : same ? "as it stands" : "as it stood"}`;
   }
 

@@ -216,7 +216,7 @@ export class JobsPanel {
         element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" }, [element("table", {}, [
           element("thead", {}, [element("tr", {}, head.map((text) => element("th", { scope: "col" }, [text])))]),
           element("tbody", {}, rows.map((row) => element("tr", {}, [
-            element("th", { scope: "row" }, [`${row.rank}. ${own(row.label)}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
+            element("th", { scope: "row" }, [`${row.rank}. ${own(row.label).replace(/^.*[/\\]/, "")}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
             cell(row.figures.link_ratio), cell(row.figures.size), element("td", {}, [row.type]), element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
           ]))),
         ])]),

@@ -59,9 +59,11 @@ export function watchPointers(place: SVGElement, take: (event: PointerEvent) => 
     else grip?.step(event, false);
   });
   const end = (event: PointerEvent) => {
-    if (numberOf(event) < 0) return;
+    const i = numberOf(event);
+    if (i < 0) return;
     const held = grip;
-    [fingers, grip, pinching] = [[], null, null];
+    // Of two fingers the other one holds nothing; it can be joined again.
+    [fingers, grip, pinching] = [fingers.filter((_, k) => k !== i), null, null];
     if (event.type === "pointerup") held?.step(event, true);
     else held?.abort();
   };
