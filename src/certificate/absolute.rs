@@ -195,8 +195,8 @@ impl Parts {
             std::array::from_fn(|j| if j < n { expansion.moved(j, &common) } else { Moved::NOT });
         let mut own = [0.0; 4];
         for j in 0..n {
-            for k in 0..4 {
-                own[k] += size_y[j] * moved[j].own[k];
+            for (own, part) in own.iter_mut().zip(moved[j].own) {
+                *own += size_y[j] * part;
             }
         }
         let of =
@@ -235,8 +235,8 @@ impl Condition {
         let m = self.w_sq.mid.max(0.01 * self.w_sq.high()).max(1e-12).sqrt();
         let w = self.w_sq.times(0.5 / m) + Affine::exact(0.5 * m);
         let holds = |root: f64| (sum - w.times(root)).low() >= 0.0;
-        for k in 0..4 {
-            weight[k] += 0.25 * sum.by[k].abs();
+        for (weight, by) in weight.iter_mut().zip(sum.by) {
+            *weight += 0.25 * by.abs();
         }
         let goal = wanted.sqrt() * (1.0 + 1e-13);
         let found = if holds(goal) {
@@ -304,10 +304,8 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
             Class::DoubleCrank => p.inverse().map(|over| over * ground),
         }
     };
-    if fixed {
-        if let Some(kappa) = by_ground(lengths.ground[0]) {
-            at_length(kappa, 0.0, &mut sum_sq, &mut weight);
-        }
+    if fixed && let Some(kappa) = by_ground(lengths.ground[0]) {
+        at_length(kappa, 0.0, &mut sum_sq, &mut weight);
     }
     if sum_sq < wanted {
         // Below the least length: the derivative by kappa is positive there, and the sum is convex in kappa.
@@ -318,10 +316,9 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
             if own.is_finite() {
                 at_length(Affine::exact(own), side, &mut sum_sq, &mut ignored);
             }
-            if ground.is_finite() && ground > 0.0 && !fixed {
-                if let Some(kappa) = by_ground(ground) {
-                    at_length(kappa, side, &mut sum_sq, &mut ignored);
-                }
+            let limited = ground.is_finite() && ground > 0.0 && !fixed;
+            if limited && let Some(kappa) = by_ground(ground) {
+                at_length(kappa, side, &mut sum_sq, &mut ignored);
             }
         }
     }

@@ -218,11 +218,11 @@ impl Expansion {
     pub fn common_turn(&self, size_y: &[f64; MAX_POINTS]) -> CommonTurn {
         let mut common = [0.0; 4];
         let mut total = 0.0;
-        for j in 0..self.n {
+        for (j, size) in size_y.iter().enumerate().take(self.n) {
             if self.smooth[j] {
-                total += size_y[j];
-                for k in 0..4 {
-                    common[k] += size_y[j] * self.gradient[j][k];
+                total += size;
+                for (common, slope) in common.iter_mut().zip(self.gradient[j]) {
+                    *common += size * slope;
                 }
             }
         }

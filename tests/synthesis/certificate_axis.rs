@@ -149,8 +149,8 @@ impl Task {
         if unit(random) < 0.6 {
             let at = [x.p, x.phi, x.g, x.d];
             let size = 10.0_f64.powf(-0.5 - 3.0 * unit(random));
-            for k in 0..4 {
-                let near = at[k] + between(random, -3.0, 3.0) * size;
+            for (k, at) in at.into_iter().enumerate() {
+                let near = at + between(random, -3.0, 3.0) * size;
                 cell.low[k] = near - size * unit(random);
                 cell.high[k] = near + size * unit(random);
             }
@@ -365,7 +365,7 @@ fn e5_is_a_proved_optimum() {
         let mut wrong = bytes.clone();
         let at = bounded[bounded.len() / 2];
         let byte = &mut wrong[16 + 24 + at / 2];
-        *byte = if at % 2 == 0 { *byte & 0xf0 | code } else { *byte & 0x0f | code << 4 };
+        *byte = if at.is_multiple_of(2) { *byte & 0xf0 | code } else { *byte & 0x0f | code << 4 };
         let wrong = Leaves::from_bytes(&sealed(wrong)).expect("a tree");
         let refused = checked(&subject.certificate(&wrong), &wrong.to_bytes());
         assert!(matches!(refused, Err(CheckError::Leaf { part: 1, .. })), "{refused:?}");
