@@ -25,7 +25,7 @@
 //! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
 //! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
 //! | [`exact`] | every linkage through nine precision points | linkage, task, solve (random streams) |
-//! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage whose input turns fully does better | task, problem, record |
+//! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage whose input turns fully does better | linkage, task, problem, record |
 //! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | all above |
 //! | [`mod@run`] | a job in, a record out | all above |
 //! | [`live`] | answers that follow a target under the hand: warm starts, same referee; all linkages through nine points | assess, exact, problem, record, search |

@@ -274,7 +274,7 @@ fn every_command_of_the_other_pages_runs_and_prints_what_is_shown() {
 
 #[test]
 fn every_command_of_the_program_stands_in_the_readme() {
-    let help = answer(&root(), "linkwright --help").stdout;
+    let help = answer(root(), "linkwright --help").stdout;
     let listed = help.split("Commands:\n").nth(1).and_then(|rest| rest.split("\n\n").next()).expect("a list");
     let readme = fs::read_to_string(root().join("README.md")).expect("it can be read");
     let table =
