@@ -14,7 +14,7 @@ mod extras;
 mod limits;
 mod repeats;
 
-pub use certificate::{Certificate, CertificatePart};
+pub use certificate::{Certificate, CertificatePart, Difference};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use limits::BeyondLimits;

@@ -9,7 +9,7 @@
 //! ((|w|^2 + s^2) b^2 + |s v - w alpha|^2)/N, w = r - kappa |e'| + i t (docs/certificate.md has each line).
 
 use super::affine::Affine;
-use super::ball::Ball;
+use super::ball::{Ball, not_negative};
 use super::bound::{Bound, Cell};
 use super::chart::Class;
 use super::expansion::{Expansion, LARGER, Moved};
@@ -56,6 +56,8 @@ pub struct Axis {
     pub line: Option<Line>,
     /// The limits of crank and ground.
     pub lengths: Lengths,
+    /// The limits of the ground's angle, degrees.
+    pub limits_deg: Option<[f64; 2]>,
     /// At least the range of phi_0, which is minus the ground's angle, radians; 0 where that is fixed.
     pub phi: [f64; 2],
 }
@@ -78,7 +80,7 @@ impl Axis {
         let pivot = point(design.crank_pivot);
         let range = |limits: Option<Limits>| match limits {
             Some(l) if l.is_fixed() => [l.0; 2],
-            Some(l) => [l.0.max(0.0) * (1.0 - 1e-9), l.1 * (1.0 + 1e-9)],
+            Some(l) => [l.0.max(0.0) * (1.0 - WIDER), l.1 * (1.0 + WIDER)],
             None => [0.0, f64::INFINITY],
         };
         let mut lengths = Lengths { crank: range(design.a), ground: range(design.ground) };
@@ -92,7 +94,7 @@ impl Axis {
             Some(_) => [0.0; 2],
             None => angle.map_or(ALL_ROUND, |angle| phi([angle.0.to_radians(), angle.1.to_radians()])),
         };
-        Axis { pivot, line, lengths, phi }
+        Axis { pivot, line, lengths, limits_deg: angle.map(|angle| [angle.0, angle.1]), phi }
     }
 
     /// The ground's angle, where it is fixed, in degrees.
@@ -105,6 +107,8 @@ impl Axis {
     }
 }
 
+/// By what part limits of lengths are made wider.
+pub(super) const WIDER: f64 = 1e-9;
 /// Every angle.
 const ALL_ROUND: [f64; 2] = [-3.2, 3.2];
 
@@ -324,7 +328,7 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
     }
     // |T' - kappa e' - Z u'| >= |T_y| - |Z| |<y, u>| for y = tau, and for y along i t E + s tau.
     let alpha_sq = alpha[0].square() + alpha[1].square();
-    let longest = |sq: Affine| sq.high().max(0.0).sqrt() * LARGER;
+    let longest = |sq: Affine| not_negative(sq.high()).sqrt() * LARGER;
     let short = s.low() - cap * longest(alpha_sq);
     let y = [t * v[1] + s * alpha[0], s * alpha[1] - t * v[0]];
     let size = (t.square() + s.square()).root();

@@ -3,7 +3,7 @@
 //! An [`Affine`] stands for every function of e in [-1, 1]^4 within `rest` of `mid + by . e`. What an operation leaves
 //! out (products of linear parts, rounding) goes into the rest. Its sums are of a few non-negative numbers: [`UP`].
 
-use super::ball::Ball;
+use super::ball::{Ball, not_negative};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Twice the unit roundoff.
@@ -86,7 +86,7 @@ impl Affine {
     pub fn root(&self) -> Self {
         let (mid, spread) = (self.mid, (self.spread() + self.rest) * UP);
         if !(mid > 1e-12 && spread < 0.9 * mid) {
-            let half = 0.5 * (self.high().max(0.0).sqrt() * UP);
+            let half = 0.5 * (not_negative(self.high()).sqrt() * UP);
             return Affine { mid: half, by: [0.0; 4], rest: half * UP };
         }
         let root = mid.sqrt();

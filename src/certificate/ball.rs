@@ -23,6 +23,12 @@ pub struct Ball {
     pub rad: f64,
 }
 
+/// max(x, 0); what is not a number stays that, and certifies nothing.
+#[inline(always)]
+pub(super) fn not_negative(x: f64) -> f64 {
+    if x < 0.0 { 0.0 } else { x }
+}
+
 impl Ball {
     /// The number itself.
     pub const fn exact(mid: f64) -> Self {
@@ -70,7 +76,7 @@ impl Ball {
     #[inline(always)]
     pub fn root(self) -> Self {
         // |sqrt x - sqrt m| = |x - m|/(sqrt x + sqrt m) <= min(r/sqrt m, sqrt r).
-        let mid = self.mid.max(0.0).sqrt();
+        let mid = not_negative(self.mid).sqrt();
         let far = self.rad.sqrt() * UP;
         let rad = if mid > far { self.rad / mid } else { far };
         Ball::rounded(mid, rad)

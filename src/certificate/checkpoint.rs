@@ -15,14 +15,14 @@
 //! the same boxes in the same order as what was never broken off.
 
 use super::job::{Proof, Request};
-use super::leaves::{Nodes, OPEN};
-use super::search::{OpenBox, Search};
+use super::leaves::{Nodes, OPEN, next};
+use super::search::{MAX_BOXES, MAX_WAITING, OpenBox, Search};
 use super::subject::NoCertificate;
 use crate::record::Record;
 use sha2::{Digest, Sha256};
 
-/// The largest file that is read.
-pub const MAX_BYTES: u64 = 1 << 30;
+/// The largest file that is read: four searches with as many open boxes and nodes as each may have.
+pub const MAX_BYTES: u64 = 4 * (MAX_WAITING as u64 * OPEN_BYTES as u64 + MAX_BOXES as u64 / 2) + (1 << 20);
 const MAGIC: &[u8; 8] = b"lwproof\0";
 const VERSION: u32 = 1;
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
@@ -57,7 +57,8 @@ pub enum ResumeError {
     NoCertificate(#[from] NoCertificate),
 }
 
-const REMEDY: &str = "run certify without --resume to begin anew";
+/// What to do about a file that cannot be gone on from.
+pub const REMEDY: &str = "run certify without --resume to begin anew";
 
 impl Proof {
     /// Where the search stands.
@@ -133,9 +134,6 @@ impl Proof {
     }
 }
 
-/// The next N bytes.
 fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], ResumeError> {
-    let (first, others) = rest.split_first_chunk::<N>().ok_or(ResumeError::Changed)?;
-    *rest = others;
-    Ok(*first)
+    next(rest).ok_or(ResumeError::Changed)
 }

@@ -73,14 +73,18 @@ impl Proof {
             let lowest = open.min_by(|a, b| a.lower_bound().total_cmp(&b.lower_bound()));
             let Some(search) = lowest.filter(|_| !stopped) else { break };
             search.step();
-            let searches = || self.searches.iter().map(|(_, _, search)| search);
-            let lower_bound = self.lower_bound();
-            progress(&Progress {
-                boxes: searches().map(Search::boxes).sum(),
-                decided: searches().map(Search::decided).sum::<f64>() / self.searches.len() as f64,
-                lower_bound,
-                gap: self.subject.gap_of(lower_bound),
-            });
+            progress(&self.progress());
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        let searches = || self.searches.iter().map(|(_, _, search)| search);
+        let lower_bound = self.lower_bound();
+        Progress {
+            boxes: searches().map(Search::boxes).sum(),
+            decided: searches().map(Search::decided).sum::<f64>() / self.searches.len() as f64,
+            lower_bound,
+            gap: self.subject.gap_of(lower_bound),
         }
     }
 
@@ -130,16 +134,30 @@ pub fn certify(
     Ok(proof.certificate())
 }
 
-/// Works out a recorded certificate again, with as many boxes of each part as it has: the same, where it is true.
+/// Works out a recorded certificate again, with as many boxes of each part as it has: the same, where it is true; `None`
+/// where `cancel` was set before.
 ///
 /// # Errors
 /// [`NoCertificate`] where the record has a task for which there is none.
-pub fn recheck(record: &Record, recorded: &Certificate) -> Result<Certificate, NoCertificate> {
+pub fn recheck(
+    record: &Record,
+    recorded: &Certificate,
+    cancel: &AtomicBool,
+    progress: &mut dyn FnMut(&Progress),
+) -> Result<Option<Certificate>, NoCertificate> {
     let mut proof = Proof::new(record, &Request { gap: recorded.wanted_gap })?;
-    for ((_, _, search), part) in proof.searches.iter_mut().zip(&recorded.parts) {
-        while search.boxes() < part.boxes && !search.closed() && !search.full() {
+    for (i, part) in recorded.parts.iter().enumerate().take(proof.searches.len()) {
+        loop {
+            let (_, _, search) = &mut proof.searches[i];
+            if search.boxes() >= part.boxes || search.closed() || search.full() {
+                break;
+            }
             search.step();
+            progress(&proof.progress());
+            if cancel.load(Ordering::Relaxed) {
+                return Ok(None);
+            }
         }
     }
-    Ok(proof.certificate())
+    Ok(Some(proof.certificate()))
 }

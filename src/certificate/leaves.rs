@@ -255,9 +255,13 @@ impl Leaves {
     }
 }
 
-/// The next N bytes.
-fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], LeavesError> {
-    let (first, others) = rest.split_first_chunk::<N>().ok_or(LeavesError::Changed)?;
+/// The next N bytes; `None` where there are fewer.
+pub(super) fn next<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
+    let (first, others) = rest.split_first_chunk::<N>()?;
     *rest = others;
-    Ok(*first)
+    Some(*first)
+}
+
+fn take<const N: usize>(rest: &mut &[u8]) -> Result<[u8; N], LeavesError> {
+    next(rest).ok_or(LeavesError::Changed)
 }

@@ -17,9 +17,9 @@ use std::collections::BinaryHeap;
 /// Boxes of a batch.
 const BATCH: usize = 2048;
 /// The most boxes that wait: about a gigabyte.
-const MAX_WAITING: usize = 20_000_000;
+pub(super) const MAX_WAITING: usize = 20_000_000;
 /// The most boxes of a tree: about a gigabyte.
-const MAX_BOXES: usize = 250_000_000;
+pub(super) const MAX_BOXES: usize = 250_000_000;
 
 /// One class and one direction of the crank, ready to be bounded.
 #[derive(Clone, Debug)]
@@ -230,15 +230,26 @@ struct Waiting {
     cell: [f32; 8],
 }
 
+/// The ends of a box, which have no more digits.
+fn in_single(cell: &Cell) -> [f32; 8] {
+    let mut ends = [0.0; 8];
+    for k in 0..4 {
+        ends[k] = cell.low[k] as f32;
+        ends[4 + k] = cell.high[k] as f32;
+    }
+    ends
+}
+
 impl Waiting {
     fn new(cell: &Cell, bound: &Bound, parent: f64, number: u32) -> Self {
-        let mut packed = [0.0; 8];
-        for k in 0..4 {
-            packed[k] = cell.low[k] as f32;
-            packed[4 + k] = cell.high[k] as f32;
-        }
         let axis = (0..4).max_by(|&i, &j| bound.weight[i].total_cmp(&bound.weight[j])).unwrap_or(0);
-        Waiting { sum_sq: bound.sum_sq.max(parent), number, node: number, axis: axis as u8, cell: packed }
+        Waiting {
+            sum_sq: bound.sum_sq.max(parent),
+            number,
+            node: number,
+            axis: axis as u8,
+            cell: in_single(cell),
+        }
     }
 
     fn cell(&self) -> Cell {
@@ -412,12 +423,7 @@ impl Search {
                 next.extend([(first + 1, upper), (first, lower)]);
             } else if code == OPEN {
                 let OpenBox { number, sum_sq, axis } = *open.next()?;
-                let mut cells = [0.0; 8];
-                for k in 0..4 {
-                    cells[k] = cell.low[k] as f32;
-                    cells[4 + k] = cell.high[k] as f32;
-                }
-                waiting.push(Waiting { sum_sq, number, node, axis, cell: cells });
+                waiting.push(Waiting { sum_sq, number, node, axis, cell: in_single(&cell) });
             } else {
                 tree[node as usize] = u32::from(code);
             }

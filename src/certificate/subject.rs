@@ -5,7 +5,7 @@ use super::absolute::{Axis, Line};
 use super::bound::Cell;
 use super::chart::Class;
 use super::leaves::{Angles, Leaves, OPEN, ROOT, root};
-use super::target::TargetError;
+use super::target::{MAX_POINTS, TargetError};
 use crate::linkage::LinkageType;
 use crate::problem::spec::{Limits, Objective, OnePolicy};
 use crate::record::{Certificate, CertificatePart, Record};
@@ -91,6 +91,9 @@ impl Subject {
         let problem =
             crate::problem::Problem::new(spec.clone()).map_err(|e| NoCertificate::Problem(e.to_string()))?;
         let task = problem.task();
+        if !(5..=MAX_POINTS).contains(&task.len()) {
+            return Err(TargetError::Points { points: task.len() }.into());
+        }
         let first = task.weights().first().copied().unwrap_or(1.0);
         let weighted = task.weights().iter().any(|w| *w != first);
         if weighted || spec.solve.objective != Objective::SumOfSquares {
@@ -155,7 +158,7 @@ impl Subject {
         for number in rest.iter().chain(points).chain(&self.turns_deg).chain(&self.directions) {
             sum.update(number.to_le_bytes());
         }
-        if let Angles::Axis(Axis { pivot, line, lengths, phi }) = self.angles {
+        if let Angles::Axis(Axis { pivot, line, lengths, phi, .. }) = self.angles {
             let (line, to) = match line {
                 None => (0.0, [0.0; 2]),
                 Some(Line::Angle(angle)) => (1.0, [angle, 0.0]),
@@ -204,8 +207,9 @@ impl Subject {
         let words = self.words();
         Certificate {
             statement: format!(
-                "No {}, in one assembly, whose coupler point is at most {limit} from the crank pin has a sum of squared \
-                 errors below {below:.12e} at these {points} points and {}; the best one found has {best:.12e}.",
+                "No {}, in one assembly at all points and with its coupler point at most {limit} from the crank pin, has \
+                 a sum of squared errors below {below:.12e} at these {points} points and {}; the best one found has \
+                 {best:.12e}.",
                 words.linkage, words.angles
             ),
             lower_bound: bound,

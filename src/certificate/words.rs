@@ -1,9 +1,10 @@
 //! What a certificate says it covers, in words.
 
-use super::absolute::Axis;
+use super::absolute::{Axis, WIDER};
 use super::chart::Class;
 use super::leaves::Angles;
 use super::subject::Subject;
+use std::f64::consts::TAU;
 
 /// The words of a certificate.
 pub(super) struct Words {
@@ -41,7 +42,7 @@ impl Subject {
         let mut linkage = match self.classes[..] {
             [Class::CrankRocker] => "crank-rocker".to_owned(),
             [Class::DoubleCrank] => "double-crank".to_owned(),
-            _ => "four-bar linkage whose input turns fully and".to_owned(),
+            _ => "four-bar linkage whose input turns fully".to_owned(),
         };
         let mut covered = vec![
             format!("{class}, and linkages with change points as long as they stay in one assembly"),
@@ -59,11 +60,7 @@ impl Subject {
             )),
             Angles::Axis(axis) => {
                 let place = place(axis);
-                let known = place.join("; ");
-                linkage = match linkage.strip_suffix(" and") {
-                    Some(linkage) => format!("{linkage} ({known}) and"),
-                    None => format!("{linkage} ({known})"),
-                };
+                linkage = format!("{linkage} ({})", place.join("; "));
                 covered.extend(place);
                 covered.push(format!(
                     "any lengths of the other links, the coupler point at most {limit} from the crank pin"
@@ -79,22 +76,31 @@ impl Subject {
     }
 }
 
+/// A limit as it was before it was made wider, by far more than what rounding takes away.
+fn to_twelve_digits(x: f64) -> f64 {
+    format!("{x:.11e}").parse().unwrap_or(x)
+}
+
 /// What is known of the pivots and lengths.
 fn place(axis: &Axis) -> Vec<String> {
-    let range = |name: &str, [low, high]: [f64; 2]| match (low < high, high.is_finite()) {
-        (false, _) => format!("{name} {low:.6} long"),
-        (true, true) => format!("{name} {low:.6} to {high:.6} long"),
-        (true, false) => format!("{name} at least {low:.6} long"),
+    let range = |name: &str, [low, high]: [f64; 2]| {
+        let [least, most] = [low / (1.0 - WIDER), high / (1.0 + WIDER)].map(to_twelve_digits);
+        match (low < high, high.is_finite()) {
+            (false, _) => format!("{name} {low} long"),
+            (true, true) => format!("{name} {least} to {most} long"),
+            (true, false) => format!("{name} at least {least} long"),
+        }
     };
     let pivot = match axis.pivot {
         Some([x, y]) => format!("crank pivot at ({x}, {y})"),
         None => "any crank pivot".into(),
     };
-    let [low, high] = axis.phi.map(f64::to_degrees);
-    let line = match axis.angle_deg() {
-        Some(angle) => format!("ground line at {:.6} degrees", angle + 0.0),
-        None if high - low < 359.9 => format!("ground line at {:.6} to {:.6} degrees", -high, -low),
-        None => "any ground line".into(),
+    let [low, high] = axis.phi;
+    let line = match (axis.angle_deg(), axis.limits_deg) {
+        // Adding 0 makes one zero of the two.
+        (Some(angle), _) => format!("ground line at {} degrees", angle + 0.0),
+        (None, Some([from, to])) if high - low < TAU => format!("ground line at {from} to {to} degrees"),
+        (None, _) => "any ground line".into(),
     };
     vec![pivot, line, range("crank", axis.lengths.crank), range("ground", axis.lengths.ground)]
 }

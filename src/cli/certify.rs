@@ -4,7 +4,7 @@ use super::arguments::Certify;
 use super::progress::Proving;
 use super::result::{self, Which};
 use super::{Ended, interrupt, synth, terminal};
-use crate::certificate::checkpoint::MAX_BYTES;
+use crate::certificate::checkpoint::{MAX_BYTES, REMEDY};
 use crate::certificate::{NoCertificate, Proof, Request, ResumeError};
 use crate::diagnostic::escaped;
 use crate::problem::spec::CertifySpec;
@@ -144,7 +144,9 @@ fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
     let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes);
     read.map_err(|e| refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}")))?;
     if bytes.len() as u64 > MAX_BYTES {
-        return Err(refuse(&format!("{shown}/{CERTIFICATE_CHECKPOINT}: it has at most {MAX_BYTES} bytes")));
+        return Err(refuse(&format!(
+            "{shown}/{CERTIFICATE_CHECKPOINT}: it has at most {MAX_BYTES} bytes; {REMEDY}"
+        )));
     }
     Ok(Some(bytes))
 }

@@ -1,7 +1,7 @@
 //! `verify`: recompute a result.
 
 use super::arguments::Verify;
-use super::progress::LINE_EVERY;
+use super::progress::{LINE_EVERY, Proving};
 use super::result::{self, Which};
 use super::{Ended, interrupt, terminal};
 use crate::certificate::leaves::{LeavesError, MAX_BYTES};
@@ -36,8 +36,12 @@ pub fn run(options: &Verify) -> Ended {
                 terminal::complain(&format!("{shown}: the record has no certificate; run certify first"));
                 return Ended::Refused;
             }
-            match crate::verify::verify_certificate(&record) {
-                Ok(more) => mismatches.extend(more),
+            let mut proving = Proving::new(&record.problem.name, false);
+            let cancel = interrupt::watch("ending the check");
+            match crate::verify::verify_certificate(&record, cancel, &mut |progress| proving.update(progress))
+            {
+                Ok(Some(more)) => mismatches.extend(more),
+                Ok(None) => return Ended::Interrupted,
                 Err(e) => {
                     terminal::complain(&format!("{shown}: {e}"));
                     return Ended::Refused;

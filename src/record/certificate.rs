@@ -27,6 +27,43 @@ pub struct Certificate {
     pub parts: Vec<CertificatePart>,
 }
 
+/// A figure of a certificate that two of them say differently.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// The key.
+    pub what: String,
+    /// What this one says.
+    pub own: String,
+    /// What the other says.
+    pub other: String,
+}
+
+impl Certificate {
+    /// Where another certificate says something else, in the order of the keys.
+    pub fn differences(&self, other: &Certificate) -> Vec<Difference> {
+        let said = |c: &Certificate| {
+            let mut said = vec![
+                ("statement".to_owned(), c.statement.clone()),
+                ("lower_bound".to_owned(), format!("{:e}", c.lower_bound)),
+                ("gap".to_owned(), format!("{:e}", c.gap)),
+                ("closed".to_owned(), c.closed.to_string()),
+                ("boxes".to_owned(), c.boxes.to_string()),
+                ("covered".to_owned(), c.covered.join("; ")),
+                ("not_covered".to_owned(), c.not_covered.join("; ")),
+                ("leaves_sha256".to_owned(), c.leaves_sha256.clone()),
+                ("wanted_gap".to_owned(), format!("{:e}", c.wanted_gap)),
+                ("parts".to_owned(), c.parts.len().to_string()),
+            ];
+            let parts = c.parts.iter().enumerate();
+            said.extend(parts.map(|(i, part)| (format!("parts {}", i + 1), format!("{part:?}"))));
+            said
+        };
+        let pairs = said(self).into_iter().zip(said(other));
+        let differing = pairs.filter(|(own, other)| own != other);
+        differing.map(|((what, own), (_, other))| Difference { what, own, other }).collect()
+    }
+}
+
 /// One class in one direction of the crank.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CertificatePart {

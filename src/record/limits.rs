@@ -42,6 +42,7 @@ impl Record {
             ),
             ("candidates", self.candidates.len(), MAX_CANDIDATES),
             ("relaxations", self.relaxations.len(), MAX_LIST),
+            ("certificate.parts", self.certificate.as_ref().map_or(0, |c| c.parts.len()), MAX_FORMS),
             ("exact.linkages", exact.map_or(0, |exact| exact.linkages.len()), MAX_LIST),
         ];
         let long = counts.into_iter().find(|(_, found, limit)| found > limit);

@@ -67,12 +67,12 @@ pub fn headline(certificate: &Certificate) -> String {
     format!("{proved}: no linkage that the proof covers is better by more than {gap} %")
 }
 
-/// `crank-rocker with the increments: no sum below 0.009, 1,200 boxes`.
+/// `crank-rocker, crank as prescribed: no sum below 0.009, 1,200 boxes`.
 pub(super) fn part_words(part: &CertificatePart) -> String {
     format!(
-        "{} {} the increments: no sum below {}, {} boxes{}",
+        "{}, crank {}: no sum below {}, {} boxes{}",
         clean(&part.linkage_type),
-        if part.direction < 0 { "against" } else { "with" },
+        if part.direction < 0 { "the other way" } else { "as prescribed" },
         at_most(part.lower_bound, 10),
         grouped(part.boxes),
         if part.closed { "" } else { ", not closed" },

@@ -83,7 +83,13 @@ fn task(random: &mut Stream, i: usize, noise: f64) -> (Task, Point, f64) {
         }
     };
     let phi = if line.is_some() { [0.0; 2] } else { [-3.2, 3.2] };
-    let task = Task { class, points, angles, axis: Axis { pivot, line, lengths, phi }, cap: 1e300 };
+    let task = Task {
+        class,
+        points,
+        angles,
+        axis: Axis { pivot, line, lengths, limits_deg: None, phi },
+        cap: 1e300,
+    };
     let sum = task.least(&task.on_chart(&x, theta));
     (task, x, sum)
 }

@@ -66,7 +66,9 @@ impl Interval {
 
     /// The root of max(x, 0).
     pub fn root(self) -> Self {
-        let root = outward(self.low.max(0.0).sqrt(), self.high.max(0.0).sqrt());
+        // What is not a number stays that, and becomes everything.
+        let [low, high] = [self.low, self.high].map(|end| if end < 0.0 { 0.0 } else { end.sqrt() });
+        let root = outward(low, high);
         Interval { low: root.low.max(0.0), high: root.high }
     }
 
@@ -135,6 +137,16 @@ impl Neg for Interval {
 #[cfg(test)]
 mod tests {
     use super::Interval;
+
+    #[test]
+    fn what_is_not_a_number_is_known_of_nothing() {
+        let unknown = Interval::exact(f64::NAN);
+        let one = Interval::exact(1.0);
+        for x in [unknown.root(), unknown * one, one.over(unknown), unknown - one] {
+            assert!(x.high == f64::INFINITY && x.low <= 0.0, "{x:?}");
+        }
+        assert!((Interval { low: -1.0, high: 4.0 }).root().high >= 2.0);
+    }
 
     #[test]
     fn pi_and_the_functions_are_within() {

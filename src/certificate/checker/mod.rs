@@ -1,6 +1,7 @@
 //! The leaves of a certificate, checked in arithmetic of their own.
 //!
-//! Nothing here is shared with the search but the file of the leaves and the record's figures. The tree is replayed: its
+//! What is shared with the search is the file of the leaves, the record's figures ([`Subject`]) and the chart's extent and
+//! classes ([`root`], [`Class`](super::chart::Class)): no bound and no arithmetic. The tree is replayed: its
 //! halves cover the chart. On each leaf the least sum of squares is enclosed from below: intervals with outward rounding
 //! ([`interval`]), functions over a box as polynomials of second degree with an enclosed rest ([`model`]), the target's
 //! directions in intervals ([`frame`]). A leaf that is too large for that is halved here until it is shown ([`region`]).
@@ -14,7 +15,7 @@ pub mod region;
 use super::bound::Cell;
 use super::leaves::{Angles, Leaves, LeavesError, LeavesPart};
 use super::subject::{NoCertificate, Subject};
-use crate::record::{Certificate, Record};
+use crate::record::{Certificate, Difference, Record};
 use rayon::prelude::*;
 use region::{Claim, Region, Shown};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -112,7 +113,10 @@ pub fn check(
     if !alike || leaves.parts.iter().map(named).ne(parts.iter().copied()) {
         return Err(CheckError::Parts);
     }
-    compare(recorded, &subject.certificate(&leaves))?;
+    if let Some(first) = recorded.differences(&subject.certificate(&leaves)).into_iter().next() {
+        let Difference { what, own: recorded, other: found } = first;
+        return Err(CheckError::Other { what, found, recorded });
+    }
     let mut checked = Checked::default();
     for (i, part) in leaves.parts.iter().enumerate() {
         check_part(i + 1, part, &subject, cancel, &mut checked, progress)?;
@@ -222,29 +226,5 @@ impl Iterator for Replay<'_> {
             let [lower, upper] = region.parts(axis, middle);
             self.waiting.extend([upper, lower]);
         }
-    }
-}
-
-/// Compares what the record says with what it would say of these leaves.
-fn compare(recorded: &Certificate, found: &Certificate) -> Result<(), CheckError> {
-    let fields = |c: &Certificate| {
-        let mut fields = vec![
-            ("leaves_sha256".to_owned(), c.leaves_sha256.clone()),
-            ("lower_bound".to_owned(), format!("{:e}", c.lower_bound)),
-            ("gap".to_owned(), format!("{:e}", c.gap)),
-            ("closed".to_owned(), c.closed.to_string()),
-            ("boxes".to_owned(), c.boxes.to_string()),
-            ("statement".to_owned(), c.statement.clone()),
-            ("covered".to_owned(), c.covered.join("; ")),
-            ("not_covered".to_owned(), c.not_covered.join("; ")),
-            ("parts".to_owned(), c.parts.len().to_string()),
-        ];
-        fields
-            .extend(c.parts.iter().enumerate().map(|(i, p)| (format!("parts {}", i + 1), format!("{p:?}"))));
-        fields
-    };
-    match fields(recorded).into_iter().zip(fields(found)).find(|(recorded, found)| recorded != found) {
-        None => Ok(()),
-        Some(((what, recorded), (_, found))) => Err(CheckError::Other { what, found, recorded }),
     }
 }

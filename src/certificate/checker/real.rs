@@ -166,7 +166,7 @@ impl Claim {
         let size = (t.square() + parts.s.square()).root();
         let root = Interval::exact(self.claim).root();
         [(parts.s, Interval::exact(1.0), a), (size, size, &both)].into_iter().any(|(length, over, z)| {
-            let longest = z[0].square().plus(&z[1].square()).highest().max(0.0);
+            let longest = z[0].square().plus(&z[1].square()).highest();
             let reach = Interval::exact(self.cap) * Interval::exact(longest).root();
             (length - reach.over(over)).low >= root.high
         })

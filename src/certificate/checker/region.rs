@@ -255,7 +255,7 @@ impl Claim {
             return true;
         }
         // |T' - Z u'| >= |T'| - |Z| |<tau, u>|.
-        let longest = Interval::exact(alpha_sq.highest().max(0.0)).root();
+        let longest = Interval::exact(alpha_sq.highest()).root();
         let left = Interval::exact(size_sq).root() - Interval::exact(self.cap) * longest;
         if left.low >= claim.root().high {
             return true;
