@@ -1,10 +1,8 @@
 //! Nine points that move under the hand: every real linkage through them, followed from the ones before.
 
-use crate::exact::{Completeness as Ended, Options, Reality, Solution, Solved, Target, resolve_from, solve};
+use crate::exact::{Completeness, Options, Solved, resolve_from, solve};
 use crate::problem::Problem;
-use crate::problem::precision::precision_points;
-use crate::record::{Census, Completeness};
-use crate::search::continuation::{Exact, glanced};
+use crate::search::continuation::{Exact, glanced, target};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The solutions of nine points, kept to be followed when a point moves.
@@ -21,9 +19,10 @@ impl Nine {
 
     /// All real linkages through the points of a problem, judged by its requirements, better first; from the solutions
     /// before where there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is certified, and no
-    /// distance to a whole curve is found ([`glanced`]): that is for a run. `None` where the problem has no nine precision points, or it was cancelled.
+    /// distance to a whole curve is found ([`glanced`]): that is for a run. `None` where the problem has no nine
+    /// precision points, or it was cancelled.
     pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
-        let target = Target::new(precision_points(problem).ok()?).ok()?;
+        let target = target(problem)?;
         let options = Options::default();
         let solved = match self.solved.take() {
             // A requirement has changed, no point.
@@ -34,35 +33,9 @@ impl Nine {
         if cancel.load(Ordering::Relaxed) || solved.cancelled {
             return None;
         }
-        let real: Vec<Solution> = solved
-            .classes
-            .iter()
-            .filter(|class| class.reality == Reality::Real)
-            .map(|class| class.solution)
-            .collect();
-        let paths = &solved.census;
-        let census = Census {
-            tracked: paths.tracked,
-            finite: paths.finite,
-            classes: paths.distinct,
-            duplicate: paths.duplicates,
-            singular: paths.singular,
-            failed: paths.failed,
-            real: paths.real,
-            real_curve: paths.curve_only,
-            complex: paths.complex,
-            not_certified: paths.distinct,
-            ..Census::default()
-        };
-        let completeness = match solved.completeness() {
-            Ended::Complete => Completeness::Complete,
-            Ended::NonGeneric { .. } => Completeness::NonGeneric,
-            Ended::Incomplete { .. } => Completeness::Incomplete,
-            Ended::Cancelled => Completeness::Cancelled,
-        };
-        let exact = glanced(problem, &target, census, completeness, &real);
+        let exact = glanced(problem, &solved);
         // Points in special position lose classes: from there the way back is the start set.
-        self.solved = (solved.completeness() == Ended::Complete).then_some(solved);
+        self.solved = (solved.completeness() == Completeness::Complete).then_some(solved);
         Some(exact)
     }
 }
@@ -71,6 +44,7 @@ impl Nine {
 mod tests {
     use super::*;
     use crate::problem_file::parse;
+    use crate::record::Census;
     use crate::run::{Context, Job, run};
     use crate::search::continuation::same;
 

@@ -11,7 +11,7 @@ use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::exact::certificate::{Certificate, certify, certify_all};
 use crate::exact::distinct::not_proved_distinct;
 use crate::exact::mechanisms::solution_of;
-use crate::exact::{self, Options, Reality, Solution, Target};
+use crate::exact::{self, Options, Reality, Solution, Solved, Target};
 use crate::linkage::FourBar;
 use crate::problem::Problem;
 use crate::problem::precision::precision_points;
@@ -43,25 +43,46 @@ pub fn listed(
 ) -> Exact {
     let classes = classes(problem, target, real, Depth::Whole);
     let proofs = classes.par_iter().map(|class| certified(target, &class.best)).collect();
-    counted(census, completeness, real.len(), classes, proofs)
+    counted((census, completeness), real.len(), classes, proofs)
 }
 
-/// As [`listed`] at a glance, for a target that moves: without proofs and distances to whole curves.
-pub fn glanced(
-    problem: &Problem,
-    target: &Target,
-    census: Census,
-    completeness: Completeness,
-    real: &[Solution],
-) -> Exact {
-    let classes = classes(problem, target, real, Depth::Glance);
+/// All real linkages of what was solved at a glance, for a target that moves: without proofs and distances to whole curves.
+pub fn glanced(problem: &Problem, solved: &Solved) -> Exact {
+    let real = solved.classes.iter().filter(|class| class.reality == Reality::Real);
+    let real: Vec<Solution> = real.map(|class| class.solution).collect();
+    let classes = classes(problem, &solved.target, &real, Depth::Glance);
     let proofs = vec![None; classes.len()];
-    counted(census, completeness, real.len(), classes, proofs)
+    counted(ended(solved), real.len(), classes, proofs)
 }
 
+/// How the paths ended, as the record says it; nothing is certified yet.
+fn ended(solved: &Solved) -> (Census, Completeness) {
+    let paths = &solved.census;
+    let census = Census {
+        tracked: paths.tracked,
+        finite: paths.finite,
+        classes: paths.distinct,
+        duplicate: paths.duplicates,
+        singular: paths.singular,
+        failed: paths.failed,
+        real: paths.real,
+        real_curve: paths.curve_only,
+        complex: paths.complex,
+        not_certified: paths.distinct,
+        ..Census::default()
+    };
+    let completeness = match solved.completeness() {
+        exact::Completeness::Complete => Completeness::Complete,
+        exact::Completeness::NonGeneric { .. } => Completeness::NonGeneric,
+        exact::Completeness::Incomplete { .. } => Completeness::Incomplete,
+        exact::Completeness::Cancelled => Completeness::Cancelled,
+    };
+    (census, completeness)
+}
+
+/// Counts what is listed into the census.
 fn counted(
-    census: Census,
-    completeness: Completeness,
+    (census, completeness): (Census, Completeness),
     real: usize,
     classes: Vec<Class>,
     proofs: Vec<Option<Certified>>,
@@ -228,19 +249,10 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
         .filter(|(class, _)| class.reality == Reality::Real)
         .map(|(class, proof)| proof.as_ref().map_or(class.solution, |proof| proof.refined))
         .collect();
-    let paths = &solved.census;
+    let (census, completeness) = ended(&solved);
     let census = Census {
-        tracked: paths.tracked,
-        finite: paths.finite,
-        classes: paths.distinct,
-        duplicate: paths.duplicates,
-        singular: paths.singular,
-        failed: paths.failed,
-        real: paths.real,
-        real_curve: paths.curve_only,
-        complex: paths.complex,
         certified: certificates.len(),
-        not_certified: paths.distinct - certificates.len(),
+        not_certified: census.classes - certificates.len(),
         reality_proved: solved
             .classes
             .iter()
@@ -248,13 +260,7 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
             .filter(|(class, proof)| proof.as_ref().is_some_and(|proof| class.reality == proof.reality))
             .count(),
         not_told_apart: not_proved_distinct(&certificates).len(),
-        ..Census::default()
-    };
-    let completeness = match solved.completeness() {
-        exact::Completeness::Complete => Completeness::Complete,
-        exact::Completeness::NonGeneric { .. } => Completeness::NonGeneric,
-        exact::Completeness::Incomplete { .. } => Completeness::Incomplete,
-        exact::Completeness::Cancelled => Completeness::Cancelled,
+        ..census
     };
     Some(listed(problem, &target, census, completeness, &real))
 }
