@@ -1,7 +1,7 @@
 //! The leaves of a certificate, checked in arithmetic of their own.
 //!
 //! What is shared with the search is the file of the leaves, the record's figures ([`Subject`]) and the chart's extent and
-//! classes ([`root`], [`Class`](super::chart::Class)): no bound and no arithmetic. The tree is replayed: its
+//! classes ([`super::leaves::root`], [`Class`](super::chart::Class)): no bound and no arithmetic. The tree is replayed: its
 //! halves cover the chart. On each leaf the least sum of squares is enclosed from below: intervals with outward rounding
 //! ([`interval`]), functions over a box as polynomials of second degree with an enclosed rest ([`model`]), the target's
 //! directions in intervals ([`frame`]). A leaf that is too large for that is halved here until it is shown ([`region`]).
