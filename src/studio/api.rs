@@ -7,7 +7,7 @@ use super::jobs::{Refusal, absent};
 use super::messages::{Ask, Shown};
 use super::openapi::document;
 use super::server::{House, json, refused};
-use crate::problem_file::{self, ProblemFile};
+use crate::problem_file::ProblemFile;
 use crate::record::{Record, Unit};
 use axum::Router;
 use axum::body::Bytes;
@@ -50,7 +50,6 @@ pub struct Opened {
 pub(super) fn routes() -> Router<Arc<House>> {
     Router::new()
         .route("/openapi.json", get(|| async { json(document().to_string()) }))
-        .route("/ask.json", post(ask_of_text))
         .route("/jobs", get(list).post(start))
         .route("/jobs/{name}", get(one))
         .route("/jobs/{name}/cancel", post(cancel))
@@ -198,21 +197,6 @@ async fn file(State(house): State<Arc<House>>, Path((name, file)): Path<(String,
                 _ => ("application/octet-stream", "bin"),
             };
             handed(Handed { kind, ending, bytes })
-        }
-    })
-    .await
-}
-
-/// What to ask in a tab for the problem of a file's text.
-async fn ask_of_text(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |_| {
-        let Ok(text) = std::str::from_utf8(&body) else { return refused("this is no text (UTF-8)") };
-        match problem_file::parse("problem", text, None, &[]) {
-            Err(diagnostic) => refused(diagnostic.message.clone()),
-            Ok(file) => match Ask::of(&file) {
-                Ok(ask) => written(&ask),
-                Err(why) => refused(why.to_string()),
-            },
         }
     })
     .await

@@ -8,6 +8,7 @@
 
 use super::asked::MOST_POINTS;
 use super::job_messages::{JobAsk, JobProgress};
+use super::reading::said;
 use super::shelf::Shelf;
 use crate::name;
 use crate::problem::Problem;
@@ -138,7 +139,7 @@ impl JobAsk {
             return Err(format!("`set` takes keys of [solve] such as solve.evaluations, not {other:?}"));
         }
         let set: Vec<_> = self.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
-        let file = problem_file::parse("problem", &text, None, &set).map_err(|e| e.message.clone())?;
+        let file = problem_file::parse("problem", &text, None, &set).map_err(|e| said(&e))?;
         if file.spec.task.path.points.len() > MOST_POINTS {
             return Err(format!("at most {MOST_POINTS} points: this target has more"));
         }

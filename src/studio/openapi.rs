@@ -39,7 +39,7 @@ const fn post(path: &'static str, takes: Body, gives: Body, summary: &'static st
     Route { method: "post", path, summary, takes, status: 200, gives }
 }
 
-const ROUTES: [Route; 21] = [
+const ROUTES: [Route; 20] = [
     get(
         "/",
         Body::Other("text/html"),
@@ -70,12 +70,6 @@ const ROUTES: [Route; 21] = [
         Body::Json("LinkageAsk"),
         Body::Other("application/toml"),
         "The linkage file of a linkage.",
-    ),
-    post(
-        "/ask.json",
-        Body::Other("application/toml"),
-        Body::Json("Ask"),
-        "What to ask in a tab for the problem of a file's text.",
     ),
     post(
         "/read",

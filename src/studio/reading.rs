@@ -58,7 +58,7 @@ pub struct Reading {
 }
 
 /// `line 3: the cell of y is empty: give its value or leave the row out`
-fn said(diagnostic: &Diagnostic) -> String {
+pub(super) fn said(diagnostic: &Diagnostic) -> String {
     let mut said = diagnostic.line_column().map_or(String::new(), |(line, _)| format!("line {line}: "));
     said.push_str(&diagnostic.message);
     if let Some(help) = &diagnostic.help {

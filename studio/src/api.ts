@@ -1,6 +1,6 @@
 // What the page asks of the studio over HTTP: see /openapi.json.
 
-import type { Point, Shown, Solution, Task } from "./messages";
+import type { Point, Reading, Shown, Solution, Task } from "./messages";
 
 export interface JobShown {
   name: string;
@@ -33,11 +33,10 @@ export interface Compared {
 /** An answer that is not what was asked for, in the studio's words. */
 export class Refused extends Error {}
 
-async function answered(path: string, body?: unknown, text?: string): Promise<Response> {
+async function answered(path: string, body?: unknown): Promise<Response> {
   let reply: Response;
   try {
-    const init = body === undefined && text === undefined ? {} : { method: "POST", body: text ?? JSON.stringify(body), headers: { "Content-Type": text === undefined ? "application/json" : "application/toml" } };
-    reply = await fetch(path, init);
+    reply = await fetch(path, body === undefined ? {} : { method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } });
   } catch {
     throw new Refused("the studio does not answer");
   }
@@ -55,7 +54,7 @@ export const details = async (of: Source) => (await answered("/details", { of })
 export const exported = async (of: Source, format: string) => (await answered("/export", { of, format })).blob();
 export const compared = async (of: Source[]) => (await answered("/compare", { of })).json() as Promise<Compared>;
 export const comparedAs = async (of: Source[], form: string) => (await answered("/compare", { of, form })).blob();
-export const askOf = async (text: string) => (await answered("/ask.json", undefined, text)).json() as Promise<Task>;
+export const read = async (text: { kind: string; name: string; text: string; unit?: string; samples?: number }) => (await answered("/read", text)).json() as Promise<Reading>;
 /** A linkage as it stands, as a source of details, files and comparisons. */
 export function drawn({ shown: { linkage, crank_deg, t1_at }, task }: Solution): Source {
   return { drawn: { ask: task, linkage, crank_deg, t1_at } };

@@ -1,5 +1,6 @@
 // Files and texts that are dropped, pasted or chosen: what they are, and how the studio reads them.
 
+import * as api from "./api";
 import type { Point, Reading, Task } from "./messages";
 import { ofText } from "./target";
 import { taskOf, withPoints } from "./task";
@@ -28,16 +29,14 @@ export async function taskOfText(text: string, name: string, task: Task, samples
     const points = ofText(text);
     return typeof points === "string" ? points : { task: withPoints(task, points, task.closed), said: `${points.length} points` };
   }
-  let reply: Response;
+  let reading: Reading;
   try {
-    const body = JSON.stringify({ kind, name: name || "pasted", text, ...(kind === "svg" && task.unit ? { unit: task.unit } : {}), ...(kind === "svg" && samples ? { samples } : {}) });
-    reply = await fetch("/read", { method: "POST", body, headers: { "Content-Type": "application/json" } });
-  } catch {
-    return "the studio does not answer";
+    const drawing = kind === "svg" ? { unit: task.unit, samples: samples || undefined } : {};
+    reading = await api.read({ kind, name: name || "pasted", text, ...drawing });
+  } catch (error) {
+    return api.wordsOf(error);
   }
-  const answer = await reply.text();
-  if (!reply.ok) return answer.trim();
-  const { ask, whole, warnings } = JSON.parse(answer) as Reading;
+  const { ask, whole, warnings } = reading;
   const said = [`${ask.points.length} points`, ...warnings].join(". ");
   if (whole) return { task: taskOf(ask), said: `The problem ${ask.name}: ${said}` };
   const { tolerances, weights, timing, unit } = ask;

@@ -3,7 +3,7 @@
 import { element } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
 import type { Host } from "./desk";
-import type { Task } from "./messages";
+import { taskOf } from "./task";
 
 const MARK = "#problem=";
 /** The longest link that is made or read: what programs pass on whole. */
@@ -113,8 +113,9 @@ export class Share {
 
   private async read(text: string, from: string) {
     try {
-      const { version: _, ...task } = (await api.askOf(text)) as Task & { version?: number };
-      this.host.take(task);
+      const { ask, warnings } = await api.read({ kind: "problem", name: from, text });
+      this.host.take(taskOf(ask));
+      if (warnings.length > 0) this.host.say(`${from}: ${warnings.join(". ")}.`);
     } catch (error) {
       this.host.say(`${from} holds no problem that can be drawn: ${api.wordsOf(error)}`, true);
     }

@@ -140,7 +140,10 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     let opened = value(&guest.gets("/jobs/an%20egg/opened"));
     assert_eq!(opened["ask"]["points"], ask["points"]);
     assert_eq!(opened["ask"]["transmission_deg_min"], 55.0);
-    assert_eq!(value(&studio_ask(&guest, &problem))["points"], ask["points"]);
+    assert_eq!(
+        value(&guest.posts("/read", &json!({"kind": "problem", "text": problem})))["ask"]["points"],
+        ask["points"]
+    );
     // Files: as the commands write them.
     let of = json!({"job": {"name": "an egg", "rank": 1}});
     for format in ["dxf", "svg", "csv", "toml", "json", "scad", "cut-list", "dxf-plates"] {
@@ -195,10 +198,6 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
         list["jobs"].as_array().expect("a list").iter().map(|job| job["name"].clone()).collect();
     assert_eq!(names, ["again", "an egg"]);
     assert!(list["jobs"].as_array().expect("a list").iter().all(|job| job["state"] == "done"));
-}
-
-fn studio_ask(guest: &Guest<'_>, text: &str) -> Reply {
-    guest.studio.posts(&guest.cookie, "/ask.json", text.as_bytes())
 }
 
 /// Where a job's search began: evaluations before its first word.
