@@ -89,6 +89,21 @@ pub struct Row {
     pub shape: [f64; SHAPE],
     /// dg/dphi, all crank angles together.
     pub crank: f64,
+    /// The position at which it is evaluated.
+    pub place: Place,
+}
+
+/// The position of a motion at which a requirement is evaluated: where it is tightest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// None in particular, or an extreme inside a stretch, which does not move with the crank angle to first order.
+    Anywhere,
+    /// The crank angle that a stretch begins with.
+    First,
+    /// The crank angle that a stretch ends with.
+    Last,
+    /// A position of a list, counted from 0.
+    Position(usize),
 }
 
 /// The motion that a requirement is asked of.
@@ -135,7 +150,8 @@ impl Requirements {
         ];
         let links = shape.links();
         let combine = |kind: RowKind, factors: [f64; 4], constant: f64| {
-            let mut row = Row { kind, value: constant, shape: [0.0; SHAPE], crank: 0.0 };
+            let mut row =
+                Row { kind, value: constant, shape: [0.0; SHAPE], crank: 0.0, place: Place::Anywhere };
             for (link, factor) in factors.into_iter().enumerate() {
                 row.value += factor * links[link];
                 for (out, by) in row.shape.iter_mut().zip(&link_rows[link]) {
@@ -225,6 +241,7 @@ impl Requirements {
                             value: half - sign * value,
                             shape: row.map(|by| -sign * by),
                             crank: 0.0,
+                            place: Place::Anywhere,
                         });
                     }
                     continue;
@@ -242,12 +259,14 @@ impl Requirements {
                 }
             };
             let margin = if low == high { 0.0 } else { margin };
-            each(&Row { kind: kind(true), value: value - low - margin, shape: row, crank: 0.0 });
+            let (crank, place) = (0.0, Place::Anywhere);
+            each(&Row { kind: kind(true), value: value - low - margin, shape: row, crank, place });
             each(&Row {
                 kind: kind(false),
                 value: high - value - margin,
                 shape: row.map(|by| -by),
-                crank: 0.0,
+                crank,
+                place,
             });
         }
     }
@@ -265,7 +284,8 @@ impl Requirements {
             for (limit, sign) in [(b[axis], 1.0), (b[axis + 2], -1.0)] {
                 let (shape, crank) = derivative(axis, sign);
                 let kind = kind(Side::of(axis, sign > 0.0));
-                each(&Row { kind, value: sign * (at - limit) - margin, shape, crank });
+                let place = Place::Anywhere;
+                each(&Row { kind, value: sign * (at - limit) - margin, shape, crank, place });
             }
         }
     }
@@ -287,29 +307,29 @@ impl Requirements {
         } else {
             TransmissionOver::Used
         });
-        // (s, ds by ground and a, or by the shape at a crank angle)
+        // (s, ds by ground and a, or by the shape at a crank angle, that angle)
         let aligned = |sign: f64| {
             let s = ground + sign * a;
             let mut row = [0.0; SHAPE];
             let flip = s.signum();
             (row[0], row[1], row[2], row[3]) = (-g.re * flip, -g.im * flip, g.re * flip, g.im * flip);
             row[4] = sign * flip;
-            (s.abs(), row, 0.0)
+            (s.abs(), row, 0.0, Place::Anywhere)
         };
-        let at = |crank: Complex| {
+        let at = |crank: Complex, place: Place| {
             let v = shape.follower_pivot - shape.crank_pivot - crank * a;
             let along = unit(v);
             let mut row = [0.0; SHAPE];
             (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im);
             row[4] = -dot(along, crank);
-            (length(v), row, -dot(along, turned(crank)) * a)
+            (length(v), row, -dot(along, turned(crank)) * a, place)
         };
         let extremes = match (over, motion) {
             (TransmissionOver::Cycle, _) => [aligned(-1.0), aligned(1.0)],
             (TransmissionOver::Used, Motion::Positions(positions)) => {
-                let mut found = [at(positions[0][0]), at(positions[0][0])];
-                for p in positions.iter() {
-                    let s = at(p[0]);
+                let mut found = [at(positions[0][0], Place::Position(0)); 2];
+                for (j, p) in positions.iter().enumerate() {
+                    let s = at(p[0], Place::Position(j));
                     if s.0 < found[0].0 {
                         found[0] = s;
                     }
@@ -321,7 +341,10 @@ impl Requirements {
             }
             (TransmissionOver::Used, Motion::Stretch(from, to, _)) => {
                 let (low, high) = (from.min(*to), from.max(*to));
-                let (first, last) = (at(Complex::from_polar(1.0, low)), at(Complex::from_polar(1.0, high)));
+                let (first, last) = (
+                    at(Complex::from_polar(1.0, low), Place::First),
+                    at(Complex::from_polar(1.0, high), Place::Last),
+                );
                 let (mut least, mut greatest) = if first.0 < last.0 { (first, last) } else { (last, first) };
                 let holds = |angle: f64| (angle - low).rem_euclid(2.0 * PI) <= high - low;
                 if holds(g.arg()) {
@@ -333,7 +356,7 @@ impl Requirements {
                 [least, greatest]
             }
         };
-        for (sign, (s, by, by_crank)) in [1.0, -1.0].into_iter().zip(extremes) {
+        for (sign, (s, by, by_crank, place)) in [1.0, -1.0].into_iter().zip(extremes) {
             // least s: cos mu <= cos limit; greatest s: cos mu >= -cos limit
             let cos = (b * b + c * c - s * s) / (2.0 * b * c);
             let mut row = Row {
@@ -341,6 +364,7 @@ impl Requirements {
                 value: self.size * (limit.cos() - sign * cos),
                 shape: by.map(|d| self.size * sign * s / (b * c) * d),
                 crank: self.size * sign * s / (b * c) * by_crank,
+                place,
             };
             row.shape[5] -= self.size * sign * (1.0 / c - cos / b);
             row.shape[6] -= self.size * sign * (1.0 / b - cos / c);
@@ -371,10 +395,14 @@ impl Requirements {
                     let extreme = swept.extreme(joint, axis, sign)?;
                     let (shape_row, crank) = extreme.derivative(shape, joint, axis, sign);
                     let at = if axis == 0 { extreme.joints[joint].re } else { extreme.joints[joint].im };
-                    Some(Row { kind, value: sign * (at - limit) - margin, shape: shape_row, crank })
+                    let value = sign * (at - limit) - margin;
+                    Some(Row { kind, value, shape: shape_row, crank, place: extreme.place })
                 });
                 // A linkage that has no position at all has no footprint to judge: its size is lacking.
-                each(&row.unwrap_or(Row { kind, value: -self.size, shape: [0.0; SHAPE], crank: 0.0 }));
+                let nowhere = Place::Anywhere;
+                let lacking =
+                    Row { kind, value: -self.size, shape: [0.0; SHAPE], crank: 0.0, place: nowhere };
+                each(&row.unwrap_or(lacking));
             }
         }
     }
@@ -449,6 +477,7 @@ const SAMPLES: usize = 96;
 
 #[derive(Clone, Copy)]
 struct SweptPosition {
+    place: Place,
     angle: f64,
     frame: Frame,
     joints: [Complex; 3],
@@ -463,13 +492,20 @@ impl<'a> Swept<'a> {
                 let step = (to - from) / SAMPLES as f64;
                 let zero = Complex::new(0.0, 0.0);
                 let nowhere = SweptPosition {
+                    place: Place::Anywhere,
                     angle: 0.0,
                     frame: Frame { crank: zero, coupler: zero, follower: zero },
                     joints: [zero; 3],
                 };
                 let (mut at, mut found) = ([nowhere; SAMPLES + 1], 0);
                 for i in 0..=SAMPLES {
-                    if let Some(position) = SweptPosition::at(&linkage, assembly, from + step * i as f64) {
+                    if let Some(mut position) = SweptPosition::at(&linkage, assembly, from + step * i as f64)
+                    {
+                        position.place = match i {
+                            0 => Place::First,
+                            SAMPLES => Place::Last,
+                            _ => Place::Anywhere,
+                        };
                         at[found] = position;
                         found += 1;
                     }
@@ -485,7 +521,8 @@ impl<'a> Swept<'a> {
         match self {
             Swept::Points { shape, positions } => positions
                 .iter()
-                .map(|p| SweptPosition::of_directions(shape, p))
+                .enumerate()
+                .map(|(j, p)| SweptPosition::of_directions(shape, p, Place::Position(j)))
                 .min_by(|p, q| value(p).total_cmp(&value(q))),
             Swept::Samples { linkage, assembly, step, found, at } => {
                 let at = &at[..*found];
@@ -517,10 +554,11 @@ impl<'a> Swept<'a> {
 }
 
 impl SweptPosition {
-    fn of_directions(shape: &Shape, [crank, coupler]: &[Complex; 2]) -> SweptPosition {
+    fn of_directions(shape: &Shape, [crank, coupler]: &[Complex; 2], place: Place) -> SweptPosition {
         let c = shape.crank_pivot + crank * shape.crank;
         let d = c + coupler * shape.coupler;
         SweptPosition {
+            place,
             angle: crank.arg(),
             frame: Frame { crank: *crank, coupler: *coupler, follower: unit(d - shape.follower_pivot) },
             joints: [c, d, c + coupler * shape.offset],
@@ -530,6 +568,7 @@ impl SweptPosition {
     fn at(linkage: &FourBar, assembly: AssemblyMode, angle: f64) -> Option<SweptPosition> {
         let joints = linkage.position_with(angle, assembly).joints()?;
         Some(SweptPosition {
+            place: Place::Anywhere,
             angle,
             frame: linkage.frame(angle, assembly)?,
             joints: [joints.crank_pin, joints.follower_pin, joints.coupler_point],

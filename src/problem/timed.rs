@@ -188,6 +188,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             each(&ConstraintRow {
                 value: row.value,
                 gradient: self.space.pull_back(x, &shape, &by_shape, by_offset),
+                own: None,
             });
         });
     }

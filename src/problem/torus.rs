@@ -14,11 +14,11 @@
 //! The tangents are eliminated point by point in [`crate::solve::levenberg_marquardt`].
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
-use super::requirements::{Motion, Requirements, assembly_of};
+use super::requirements::{Motion, Place, Requirements, assembly_of};
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
 use crate::linkage::mobility::linkage_type;
-use crate::linkage::{Complex, LinkageType, dot, turned, xy};
+use crate::linkage::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 
 use crate::task::referee::ORDER_TOLERANCE;
@@ -88,18 +88,32 @@ impl<'a> TorusFit<'a> {
         &self.requirements
     }
 
-    /// The motion through the positions: a stretch of crank angle where the input turns fully. Where no
-    /// requirement looks at the motion, it is not worked out.
+    /// The motion through the positions: a stretch of crank angle where the input turns fully and where it rocks on
+    /// one branch. Where no requirement looks at the motion, it is not worked out.
     pub fn motion<'p>(&self, shape: &Shape, positions: &'p Positions) -> Motion<'p> {
+        self.motion_between(shape, positions).0
+    }
+
+    /// As [`TorusFit::motion`], with the points at which a stretch begins and ends; `None` for a full turn, which
+    /// begins and ends nowhere.
+    fn motion_between<'p>(
+        &self,
+        shape: &Shape,
+        positions: &'p Positions,
+    ) -> (Motion<'p>, Option<[usize; 2]>) {
+        let as_listed = (Motion::Positions(positions), None);
         if !self.requirements.depend_on_motion() {
-            return Motion::Positions(positions);
+            return as_listed;
         }
-        let turns = linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully);
-        let Some([e, u]) = positions.first().filter(|_| turns) else { return Motion::Positions(positions) };
+        let Some([e, u]) = positions.first() else { return as_listed };
         let assembly = assembly_of(shape, *e, *u);
+        if !linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully) {
+            return rocking(shape, positions, assembly).unwrap_or(as_listed);
+        }
         let task = self.problem.task();
+        let whole = (Motion::Stretch(e.arg(), e.arg() + TAU, assembly), None);
         if task.closed() || task.repeats_first() {
-            return Motion::Stretch(e.arg(), e.arg() + TAU, assembly);
+            return whole;
         }
         let total = |direction: f64| -> f64 {
             let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
@@ -111,13 +125,13 @@ impl<'a> TorusFit<'a> {
                 .sum()
         };
         let (forward, backward) = (total(1.0), total(-1.0));
+        let last = positions.len() - 1;
         if forward.min(backward) >= TAU {
-            return Motion::Stretch(e.arg(), e.arg() + TAU, assembly);
-        }
-        if forward <= backward {
-            Motion::Stretch(e.arg(), e.arg() + forward, assembly)
+            whole
+        } else if forward <= backward {
+            (Motion::Stretch(e.arg(), e.arg() + forward, assembly), Some([0, last]))
         } else {
-            Motion::Stretch(e.arg() - backward, e.arg(), assembly)
+            (Motion::Stretch(e.arg() - backward, e.arg(), assembly), Some([last, 0]))
         }
     }
 
@@ -126,6 +140,31 @@ impl<'a> TorusFit<'a> {
         let Some(shape) = self.space.shape(x) else { return false };
         settle_all(&shape, positions)
     }
+}
+
+/// The stretch of a crank that rocks through positions on one branch, with the points at its two ends; `None` where
+/// the positions lie on both branches.
+fn rocking<'p>(
+    shape: &Shape,
+    positions: &[[Complex; 2]],
+    assembly: AssemblyMode,
+) -> Option<(Motion<'p>, Option<[usize; 2]>)> {
+    let (mut low, mut high) = ((0.0, 0), (0.0, 0));
+    let mut turned_by = 0.0;
+    for (j, pair) in positions.windows(2).enumerate() {
+        if assembly_of(shape, pair[1][0], pair[1][1]) != assembly {
+            return None;
+        }
+        turned_by += (pair[1][0] * pair[0][0].conj()).arg();
+        if turned_by < low.0 {
+            low = (turned_by, j + 1);
+        }
+        if turned_by > high.0 {
+            high = (turned_by, j + 1);
+        }
+    }
+    let first = positions.first()?[0].arg();
+    Some((Motion::Stretch(first + low.0, first + high.0, assembly), Some([low.1, high.1])))
 }
 
 /// The curve's frame at a position: Y, c_phi, c_w.
@@ -329,6 +368,21 @@ fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
     settled
 }
 
+impl TorusFit<'_> {
+    /// dphi of a position by the shape, with the least-norm return to its curve, and by its own step. Zero where the
+    /// curve has no tangent.
+    fn crank_of(&self, shape: &Shape, position: [Complex; 2]) -> ([f64; SHAPE], f64) {
+        let (y, by_e, by_u) = frame(shape, position);
+        let n2 = by_e * by_e + by_u * by_u;
+        if n2 == 0.0 {
+            return ([0.0; SHAPE], 0.0);
+        }
+        let [e, u] = position;
+        let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
+        (miss.map(|h| h * by_e / n2), self.forward() * by_u / n2.sqrt())
+    }
+}
+
 impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
     type State = Positions;
 
@@ -460,10 +514,27 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
 
     fn constraints(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
         let Some(shape) = self.space.shape(x) else { return };
-        self.requirements.rows(self.setting.aim, &shape, &self.motion(&shape, state), &mut |row| {
+        let (motion, ends) = self.motion_between(&shape, state);
+        self.requirements.rows(self.setting.aim, &shape, &motion, &mut |row| {
+            let point = match row.place {
+                Place::Anywhere => None,
+                Place::First => ends.map(|[first, _]| first),
+                Place::Last => ends.map(|[_, last]| last),
+                Place::Position(j) => Some(j),
+            };
+            let (mut by_shape, mut own) = (row.shape, None);
+            if let Some(j) = point {
+                // The crank angle is the point's: it moves with the return to the curve and with the point's step.
+                let (by_return, by_step) = self.crank_of(&shape, state[j]);
+                for (out, by) in by_shape.iter_mut().zip(by_return) {
+                    *out += row.crank * by;
+                }
+                own = Some((j, row.crank * by_step));
+            }
             each(&ConstraintRow {
                 value: row.value,
-                gradient: self.space.pull_back(x, &shape, &row.shape, 0.0),
+                gradient: self.space.pull_back(x, &shape, &by_shape, 0.0),
+                own,
             });
         });
     }

@@ -8,13 +8,19 @@
 //! to what reads well, and proposed only if the search itself, run with them as it would be when they are
 //! typed, ends with an accepted candidate. Where no single demand helps, pairs are tried.
 //!
+//! Every design that a trial meets is also judged by the problem as it is, and the nearest ones are fitted under all of
+//! it ([`led_in`]). One that is acceptable refutes the conflict: it becomes an answer, and nothing is explained.
+//!
 //! All of it says what was found, not what exists: a search that finds nothing is no proof that there is nothing.
 
 use super::cognates;
 use super::loosen::{Demand, changes, judged_under, rounded_outward};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::rank::divided;
+use super::relaxed::{RELAXED, led_in};
 use super::warm::start_at;
 use super::{Budget, Observer, Progress, SearchOutcome, plan};
+use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
 use crate::record::{Candidate, Conflict, Relaxation};
@@ -58,6 +64,9 @@ pub struct Explained {
 
 /// Explains a search that found nothing acceptable; nothing where it found something or the budget has stopped.
 ///
+/// Where a trial meets a design that is acceptable after all, the outcome's candidates are chosen anew with it, and there
+/// is nothing to explain.
+///
 /// Where the clock or a cancellation ends it early there is no explanation, and that becomes the reason why the
 /// search ended: the record cannot be repeated then.
 ///
@@ -82,16 +91,29 @@ pub fn explain(
         trial,
         spent: 0,
         allowance: ALLOWANCE * trial,
+        refused: outcome.candidates.clone(),
+        met: Vec::new(),
         tried: Vec::new(),
     };
-    let explained = inquiry.explain(&outcome.candidates)?;
-    match budget.stop_reason() {
-        Some(reason) => {
-            outcome.reason = reason;
-            Ok(Explained::default())
-        }
-        None => Ok(explained),
+    let explained = inquiry.explain()?;
+    let Inquiry { met, .. } = inquiry;
+    if let Some(reason) = budget.stop_reason() {
+        outcome.reason = reason;
     }
+    if met.is_empty() {
+        return Ok(if budget.stopped() { Explained::default() } else { explained });
+    }
+    let mut found = std::mem::take(&mut outcome.candidates);
+    found.append(&mut outcome.others);
+    found.extend(met);
+    (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+    cognates::offer(problem, &mut outcome.candidates);
+    // How often the best came back was counted of another one.
+    outcome.repeats = None;
+    if !outcome.used.iter().any(|used| used == RELAXED) {
+        outcome.used.push(RELAXED.into());
+    }
+    Ok(Explained::default())
 }
 
 struct Inquiry<'a> {
@@ -102,17 +124,21 @@ struct Inquiry<'a> {
     trial: u64,
     spent: u64,
     allowance: u64,
+    /// The candidates of the search that is explained.
+    refused: Vec<Candidate>,
+    /// Designs that are acceptable after all.
+    met: Vec<Candidate>,
     /// What was acceptable without these demands.
     tried: Vec<(Vec<Demand>, Vec<Candidate>)>,
 }
 
 impl Inquiry<'_> {
     fn exhausted(&self) -> bool {
-        self.spent >= self.allowance || self.budget.stopped()
+        self.spent >= self.allowance || self.budget.stopped() || !self.met.is_empty()
     }
 
-    fn explain(&mut self, refused: &[Candidate]) -> Result<Explained, PopulationError> {
-        let demands = self.demands(refused);
+    fn explain(&mut self) -> Result<Explained, PopulationError> {
+        let demands = self.demands(&self.refused);
         let mut helping = Vec::new();
         for &demand in &demands {
             if !self.without(&[demand])?.is_empty() {
@@ -173,9 +199,20 @@ impl Inquiry<'_> {
         let all = demands.iter();
         let mut spec = all.fold(self.problem.spec().clone(), |spec, d| d.dropped(self.problem, spec));
         spec.solve.candidates = WARM;
-        let found = self.short_search(spec, self.trial)?;
+        let mut found = self.known_under(&spec);
+        // A tolerance leads no fit: the search that is explained has already looked for the nearest to it.
+        if found.is_empty() || demands != [Demand::Tolerance] {
+            found.extend(self.short_search(spec, self.trial)?);
+        }
         self.tried.push((demands.to_vec(), found.clone()));
         Ok(found)
+    }
+
+    /// The refused candidates that are acceptable under a looser specification.
+    fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
+        let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
+        let judged = |c: &Candidate| assess(&problem, &c.linkage, &c.crank_deg, &c.t1_at);
+        self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
     }
 
     /// A search of `auto` with a budget of its own: what it accepts.
@@ -191,8 +228,8 @@ impl Inquiry<'_> {
         Ok(accepted)
     }
 
-    /// What the search accepts of a problem, and what it cost.
-    fn outcome(&self, spec: ProblemSpec) -> Result<(Vec<Candidate>, u64), PopulationError> {
+    /// What the search accepts of a problem, and what it cost. What it meets is led to the problem as it is.
+    fn outcome(&mut self, spec: ProblemSpec) -> Result<(Vec<Candidate>, u64), PopulationError> {
         let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
         (self.observer)(&Progress {
             phase: "what would help",
@@ -205,6 +242,14 @@ impl Inquiry<'_> {
         let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
         // As a run does: a cognate may take its candidate's place.
         cognates::offer(&problem, &mut outcome.candidates);
+        if self.met.is_empty() {
+            let mut ends = outcome.candidates.clone();
+            ends.append(&mut outcome.others);
+            let each = (self.trial / FIT_SHARE).max(1);
+            let (met, spent) = led_in(self.problem, &ends, each, self.budget);
+            self.spent += spent;
+            self.met.extend(met.into_iter().filter(|c| c.accepted));
+        }
         let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
         Ok((accepted, outcome.evaluations.objective))
     }

@@ -25,6 +25,7 @@ pub mod population;
 pub mod rank;
 mod reassign;
 pub mod reduced;
+mod relaxed;
 mod repeats;
 pub mod starts;
 pub mod timed;

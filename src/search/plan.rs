@@ -15,7 +15,7 @@ use super::population::{self, Population};
 use super::rank::{count_distinct, divided, exact_cost, exact_sum_sq, searched, sort};
 use super::starts::Starts;
 use super::{Budget, HitsSoFar, Observer, Progress, SearchOutcome};
-use super::{continuation, free, timed};
+use super::{continuation, free, relaxed, timed};
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::{Method, Objective};
@@ -39,6 +39,9 @@ const QUIET_BATCHES: u64 = 6;
 const LOCAL_SHARE: f64 = 0.6;
 /// The part of that which the reduced form of prescribed timing gets before rounds in the physical parameters.
 const REDUCED_SHARE: f64 = 0.5;
+/// One part in this many of what is left when local searches end with nothing acceptable goes to searches without one
+/// of the requirements ([`relaxed`]), and the rest to differential evolution.
+const RELAXED_SHARE: u64 = 2;
 /// One part in this many of what differential evolution is given goes to the polish of its best.
 const POLISH_SHARE: u64 = 5;
 /// Candidates that are kept while searching; the worst are dropped beyond it.
@@ -209,7 +212,7 @@ impl Local {
 
 /// Free timing: [`free`]. Prescribed timing: the reduced form first, and where it is not to be had or nothing
 /// acceptable came of it within its share, rounds in the physical parameters.
-fn local_search(
+pub(super) fn local_search(
     problem: &Problem,
     limit: u64,
     patience: u64,
@@ -396,6 +399,19 @@ fn auto(
     let spent = local.evaluations.objective >= limit;
     if !gave_up || spent || local.found.iter().any(|c| c.accepted) {
         return Ok(local.outcome(problem));
+    }
+    let left = limit.saturating_sub(local.evaluations.objective);
+    let (led, cost) = relaxed::search(problem, left / RELAXED_SHARE, budget, observer);
+    if cost.objective > 0 {
+        local.used.push(relaxed::RELAXED.into());
+        local.evaluations.objective += cost.objective;
+        local.evaluations.positions += cost.positions;
+        local.found.extend(led);
+        local.finish(problem, limit, budget);
+        if local.found.iter().any(|c| c.accepted) {
+            local.repeats = None;
+            return Ok(local.outcome(problem));
+        }
     }
     let left = limit.saturating_sub(local.evaluations.objective).max(1);
     let for_polish = left / POLISH_SHARE;

@@ -40,13 +40,40 @@ pub struct PointBlock<const N: usize> {
     pub weight: f64,
 }
 
-/// An inequality g >= 0 with its derivative by the shared unknowns.
+/// An inequality g >= 0 with its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintRow<const N: usize> {
     /// g, in the unit of the residuals.
     pub value: f64,
-    /// dg/dx.
+    /// dg/dx, the points' own unknowns held.
     pub gradient: [f64; N],
+    /// The point on whose own unknown g depends, with dg/dtau; `None` where it depends on the shared ones alone.
+    pub own: Option<(usize, f64)>,
+}
+
+impl<const N: usize> ConstraintRow<N> {
+    /// The row with the derivative by the shared unknowns alone, the point's own unknown following them:
+    ///
+    /// ```text
+    /// tau = -<t, r + J dx> / (|t|^2 + nu)      its best step for the residual,
+    /// dg/dx + dg/dtau dtau/dx
+    /// ```
+    ///
+    /// `blocks` are the points' blocks at the same place. Where the point's tangent is zero its unknown stays.
+    pub(super) fn followed(mut self, blocks: &[PointBlock<N>], nu: f64) -> Self {
+        let Some((block, by)) = self.own.take().and_then(|(point, by)| Some((blocks.get(point)?, by))) else {
+            return self;
+        };
+        let t = block.tangent;
+        let t_sq = t[0] * t[0] + t[1] * t[1];
+        if t_sq > 0.0 {
+            let by = by / (t_sq + nu);
+            for (i, slope) in self.gradient.iter_mut().enumerate() {
+                *slope -= by * (t[0] * block.jacobian[0][i] + t[1] * block.jacobian[1][i]);
+            }
+        }
+        self
+    }
 }
 
 /// A least-squares problem with a block a point.
@@ -488,7 +515,7 @@ fn linearised<const N: usize, P: BlockLeastSquares<N>>(
 }
 
 /// How far the derivatives of a problem are from central differences: the largest |analytic - difference| /
-/// (1 + |analytic|) over all residuals (by x and along the tangents) and constraints (by x).
+/// (1 + |analytic|) over all residuals and constraints (by x and along the tangents).
 ///
 /// `steps` gives the difference's step for each shared unknown, 0 leaves it out; `along` is the step of the
 /// points' own unknowns. `None` where a neighbour cannot be evaluated. A right derivative leaves what the
@@ -532,6 +559,9 @@ pub fn derivative_error<const N: usize, P: BlockLeastSquares<N>>(
             for axis in 0..2 {
                 compare(block.tangent[axis], (u.residual[axis] - d.residual[axis]) / (2.0 * along));
             }
+        }
+        for (row, (u, d)) in rows.iter().zip(above.1.iter().zip(&below.1)) {
+            compare(row.own.map_or(0.0, |(_, by)| by), (u.value - d.value) / (2.0 * along));
         }
     }
     Some(worst)

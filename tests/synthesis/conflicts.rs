@@ -213,3 +213,56 @@ fn a_clock_that_ends_the_explanation_ends_the_run() {
     assert!(record.conflict.is_none() && record.relaxations.is_empty());
     assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
 }
+
+/// A straight guide from 0 to `length`, in a box one and a half times as long, with a tolerance of a thousandth.
+fn guide(length: f64, seed: u64, evaluations: u64, set: &[(&str, &str)]) -> ProblemFile {
+    let text = format!(
+        "format = 1\n[task.path]\npoints = [[0, 0], [{length}, 0]]\nsamples = 21\ntolerance = {}\n[require]\n\
+         transmission_deg_min = 30\ntransmission_over = \"used\"\nfootprint_in = [{}, {}, {}, {}]\n\
+         [solve]\nseed = {seed}\nevaluations = {evaluations}\n",
+        0.001 * length,
+        -0.25 * length,
+        -0.75 * length,
+        1.25 * length,
+        0.75 * length
+    );
+    let set: Vec<_> = set.iter().map(|(k, v)| ((*k).to_string(), (*v).to_string())).collect();
+    linkwright::problem_file::parse("guide.toml", &text, None, &set).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn a_guide_that_is_possible_is_found_and_named_no_conflict() {
+    for (length, seed) in [(200.0, 1), (200.0, 2), (100.0, 3), (100.0, 4)] {
+        let record = run_on(2, guide(length, seed, 3000, &[]));
+        let best = &record.candidates[0];
+        assert!(best.accepted && best.error.max < 0.00066 * length, "{length} {seed}: {}", best.error.max);
+        assert_eq!(record.conflict, None, "{length} {seed}");
+        assert!(verify(&record).expect("a problem").is_empty(), "{length} {seed}");
+    }
+}
+
+#[test]
+fn more_evaluations_never_make_a_guide_worse() {
+    let mut least = f64::INFINITY;
+    for evaluations in [1000, 2000, 4000, 8000] {
+        let record = run_on(2, guide(200.0, 1, evaluations, &[]));
+        let best = record.candidates.first().filter(|c| c.accepted);
+        let rms = best.map_or(f64::INFINITY, |c| c.error.rms);
+        assert!(rms <= 1.001 * least || least == f64::INFINITY, "{evaluations}: {rms} after {least}");
+        least = least.min(rms);
+    }
+    assert!(least < 0.065, "{least}");
+}
+
+#[test]
+fn the_nearest_remedy_is_proposed_first() {
+    let record = run_on(2, guide(200.0, 1, 3000, &[("task.path.tolerance", "0.05")]));
+    assert!(record.candidates.iter().all(|c| !c.accepted));
+    let nearest = &record.relaxations[0].set;
+    assert_eq!(nearest.len(), 1);
+    assert_eq!(nearest[0].key, "task.path.tolerance");
+    // The nearest candidate is within it, and it is rounded to what reads well.
+    let worst = record.candidates[0].error.max;
+    let to: f64 = nearest[0].to.to_string().parse().expect("a number");
+    assert!(to >= worst && to <= 1.1 * worst, "{to} for {worst}");
+}

@@ -22,6 +22,12 @@ fn problem(tables: &str) -> Problem {
     Problem::new(parse(&text).spec).expect("it is one")
 }
 
+/// The same points as an open path: its ends are positions of their own.
+fn open_problem(tables: &str) -> Problem {
+    let text = format!("format = 1\n[task.path]\n{POINTS}\n{tables}");
+    Problem::new(parse(&text).spec).expect("it is one")
+}
+
 const REQUIRE: &str =
     "[require]\ntransmission_deg_min = 35\npivots_in = [-3, -3, 3, 3]\nlink_ratio_max = 5\n";
 
@@ -50,6 +56,25 @@ fn cases() -> Vec<(&'static str, Problem)> {
         ("footprint", problem(&(timing("free") + "[require]\nfootprint_in = [-2, -2, 3, 3]\n"))),
         ("used", problem(&(timing("free") + REQUIRE + "transmission_over = \"used\"\n"))),
         ("free timing", problem(&(REQUIRE.to_string() + cycle))),
+        ("free timing, used", open_problem(&(REQUIRE.to_string() + "transmission_over = \"used\"\n"))),
+        (
+            "free timing, footprint",
+            open_problem(
+                "[require]\nfootprint_in = [-2, -2, 3, 3]\ntype = [\"crank-rocker\", \"double-crank\"]\n",
+            ),
+        ),
+        (
+            "free timing, footprint of a rocker",
+            open_problem(
+                "[require]\nfootprint_in = [-2, -2, 3, 3]\ntype = [\"double-rocker\", \"rocker-crank\"]\n",
+            ),
+        ),
+        (
+            "free timing, footprint past toggles",
+            open_problem(
+                "[require]\nfootprint_in = [-2, -2, 3, 3]\ntype = [\"triple-rocker\"]\nbranch = \"any\"\n",
+            ),
+        ),
         (
             "free timing, types",
             problem("[require]\ntype = [\"double-rocker\", \"rocker-crank\"]\nbranch = \"any\"\n"),

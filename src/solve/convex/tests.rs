@@ -46,7 +46,7 @@ impl BlockLeastSquares<2> for Plain<'_> {
     fn constraints(&self, x: &[f64; 2], (): &(), each: &mut dyn FnMut(&ConstraintRow<2>)) {
         for g in &self.rows {
             let by = |i| (g(&shifted(x, i, H)) - g(&shifted(x, i, -H))) / (2.0 * H);
-            each(&ConstraintRow { value: g(x), gradient: [by(0), by(1)] });
+            each(&ConstraintRow { value: g(x), gradient: [by(0), by(1)], own: None });
         }
     }
 }

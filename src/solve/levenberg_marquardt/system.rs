@@ -316,6 +316,7 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
         let lack = penalty.shift[i] - row.value;
         i += 1;
         if lack > 0.0 {
+            let row = row.followed(&work.blocks, nu);
             work.lacking.push((lack, row.gradient));
             add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
         }
