@@ -81,12 +81,15 @@ impl CouplerCurve {
         let mut nearest: Option<Nearest> = None;
         for i in 0..n {
             let (before, after) = (coarse[(i + n - 1) % n], coarse[(i + 1) % n]);
+            if !coarse[i].is_finite() || coarse[i] > before || coarse[i] > after {
+                continue;
+            }
             let chord = |j: usize| match (self.samples[i], self.samples[j]) {
                 (Some(p), Some(q)) => length(p - q),
                 _ => 0.0,
             };
             let reach = chord((i + 1) % n).max(chord((i + n - 1) % n));
-            if !coarse[i].is_finite() || coarse[i] > before || coarse[i] > after || coarse[i] - reach > best {
+            if coarse[i] - reach > best {
                 continue;
             }
             let middle = i as f64 * step;

@@ -204,7 +204,7 @@ impl Inquiry<'_> {
         });
         let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
         // As a run does: a cognate may take its candidate's place.
-        cognates::offer(&problem, &mut outcome.candidates);
+        cognates::offer(&problem, &mut outcome.candidates, self.budget);
         let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
         Ok((accepted, outcome.evaluations.objective))
     }
