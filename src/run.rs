@@ -8,7 +8,9 @@ use crate::problem::spec::{Method, ProblemSpec};
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
 use crate::search::conflicts::Explained;
 use crate::search::keeper::Keeper;
-use crate::search::{Budget, Observer, SearchOutcome, answers, cognates, conflicts, continuation, costs, plan};
+use crate::search::{
+    Budget, Observer, SearchOutcome, answers, cognates, conflicts, continuation, costs, plan,
+};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
 use serde::Serialize;

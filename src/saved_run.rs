@@ -126,7 +126,8 @@ pub fn run(
     let pace = if pause.is_zero() { Pace::EveryBoundary } else { Pace::NotWithin(pause) };
     let keeper = Keeper::new(earlier, pace, &sink);
     let outcome = run_kept(job, &Context { cancel, observer: listener.observer }, Some(&keeper));
-    let Finished { mut record, search_s, beside_s, advice_s } = outcome.map_err(|e| format!("{}: {e}", job.name))?;
+    let Finished { mut record, search_s, beside_s, advice_s } =
+        outcome.map_err(|e| format!("{}: {e}", job.name))?;
     prove(&mut record, cancel, &mut |progress| (listener.proving)(progress));
     let interrupted =
         cancel.load(Ordering::Relaxed) && record.certificate.as_ref().is_some_and(|c| !c.closed);

@@ -197,7 +197,8 @@ impl Expansion {
                         gradient[j][k] = m.gradient[k].mid;
                         gradient_error[j] += h[k] * m.gradient[k].rad;
                     }
-                    let steep = gradient[j].iter().any(|slope| slope.is_nan() || slope.abs() > 0.49 * STEEPEST);
+                    let steep =
+                        gradient[j].iter().any(|slope| slope.is_nan() || slope.abs() > 0.49 * STEEPEST);
                     smooth[j] = total < 2.0 && gradient_error[j] < 1.0 && !steep;
                 }
             }

@@ -258,7 +258,9 @@ pub(super) fn reason(reason: Reason) -> &'static str {
         Reason::EvaluationLimit => "the budget of evaluations was used up",
         Reason::TimeLimit => "the time limit was reached",
         Reason::Cancelled => "cancelled, these are the best answers until then",
-        Reason::Snapped => "snapped, an answer's lengths were brought to stock sizes and nothing else was searched for",
+        Reason::Snapped => {
+            "snapped, an answer's lengths were brought to stock sizes and nothing else was searched for"
+        }
         Reason::ByHand => "fitted under the hand, no search has looked for anything better",
     }
 }

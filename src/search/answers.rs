@@ -33,7 +33,10 @@ pub fn beside(
     }
     let family = outcome.candidates.first().and_then(|best| family(problem, best));
     let solve = &problem.spec().solve;
-    if !solve.advice || solve.method != Method::Auto || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty()) {
+    if !solve.advice
+        || solve.method != Method::Auto
+        || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty())
+    {
         return Beside { family, buildable: None };
     }
     let used = outcome.evaluations.objective;

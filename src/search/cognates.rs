@@ -36,11 +36,8 @@ const NO_PHASE: f64 = 1e-13;
 ///
 /// Once the budget has stopped, those that would take long to judge stay without alternatives.
 pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget<'_>) {
-    let judging = budget.judging(COGNATES * problem.task().len());
-    candidates.par_iter_mut().for_each(|candidate| {
-        if !judging.may_go_on() {
-            return;
-        }
+    let points = COGNATES * problem.task().len() * candidates.len();
+    candidates.par_iter_mut().filter(|_| budget.leaves_time_for(points)).for_each(|candidate| {
         let mut forms = cognates(problem, candidate);
         forms.insert(0, candidate.clone());
         // Equal ones keep their order: the candidate that was found comes first.

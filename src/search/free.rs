@@ -290,7 +290,7 @@ pub(super) fn search(
 }
 
 /// Targets of fewer points are not matched with the atlas.
-const LEAST_MATCHED: usize = 24;
+pub const LEAST_MATCHED: usize = 24;
 
 /// Judges ends from the least merit up: where one answer is wanted until the first accepted one, else all that
 /// can be among the best.

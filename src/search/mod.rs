@@ -67,6 +67,12 @@ impl<'a> Budget<'a> {
         self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| Reason::TimeLimit)
     }
 
+    /// Whether something may still be worked out that takes as long as judging candidates with so many target points
+    /// together: always until the search is stopped, and then where it takes a fraction of a second.
+    pub fn leaves_time_for(&self, points: usize) -> bool {
+        points <= JUDGED_AFTER_STOP || !self.stopped()
+    }
+
     /// Counts how many candidates of `points` target points each may still be judged once the search is stopped.
     pub fn judging(&self, points: usize) -> Judging<'_> {
         Judging { budget: self, points, after_stop: AtomicUsize::new(0) }

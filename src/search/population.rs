@@ -201,8 +201,17 @@ fn search_in<F: Searched>(
     };
     let earlier = keeper.and_then(|keeper| keeper.earlier().population.clone());
     let (algorithm, seed) = (&mut *algorithm, spec.seed);
-    let outcome =
-        run_restarts_from(earlier, &stoppable, algorithm, &[], seed, &limits, &stop, &mut observe, &mut keep)?;
+    let outcome = run_restarts_from(
+        earlier,
+        &stoppable,
+        algorithm,
+        &[],
+        seed,
+        &limits,
+        &stop,
+        &mut observe,
+        &mut keep,
+    )?;
     let mut starts = Vec::new();
     let mut found = Vec::new();
     let kept =

@@ -58,7 +58,12 @@ fn asks_often_enough(name: &str, job: &Job) {
     for part in 0..6 {
         let at = 1 + whole.asked * part / 6;
         let (record, counts) = counted(job, Some(at));
-        assert_eq!(record.termination.reason, Reason::Cancelled, "{name}, stopped at {at} of {}", whole.asked);
+        assert_eq!(
+            record.termination.reason,
+            Reason::Cancelled,
+            "{name}, stopped at {at} of {}",
+            whole.asked
+        );
         assert!(!record.termination.reproducible);
         // What may still be judged, and what was under way.
         let most = JUDGED * (JUDGED_AFTER_STOP as u64 + n) + BETWEEN * n;

@@ -435,9 +435,11 @@ impl<'a> Search<'a> {
         }
         short.sort_by(|x, y| x.0.total_cmp(&y.0));
         let mut long: Vec<(f64, Reduced, usize, AssemblyMode)> = Vec::with_capacity(LONG);
-        for (_, x, form, assembly) in short.into_iter().take(LONG) {
+        for (cost, x, form, assembly) in short.into_iter().take(LONG) {
             if self.budget.stopped() {
-                return out;
+                // As it stands: the best so far.
+                long.push((cost, x, form, assembly));
+                break;
             }
             if let Some((cost, x)) = fit(x, form, assembly, LONG_EVALUATIONS, &mut out.evaluations) {
                 long.push((cost, x, form, assembly));
@@ -462,6 +464,9 @@ impl<'a> Search<'a> {
             }
         }
         broken.sort_by(|x, y| x.0.total_cmp(&y.0));
+        if self.budget.stopped() && out.ends.is_empty() {
+            out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
+        }
         let mut polishes = 0;
         for (_, end) in broken {
             let bar = out.ends.iter().map(|e| e.cost).fold(bar, f64::min);

@@ -280,10 +280,12 @@ mod tests {
 
     #[test]
     fn a_bound_that_binds_is_kept_and_the_rest_is_minimised_on_it() {
-        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &[(-2.0, 0.5), (-10.0, 10.0)], &OPTIONS, &|| false);
+        let end =
+            solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &[(-2.0, 0.5), (-10.0, 10.0)], &OPTIONS, &|| false);
         assert_eq!(end.x[0], 0.5);
         assert!((end.x[1] - 0.25).abs() < 1e-9 && (end.cost - 0.25).abs() < 1e-9, "{end:?}");
-        let fixed = solve(&mut Valley([0.0; 2]), [0.0, 7.0], &[(2.0, 2.0), (-10.0, 10.0)], &OPTIONS, &|| false);
+        let fixed =
+            solve(&mut Valley([0.0; 2]), [0.0, 7.0], &[(2.0, 2.0), (-10.0, 10.0)], &OPTIONS, &|| false);
         assert_eq!(fixed.x[0], 2.0, "equal bounds fix an unknown, whatever the start says");
         assert!((fixed.x[1] - 4.0).abs() < 1e-9);
     }

@@ -15,8 +15,8 @@
 //! orthogonal to r.
 
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
-use crate::linkage::effort::computed;
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::{AssemblyMode, Complex, turned};
 use crate::problem::design_space::{Shape, unit};

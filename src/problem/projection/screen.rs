@@ -13,8 +13,8 @@
 //! leave a cost that is good to 1e-15 <T, T>: enough to choose starts from, not to end a fit on.
 
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
-use crate::linkage::effort::computed;
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::{AssemblyMode, Complex};
 

@@ -5,8 +5,8 @@ use super::super::sheet::{FULL, HEAD, INSET, Sheet};
 use super::chart::{Abscissa, Chart, Range, Series};
 use super::vectors::per_time;
 use super::{CYCLE_ROWS, degrees};
-use crate::linkage::transmission::POOR_DEG;
 use crate::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
+use crate::linkage::transmission::POOR_DEG;
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;
