@@ -356,6 +356,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
         candidates,
         evaluations,
         time_limit_s: raw.time_limit_s.map(|t| t.0),
+        advice: raw.advice.unwrap_or(default.advice),
         certify: None,
         genetic: raw.genetic.0,
         differential_evolution: raw.differential_evolution.0,

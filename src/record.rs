@@ -147,6 +147,24 @@ pub enum Reason {
     TimeLimit,
     /// It was cancelled.
     Cancelled,
+    /// Nothing was searched for: `snap` brought lengths of an answer to stock sizes and fitted the rest.
+    Snapped,
+    /// Nothing was searched for: the linkage was fitted under the hand, in the studio.
+    ByHand,
+}
+
+impl Reason {
+    /// Whether the same problem and seed give the same record again: not after a clock, a cancellation or a hand.
+    pub fn is_repeatable(self) -> bool {
+        match self {
+            Reason::Converged
+            | Reason::TargetReached
+            | Reason::Stalled
+            | Reason::EvaluationLimit
+            | Reason::Snapped => true,
+            Reason::TimeLimit | Reason::Cancelled | Reason::ByHand => false,
+        }
+    }
 }
 
 /// Why the search ended and whether the run can be repeated to the digit.
@@ -154,7 +172,7 @@ pub enum Reason {
 pub struct Termination {
     /// Why.
     pub reason: Reason,
-    /// Whether the same problem and seed give the same record (not after a time limit or a cancellation).
+    /// Whether the same problem and seed give the same record ([`Reason::is_repeatable`]).
     pub reproducible: bool,
 }
 

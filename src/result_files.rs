@@ -5,19 +5,54 @@ use crate::record::Record;
 use crate::report::html::Extent;
 use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
 use crate::results_folder::BUILDABLE;
+use crate::run::AdviceSeconds;
 
 /// What `timing.json` holds.
-#[derive(serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Timing {
     /// Seconds of search.
     pub search_s: f64,
-    /// Seconds more for what stands beside the candidates.
+    /// Seconds more for what is worked out beside the candidates.
     pub beside_s: f64,
+    /// Of these, seconds of each part; `None` where none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub advice_s: Option<AdviceSeconds>,
     /// Seconds altogether.
     pub total_s: f64,
     /// Threads.
     pub threads: usize,
 }
+
+impl Timing {
+    /// The whole, the search, and each part of the rest that took a millisecond or more.
+    ///
+    /// ```
+    /// use linkwright::result_files::Timing;
+    /// use linkwright::run::AdviceSeconds;
+    /// let advice_s = AdviceSeconds { conflicts: 85.5, ..AdviceSeconds::default() };
+    /// let timing = Timing { search_s: 13.189, beside_s: 85.5, advice_s: Some(advice_s), total_s: 98.9, threads: 2 };
+    /// let words = "98.900 s in all: 13.189 s of search, 85.500 s for what conflicts, 0.211 s for reading and writing";
+    /// assert_eq!(timing.words(), words);
+    /// ```
+    pub fn words(&self) -> String {
+        let mut parts = vec![format!("{:.3} s of search", self.search_s)];
+        let mut part = |seconds: f64, name: &str| {
+            if seconds >= WORTH_SAYING_S {
+                parts.push(format!("{seconds:.3} s for {name}"));
+            }
+        };
+        if let Some(advice) = self.advice_s {
+            part(advice.costs, "what limits cost");
+            part(advice.conflicts, "what conflicts");
+            part(advice.buildable, "what can be built");
+        }
+        part(self.total_s - self.search_s - self.beside_s, "reading and writing");
+        format!("{:.3} s in all: {}", self.total_s, parts.join(", "))
+    }
+}
+
+/// Shorter parts of a run are left out of its words.
+const WORTH_SAYING_S: f64 = 1e-3;
 
 /// Everything that a result's folder holds.
 pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {

@@ -6,8 +6,11 @@ use crate::problem::Problem;
 use crate::problem::precision::{Refusal, precision_points};
 use crate::problem::spec::{Method, ProblemSpec};
 use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
+use crate::search::conflicts::Explained;
 use crate::search::keeper::Keeper;
-use crate::search::{Budget, Observer, answers, cognates, conflicts, continuation, costs, plan};
+use crate::search::{
+    Budget, Observer, SearchOutcome, answers, cognates, conflicts, continuation, costs, plan,
+};
 use crate::solve::population::PopulationError;
 use crate::task::TaskError;
 use serde::Serialize;
@@ -54,6 +57,17 @@ pub enum RunError {
     Json(String),
 }
 
+/// Seconds of what is worked out beside the answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AdviceSeconds {
+    /// What the limits cost that candidates lie on.
+    pub costs: f64,
+    /// Which requirements conflict, and what would help.
+    pub conflicts: f64,
+    /// Warnings, a family, and something that can be built.
+    pub buildable: f64,
+}
+
 /// A record with the time that its search took.
 #[derive(Clone, Debug)]
 pub struct Finished {
@@ -61,8 +75,10 @@ pub struct Finished {
     pub record: Record,
     /// Seconds from the checked problem to ranked, refereed candidates.
     pub search_s: f64,
-    /// Seconds more for what stands beside them: warnings, a family, and the search for something to build.
+    /// Seconds more for everything that is worked out beside them.
     pub beside_s: f64,
+    /// Of these, seconds of each part.
+    pub advice_s: AdviceSeconds,
 }
 
 /// Runs a job on the current rayon thread pool; a certificate that its problem asks for is left to [`prove`].
@@ -103,17 +119,27 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     }
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
     let mut outcome = plan::search_kept(&problem, &budget, context.observer, keeper)?;
-    cognates::offer(&problem, &mut outcome.candidates);
+    cognates::offer(&problem, &mut outcome.candidates, &budget);
     continuation::finish(&problem, &mut outcome);
     let search_s = start.elapsed().as_secs_f64();
+    let mut advice_s = AdviceSeconds::default();
+    let mut so_far = search_s;
+    let mut lap = |part: &mut f64| {
+        let now = start.elapsed().as_secs_f64();
+        (*part, so_far) = (now - so_far, now);
+    };
+    let explained = explained(&problem, &mut outcome, &budget, context.observer)?;
+    lap(&mut advice_s.conflicts);
+    // After it: looking for what would help may have met an acceptable design.
     costs::attach(&problem, &mut outcome, &budget);
-    let explained = conflicts::explain(&problem, &mut outcome, &budget, context.observer)?;
+    lap(&mut advice_s.costs);
     let mut beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    lap(&mut advice_s.buildable);
     for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
     let beside_s = start.elapsed().as_secs_f64() - search_s;
-    let reproducible = !matches!(outcome.reason, Reason::TimeLimit | Reason::Cancelled);
+    let reproducible = outcome.reason.is_repeatable();
     let record = Record {
         format: FORMAT,
         tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
@@ -138,7 +164,27 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         repeats: outcome.repeats,
         exact: outcome.exact,
     };
-    Ok(Finished { record, search_s, beside_s })
+    Ok(Finished { record, search_s, beside_s, advice_s })
+}
+
+/// Why nothing is acceptable, where that is so and advice is asked for. Where the budget leaves no time to look for it,
+/// the record says so: with more time it would hold more.
+fn explained(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<Explained, PopulationError> {
+    let solve = &problem.spec().solve;
+    let listed = solve.method == Method::Continuation;
+    if !solve.advice || listed || outcome.candidates.iter().any(|c| c.accepted) {
+        return Ok(Explained::default());
+    }
+    if let Some(reason) = budget.stop_reason() {
+        outcome.reason = reason;
+        return Ok(Explained::default());
+    }
+    conflicts::explain(problem, outcome, budget, observer)
 }
 
 /// SHA-256 of what decides a search: task, design, require, objective, variables, method with its
@@ -175,4 +221,35 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
     })
     .map_err(|e| RunError::Json(e.to_string()))?;
     Ok(Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Evaluations;
+
+    #[test]
+    fn a_record_whose_explanation_found_no_time_says_that_it_cannot_be_repeated() {
+        let points = "[[0, 0], [1, 1], [2, 1.5], [3, 1], [4, 0]]";
+        for (advice, reason) in [(true, Reason::Cancelled), (false, Reason::Stalled)] {
+            let text = format!(
+                "format = 1\n[task.path]\npoints = {points}\ntolerance = 1e-9\n[solve]\nadvice = {advice}\n"
+            );
+            let file = crate::problem_file::parse("it.toml", &text, None, &[]).expect("a problem");
+            let problem = Problem::new(file.spec).expect("a problem");
+            let mut outcome = SearchOutcome {
+                candidates: Vec::new(),
+                others: Vec::new(),
+                used: Vec::new(),
+                reason: Reason::Stalled,
+                evaluations: Evaluations::default(),
+                exact: None,
+                repeats: None,
+            };
+            let flag = AtomicBool::new(true);
+            let budget = Budget { cancel: &flag, deadline: None };
+            let found = explained(&problem, &mut outcome, &budget, &|_| {}).expect("no error");
+            assert_eq!((found, outcome.reason), (Explained::default(), reason));
+        }
+    }
 }

@@ -52,8 +52,8 @@ pub struct Done {
     pub record: Record,
     /// Where it is.
     pub folder: PathBuf,
-    /// Seconds of search and of what stands beside it; `None` where it was done before.
-    pub seconds: Option<(f64, f64)>,
+    /// What took how long; `None` where it was done before.
+    pub timing: Option<Timing>,
     /// Whether its certificate was interrupted.
     pub interrupted: bool,
 }
@@ -95,7 +95,7 @@ pub fn run(
             return Ok(Ran::Before(Done {
                 record,
                 folder: place.to_path_buf(),
-                seconds: None,
+                timing: None,
                 interrupted: false,
             }));
         }
@@ -126,7 +126,8 @@ pub fn run(
     let pace = if pause.is_zero() { Pace::EveryBoundary } else { Pace::NotWithin(pause) };
     let keeper = Keeper::new(earlier, pace, &sink);
     let outcome = run_kept(job, &Context { cancel, observer: listener.observer }, Some(&keeper));
-    let Finished { mut record, search_s, beside_s } = outcome.map_err(|e| format!("{}: {e}", job.name))?;
+    let Finished { mut record, search_s, beside_s, advice_s } =
+        outcome.map_err(|e| format!("{}: {e}", job.name))?;
     prove(&mut record, cancel, &mut |progress| (listener.proving)(progress));
     let interrupted =
         cancel.load(Ordering::Relaxed) && record.certificate.as_ref().is_some_and(|c| !c.closed);
@@ -134,11 +135,14 @@ pub fn run(
         folder.keep_checkpoint();
     }
     let total_s = begun.elapsed().as_secs_f64();
-    let timing = Timing { search_s, beside_s, total_s, threads: rayon::current_num_threads() };
+    let advice_s = Some(advice_s).filter(|_| job.spec.solve.advice);
+    let threads = rayon::current_num_threads();
+    let mut timing = Timing { search_s, beside_s, advice_s, total_s, threads };
     let files = files_of(&record, &timing, options.extent)?;
     folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
-    let seconds = Some((search_s, beside_s));
-    let done = Done { record, folder: place.to_path_buf(), seconds, interrupted };
+    // The file is written by now; what is told has the writing too.
+    timing.total_s = begun.elapsed().as_secs_f64();
+    let done = Done { record, folder: place.to_path_buf(), timing: Some(timing), interrupted };
     Ok(Ran::Written(Written { done, folder, files }))
 }
 
@@ -164,15 +168,17 @@ pub(crate) fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> S
 }
 
 /// The record of a run of the same problem that has nothing left to do: of the same version, for as many candidates,
+/// with advice where that is asked for,
 /// neither interrupted nor ended by a time limit, nor by a budget that has been raised since.
 fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, String> {
     let Ok(record) = read_record(place) else { return Ok(None) };
     let (then, now) = (&record.problem.resolved.solve, &job.spec.solve);
     let same = record.problem.digest == digest(&job.spec).map_err(|e| e.to_string())?
         && record.tool.version == env!("CARGO_PKG_VERSION")
-        && then.candidates == now.candidates;
+        && then.candidates == now.candidates
+        && then.advice == now.advice;
     let over = match record.termination.reason {
-        Reason::Cancelled | Reason::TimeLimit => false,
+        Reason::Cancelled | Reason::TimeLimit | Reason::Snapped | Reason::ByHand => false,
         Reason::EvaluationLimit | Reason::Stalled => now.evaluations <= then.evaluations,
         Reason::Converged | Reason::TargetReached => true,
     };

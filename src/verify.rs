@@ -67,8 +67,8 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     whole("problem.digest", record.problem.digest.clone(), digest(spec)?);
     whole("seed", record.seed.to_string(), spec.solve.seed.to_string());
     whole("method.asked", record.method.asked.name().into(), spec.solve.method.name().into());
-    let cut_short = matches!(record.termination.reason, Reason::TimeLimit | Reason::Cancelled);
-    whole("termination.reproducible", record.termination.reproducible.to_string(), (!cut_short).to_string());
+    let repeatable = record.termination.reason.is_repeatable();
+    whole("termination.reproducible", record.termination.reproducible.to_string(), repeatable.to_string());
     for (i, candidate) in record.candidates.iter().enumerate() {
         whole("rank", candidate.rank.to_string(), (i + 1).to_string());
     }

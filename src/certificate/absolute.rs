@@ -12,7 +12,7 @@ use super::affine::Affine;
 use super::ball::{Ball, not_negative};
 use super::bound::{Bound, Cell};
 use super::chart::Class;
-use super::expansion::{Expansion, LARGER, Moved};
+use super::expansion::{Expansion, LARGER, Moved, STEEPEST};
 use super::target::{MAX_POINTS, Target};
 use crate::problem::spec::{DesignSpec, Limits};
 
@@ -184,7 +184,7 @@ impl Parts {
         // The rounding of every sum of n products, and what y has along the exact basis.
         let root_n = (n as f64).sqrt() * LARGER;
         let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * root_n;
-        let turning = rounding * (1.0 + (h[0] + h[1] + h[2] + h[3]) * 1e5);
+        let turning = rounding * (1.0 + (h[0] + h[1] + h[2] + h[3]) * STEEPEST);
         let mut along = 0.0;
         for b in &target.basis {
             let (re, im) = dot(b, &y[..n]);

@@ -114,8 +114,8 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
         }
     }
     // Every sum and product below has non-negative parts, or its rounding is within `slack`.
-    let rest_y = rest_y * LARGER + slack + rounding * (h[0] + h[1] + h[2] + h[3]) * 1e5;
-    let rest_tau = rest_tau * LARGER + slack + rounding * (h[0] + h[1] + h[2] + h[3]) * 1e5;
+    let rest_y = rest_y * LARGER + slack + expansion.turning(rounding);
+    let rest_tau = rest_tau * LARGER + slack + expansion.turning(rounding);
     let spread: f64 = (0..4).map(|k| b_re[k].abs() * h[k]).sum::<f64>() * LARGER;
     let aside = (0..4).map(|k| b_im[k].abs() * h[k]).sum::<f64>() * LARGER + rest_tau;
     // sqrt((|x| + R)^2 + I^2) is convex in x = beta + b delta: below its chord over the box.

@@ -13,6 +13,11 @@ use super::target::MAX_POINTS;
 pub(super) const LARGER: f64 = 1.0 + 1e-9;
 /// Below this f or sin gamma no second derivatives are used.
 const NEAR: f64 = 1e-4;
+/// At least every slope |t_k| of a [`Moved`]: what the rounding of the sums of n products with slopes is in proportion to.
+///
+/// Slopes of theta are at most 2/f <= 2/[`NEAR`] = 2e4 (docs/certificate.md, Ranges); no slope above half of this is used,
+/// and a slope less their mean is at most twice as large.
+pub(super) const STEEPEST: f64 = 1e5;
 
 /// A difference, less what its rounding can be.
 fn less(x: f64) -> f64 {
@@ -192,7 +197,9 @@ impl Expansion {
                         gradient[j][k] = m.gradient[k].mid;
                         gradient_error[j] += h[k] * m.gradient[k].rad;
                     }
-                    smooth[j] = total < 2.0 && gradient_error[j] < 1.0;
+                    let steep =
+                        gradient[j].iter().any(|slope| slope.is_nan() || slope.abs() > 0.49 * STEEPEST);
+                    smooth[j] = total < 2.0 && gradient_error[j] < 1.0 && !steep;
                 }
             }
         }
@@ -232,6 +239,20 @@ impl Expansion {
         CommonTurn { by, beyond }
     }
 
+    /// At least how far the rounding of the slopes' sums moves one of them over the box, where the rounding of a sum of n
+    /// products with parts of unit vectors is at most `rounding`.
+    ///
+    /// ```text
+    /// |fl(sum_j w_j t_jk) - sum_j w_j t_jk| <= (n + 4) 2^-53 sum_j |w_j| |t_jk| <= rounding STEEPEST,   sum_j |w_j| <= sqrt n
+    /// ```
+    ///
+    /// for the slope along axis k, which counts h_k times over the box.
+    #[inline(always)]
+    pub fn turning(&self, rounding: f64) -> f64 {
+        let h = &self.h;
+        rounding * (h[0] + h[1] + h[2] + h[3]) * STEEPEST
+    }
+
     /// How u_j moves.
     #[inline(always)]
     pub fn moved(&self, j: usize, common: &CommonTurn) -> Moved {
@@ -267,5 +288,82 @@ impl Expansion {
         }
         rest += self.u_error[j] * (2.0 + rest);
         Moved { t: slopes, rest, own }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::streams::{below, stream, uniform};
+
+    /// A sum of products as it is computed here, and without rounding but in the last digit of the result: products
+    /// and sums with their errors (Dekker 1971, Knuth 1969), which are summed apart.
+    fn both_sums(terms: &[(f64, f64)]) -> (f64, f64) {
+        let (mut plain, mut sum, mut errors) = (0.0, 0.0, 0.0);
+        for &(x, y) in terms {
+            plain += x * y;
+            let product = x * y;
+            errors += x.mul_add(y, -product);
+            let next = sum + product;
+            let part = next - sum;
+            errors += (sum - (next - part)) + (product - part);
+            sum = next;
+        }
+        (plain, sum + errors)
+    }
+
+    #[test]
+    fn slopes_stay_below_the_steepest_and_their_sums_round_by_less_than_is_allowed() {
+        let mut random = stream(41, 0);
+        let (mut steepest, mut used, mut nearest) = (0.0_f64, 0, 0.0_f64);
+        for _ in 0..20_000 {
+            let n = 5 + below(&mut random, 24);
+            let turn: Vec<[Ball; 2]> = (0..n)
+                .map(|_| {
+                    // Many of them near the angle at which f is least.
+                    let angle = uniform(&mut random, -1.0, 1.0).powi(9) * 3.0;
+                    Ball::cos_sin(angle)
+                })
+                .collect();
+            // Towards p = 1, where f comes near 0, with boxes from small to tiny.
+            let p = 1.0 - 10f64.powf(uniform(&mut random, -6.0, 0.0));
+            let half = 10f64.powf(uniform(&mut random, -9.0, -3.0));
+            let g = uniform(&mut random, 0.05, 3.1);
+            let d = uniform(&mut random, -1.5, 1.5);
+            let middle = [p, 0.0, g, d];
+            let cell = Cell { low: middle.map(|x| x - half), high: middle.map(|x| x + half) };
+            let class = if below(&mut random, 2) == 0 { Class::CrankRocker } else { Class::DoubleCrank };
+            let expansion = Expansion::new(&turn, class, &cell);
+            // Unit weights, as those of a witness.
+            let mut y: Vec<[f64; 2]> =
+                (0..n).map(|_| [uniform(&mut random, -1.0, 1.0), uniform(&mut random, -1.0, 1.0)]).collect();
+            let length = y.iter().flatten().map(|v| v * v).sum::<f64>().sqrt();
+            y.iter_mut().flatten().for_each(|v| *v /= length);
+            let mut size_y = [0.0; MAX_POINTS];
+            for (size, y) in size_y.iter_mut().zip(&y) {
+                *size = y[0].hypot(y[1]);
+            }
+            let common = expansion.common_turn(&size_y);
+            let moved: Vec<Moved> = (0..n).map(|j| expansion.moved(j, &common)).collect();
+            let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * (n as f64).sqrt();
+            for k in 0..4 {
+                let mut terms = Vec::with_capacity(2 * n);
+                for (y, (moved, u)) in y.iter().zip(moved.iter().zip(&expansion.u)) {
+                    steepest = steepest.max(moved.t[k].abs());
+                    used += usize::from(moved.t[k] != 0.0);
+                    assert!(moved.t[k].abs() <= STEEPEST, "{}", moved.t[k]);
+                    // Im(conj(y) u) t, each product on its own.
+                    terms.push((y[0] * u[1], moved.t[k]));
+                    terms.push((-y[1] * u[0], moved.t[k]));
+                }
+                let (plain, exact) = both_sums(&terms);
+                let off = (plain - exact).abs();
+                let allowed = rounding * STEEPEST;
+                assert!(off <= allowed, "{off} {allowed}");
+                nearest = nearest.max(off / allowed);
+            }
+        }
+        // The test has seen steep slopes, and sums that round.
+        assert!(steepest > 1e3 && used > 100_000 && nearest > 0.0, "{steepest} {used} {nearest}");
     }
 }

@@ -29,7 +29,7 @@ pub enum NoCertificate {
     OtherObjective,
     /// A linkage may be taken apart between two points.
     #[error(
-        "no certificate is available where points may lie on different circuits: it needs require.circuit = \"same\""
+        "no certificate is available where points may lie on different circuits: it needs require.circuit = \"one\""
     )]
     AnyCircuit,
     /// The recorded problem is none.

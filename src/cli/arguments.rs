@@ -96,6 +96,9 @@ pub struct Synth {
     /// Set any key of the problem file, e.g. --set solve.candidates=9
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
     pub set: Vec<(String, String)>,
+    /// The answers alone, not what conflicts, what can be built or what limits cost: as `--set solve.advice=false`
+    #[arg(long)]
+    pub no_advice: bool,
     /// Threads [default: all cores]; they change the time, never a digit
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -159,7 +159,7 @@ fn files(
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let total_s = begun.elapsed().as_secs_f64();
     let threads = rayon::current_num_threads();
-    let timing = synth::Timing { search_s: total_s, beside_s: 0.0, total_s, threads };
+    let timing = synth::Timing { search_s: total_s, beside_s: 0.0, advice_s: None, total_s, threads };
     let mut files = synth::files(record, &timing)?;
     if let Ok(kept) = std::fs::read(place.join(TIMING)) {
         for (_, bytes) in files.iter_mut().filter(|(name, _)| name == TIMING) {

@@ -181,6 +181,7 @@ fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> R
     let timing = synth::Timing {
         search_s,
         beside_s: total_s - search_s,
+        advice_s: None,
         total_s,
         threads: rayon::current_num_threads(),
     };

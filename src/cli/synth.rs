@@ -242,7 +242,7 @@ fn write_summary(folder: &Path, csv: &str) -> Result<(), String> {
 }
 
 /// What is printed for one problem.
-fn page(Done { record, folder, seconds, .. }: &Done, brief: bool, all: bool) -> String {
+fn page(Done { record, folder, timing, .. }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
     text.push_str(&certificate_text(record, terminal::colour()));
@@ -251,12 +251,8 @@ fn page(Done { record, folder, seconds, .. }: &Done, brief: bool, all: bool) -> 
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));
     }
     let shown = crate::diagnostic::escaped(&folder.display().to_string());
-    let more = match (&record.buildable, seconds) {
-        (Some(_), Some((_, beside_s))) => format!(", {beside_s:.3} s more for the buildable one"),
-        _ => String::new(),
-    };
-    text.push_str(&match seconds {
-        Some((search_s, _)) => format!("\n  {search_s:.3} s of search{more}. Written to {shown}\n"),
+    text.push_str(&match timing {
+        Some(timing) => format!("\n  {}. Written to {shown}\n", timing.words()),
         None => format!("\n  Done before: nothing was run. It stands in {shown}\n"),
     });
     if !record.candidates.is_empty() && !brief {

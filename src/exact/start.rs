@@ -67,17 +67,20 @@ pub enum StartSetError {
 
 impl StartSet {
     /// The embedded set, read once. A test holds that the file is whole.
+    ///
+    /// # Panics
+    /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
     pub fn embedded() -> &'static StartSet {
         static SET: OnceLock<StartSet> = OnceLock::new();
-        SET.get_or_init(|| {
-            StartSet::parse(EMBEDDED).unwrap_or(StartSet {
-                displacements: Displacements {
-                    delta: [Complex::default(); STEPS],
-                    starred: [Complex::default(); STEPS],
-                },
-                solutions: Vec::new(),
-            })
-        })
+        SET.get_or_init(|| StartSet::built_in(EMBEDDED))
+    }
+
+    /// The set within the program.
+    fn built_in(bytes: &[u8]) -> StartSet {
+        match StartSet::parse(bytes) {
+            Ok(set) => set,
+            Err(why) => panic!("the nine-point start set within the program is damaged: {why}"),
+        }
     }
 
     /// # Errors
@@ -196,4 +199,17 @@ pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
 /// The largest |f| of the sixteen equations.
 pub fn largest_residual(of: &Solution, at: &Displacements) -> f64 {
     residuals(of, at).iter().flatten().map(|f| f.norm()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
+        for damaged in [&EMBEDDED[..EMBEDDED.len() - 1], &EMBEDDED[1..], &[][..]] {
+            let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
+            assert!(made.is_err(), "{} bytes", damaged.len());
+        }
+    }
 }

@@ -4,6 +4,7 @@
 //! fully, psi of [`InputArc`](super::InputArc) where it rocks (there t1 = sign cos tau, so that both branches
 //! and their toggles are passed smoothly).
 
+use super::dispatch::vectorised;
 use super::{AssemblyMode, Circuit, Complex, FourBar, Mobility, dot, length};
 use std::f64::consts::TAU;
 
@@ -18,6 +19,9 @@ pub struct CouplerCurve {
     circuit: Circuit,
     /// P at tau = 2 pi i / n; `None` where the loop is open (only within rounding of a toggle).
     samples: Vec<Option<Complex>>,
+    /// The same as columns of x and y, infinitely far away where the loop is open: a loop over them becomes vector
+    /// instructions.
+    columns: [Vec<f64>; 2],
 }
 
 /// The nearest point of a curve.
@@ -37,9 +41,13 @@ impl CouplerCurve {
         let mobility = linkage.mobility();
         let circuit = mobility.branch(crank_angle, assembly).circuit;
         let linkage = linkage.with_assembly(assembly);
-        let mut curve = CouplerCurve { linkage, mobility, circuit, samples: Vec::new() };
+        let columns = [Vec::new(), Vec::new()];
+        let mut curve = CouplerCurve { linkage, mobility, circuit, samples: Vec::new(), columns };
         let n = samples.max(8);
         curve.samples = (0..n).map(|i| curve.point_at(TAU * i as f64 / n as f64)).collect();
+        let column =
+            |of: fn(Complex) -> f64| curve.samples.iter().map(|p| p.map_or(f64::INFINITY, of)).collect();
+        curve.columns = [column(|p| p.re), column(|p| p.im)];
         curve
     }
 
@@ -74,19 +82,30 @@ impl CouplerCurve {
     /// longest chord next to it is below the best) is refined by golden section between its neighbours.
     pub fn nearest(&self, to: Complex) -> Option<Nearest> {
         let n = self.samples.len();
-        let distance = |p: Option<Complex>| p.map_or(f64::INFINITY, |p| length(p - to));
-        let coarse: Vec<f64> = self.samples.iter().map(|&p| distance(p)).collect();
+        let mut coarse = vec![0.0; n];
+        vectorised(
+            #[inline(always)]
+            || {
+                let [xs, ys] = [&self.columns[0][..n], &self.columns[1][..n]];
+                for (distance, (x, y)) in coarse[..n].iter_mut().zip(xs.iter().zip(ys)) {
+                    *distance = length(Complex::new(x - to.re, y - to.im));
+                }
+            },
+        );
         let best = coarse.iter().copied().fold(f64::INFINITY, f64::min);
         let step = TAU / n as f64;
         let mut nearest: Option<Nearest> = None;
         for i in 0..n {
             let (before, after) = (coarse[(i + n - 1) % n], coarse[(i + 1) % n]);
+            if !coarse[i].is_finite() || coarse[i] > before || coarse[i] > after {
+                continue;
+            }
             let chord = |j: usize| match (self.samples[i], self.samples[j]) {
                 (Some(p), Some(q)) => length(p - q),
                 _ => 0.0,
             };
             let reach = chord((i + 1) % n).max(chord((i + n - 1) % n));
-            if !coarse[i].is_finite() || coarse[i] > before || coarse[i] > after || coarse[i] - reach > best {
+            if coarse[i] - reach > best {
                 continue;
             }
             let middle = i as f64 * step;

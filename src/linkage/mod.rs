@@ -20,6 +20,7 @@ pub mod chain;
 pub mod cognate;
 pub mod coupler_curve;
 pub mod dispatch;
+pub(crate) mod effort;
 pub mod gradient;
 pub mod lane;
 pub mod loop_closure;

@@ -24,6 +24,66 @@ impl TransmissionExtremes {
     }
 }
 
+/// How well a linkage passes on forces, by its worst transmission angle: min(mu, 180 - mu) over the motion.
+///
+/// The coupler's force F turns the follower with F sin mu and loads its pins with the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum ForceTransmission {
+    /// Below [`CERTAIN_JAM_DEG`].
+    Jams,
+    /// Below [`JAM_UNDER_LOAD_DEG`].
+    MayJamUnderLoad,
+    /// Below [`POOR_DEG`].
+    Poor,
+    /// Below [`GOOD_DEG`].
+    Fair,
+    /// All others.
+    Good,
+}
+
+/// From this worst angle on, in degrees, forces pass well: the usual demand of textbooks (Norton, *Design of Machinery*,
+/// section on transmission angles: above about 40 degrees; after Alt 1932).
+pub const GOOD_DEG: f64 = 40.0;
+/// From this one on it will do for most loads: sin 30 = 1/2, so half of the coupler's force turns the follower.
+pub const POOR_DEG: f64 = 30.0;
+/// Below this one it may jam under load: sin 10 = 0.17, so a follower's load is on the coupler's pins six times over, and
+/// their friction with it.
+pub const JAM_UNDER_LOAD_DEG: f64 = 10.0;
+/// Below this one friction alone holds the follower: in pins of radius r with a coefficient of friction of 0.15 the force
+/// touches both friction circles, which turns it by asin(2 * 0.15 r/b); with r = b/10 by 1.7 degrees.
+pub const CERTAIN_JAM_DEG: f64 = 2.0;
+/// An angle that misses a limit by this part of it misses it by rounding: the tolerance of requirements.
+const ROUNDING: f64 = 1e-7;
+
+impl ForceTransmission {
+    /// Of a worst transmission angle, degrees.
+    pub fn of(worst_deg: f64) -> ForceTransmission {
+        let reaches = |limit: f64| worst_deg >= limit - ROUNDING * limit;
+        if reaches(GOOD_DEG) {
+            ForceTransmission::Good
+        } else if reaches(POOR_DEG) {
+            ForceTransmission::Fair
+        } else if reaches(JAM_UNDER_LOAD_DEG) {
+            ForceTransmission::Poor
+        } else if reaches(CERTAIN_JAM_DEG) {
+            ForceTransmission::MayJamUnderLoad
+        } else {
+            ForceTransmission::Jams
+        }
+    }
+
+    /// In words, the same wherever it is said: a clause.
+    pub fn words(self) -> &'static str {
+        match self {
+            ForceTransmission::Good => "forces pass well",
+            ForceTransmission::Fair => "good enough for most loads",
+            ForceTransmission::Poor => "below 30° a loaded linkage may jam",
+            ForceTransmission::MayJamUnderLoad => "it may jam under load",
+            ForceTransmission::Jams => "it will jam",
+        }
+    }
+}
+
 /// mu, the angle opposite to s in the triangle with sides b, c, s: by half angles, exact near 0 and pi.
 ///
 /// A triangle that does not close gives the nearest flat angle, 0 or pi.

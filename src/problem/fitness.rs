@@ -14,6 +14,7 @@ use super::requirements::{Motion, Requirements, nearest_type};
 use super::spec::Objective;
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::mobility::{linkage_type, wrapped};
 use crate::linkage::position::Kernel;
@@ -151,6 +152,9 @@ impl<'a> PathFitness<'a> {
 
     /// The best reading of a design's free numbers.
     pub fn read(&self, genes: &[f64]) -> Reading {
+        // With free timing every point is compared with every sample: about as much work as a position for eight of them.
+        let free = if self.clocks.is_empty() { self.problem.task().len() * CURVE_SAMPLES / 8 } else { 0 };
+        computed(self.positions_per_evaluation() as usize + free);
         let mut best = nothing();
         let mut offer = |reading: Reading| best.offer(reading);
         for (side, space) in &self.spaces {

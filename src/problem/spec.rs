@@ -389,6 +389,14 @@ impl Variables {
     }
 }
 
+fn advised() -> bool {
+    true
+}
+
+fn is_advised(advice: &bool) -> bool {
+    *advice
+}
+
 /// How to search and when to stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SolveSpec {
@@ -405,9 +413,12 @@ pub struct SolveSpec {
     pub candidates: usize,
     /// How many evaluations of the objective at most.
     pub evaluations: u64,
-    /// Seconds of search at most; when it bites the record says that the run cannot be repeated.
+    /// Seconds at most, of search and advice together; when it bites the record says that the run cannot be repeated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_limit_s: Option<f64>,
+    /// Whether advice is worked out beside the answers: what conflicts, what to build, what limits cost.
+    #[serde(default = "advised", skip_serializing_if = "is_advised")]
+    pub advice: bool,
     /// What a certificate is worked out with after the search, where one is asked for. It decides no candidate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certify: Option<CertifySpec>,
@@ -435,6 +446,7 @@ impl Default for SolveSpec {
             candidates: 5,
             evaluations: 200_000,
             time_limit_s: None,
+            advice: true,
             certify: None,
             genetic: GeneticParameters::default(),
             differential_evolution: DifferentialEvolutionParameters::default(),

@@ -6,6 +6,7 @@
 use super::design_space::{DESIGN, Design, DesignSpace, Shape, unit};
 use super::requirements::{Motion, Requirements};
 use super::{Problem, Setting};
+use crate::linkage::effort::computed;
 use crate::linkage::gradient::{Frame, shape_gradient};
 use crate::linkage::position::Kernel;
 use crate::linkage::{Complex, turned, xy};
@@ -106,6 +107,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         let kernel = self.kernel(&shape);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let task = self.problem.task();
+        computed(task.len());
         let mut cost = 0.0;
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
@@ -127,6 +129,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         let task = self.problem.task();
         let ground = shape.follower_pivot - shape.crank_pivot;
         let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+        computed(task.len());
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);

@@ -17,6 +17,7 @@ use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::requirements::{Motion, Place, Requirements, assembly_of};
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::mobility::linkage_type;
 use crate::linkage::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
@@ -359,6 +360,7 @@ impl Columns {
 /// Brings positions back to the curves of a shape.
 fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
     let on = Loop::of(shape);
+    computed(RETURN_STEPS * positions.len());
     let mut columns = Columns::gather(positions);
     let settled = vectorised(
         #[inline(always)]
@@ -397,6 +399,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
     fn cost(&self, x: &Design, state: &Positions) -> Option<f64> {
         let shape = self.space.shape(x)?;
         let task = self.problem.task();
+        computed(task.len());
         let mut cost = 0.0;
         for (([e, u], target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
@@ -408,6 +411,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
     fn linearise(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
         let task = self.problem.task();
+        computed(task.len());
         for ((position, target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
             let [e, u] = *position;
             let (y, by_e, by_u) = frame(&shape, *position);
@@ -465,6 +469,7 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         let (Some(old), Some(new)) = (self.space.shape(from), self.space.shape(to)) else { return false };
         let (from, to) = (Loop::of(&old), Loop::of(&new));
         let forward = self.forward();
+        computed(RETURN_STEPS * state.len());
         let mut columns = Columns::gather(state);
         let settled = vectorised(
             #[inline(always)]

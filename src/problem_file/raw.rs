@@ -177,8 +177,10 @@ pub(crate) struct RawSolve {
     pub candidates: Option<Count>,
     /// How many evaluations of the objective at most; 200000 where silent.
     pub evaluations: Option<Count>,
-    /// Seconds of search at most; a run that the clock ends cannot be repeated to the digit.
+    /// Seconds at most, of search and advice together; a run that the clock ends cannot be repeated to the digit.
     pub time_limit_s: Option<Number>,
+    /// Whether advice is worked out beside the answers: which requirements conflict, what can be built, what limits cost; where silent, true.
+    pub advice: Option<bool>,
     /// Whether a lower bound of the sum of squares is proved after the search (prescribed timing); where silent, false.
     #[serde(default)]
     pub certify: bool,

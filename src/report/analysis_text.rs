@@ -3,6 +3,7 @@
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{clean, significant, wrapped};
 use crate::analysis::{Analysis, Configuration, MobilityRecord, Row, Status};
+use crate::linkage::transmission::ForceTransmission;
 use crate::linkage::{FourBar, LinkageType};
 use crate::record::Unit;
 
@@ -10,8 +11,6 @@ use crate::record::Unit;
 const COLUMNS: usize = 100;
 /// Significant digits of lengths and rates.
 const DIGITS: usize = 7;
-/// Below this worst transmission angle a linkage is warned of, degrees.
-const WORRYING_DEG: f64 = 30.0;
 
 /// The linkage, and its mobility in words.
 pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
@@ -145,13 +144,16 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
             degrees(greatest),
             degrees(worst)
         ));
-        if worst < WORRYING_DEG {
-            words.push_str(if mobility.input_turns_fully {
-                " Watch for: below 30° a loaded linkage may jam."
+        let force = ForceTransmission::of(worst);
+        if force < ForceTransmission::Fair {
+            if mobility.input_turns_fully {
+                words.push_str(&format!(" Watch for: {}.", force.words()));
             } else {
-                " Watch for: at a toggle the crank can no longer push the follower; stop short of it or drive \
-                 the follower."
-            });
+                words.push_str(
+                    " Watch for: at a toggle the crank can no longer push the follower; stop short of it or drive \
+                     the follower.",
+                );
+            }
         }
     }
     if let Some(ratio) = mobility.link_ratio {

@@ -29,6 +29,10 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
         out.push_str(&price::costs(record, COLUMNS));
     }
     out.push_str(&price::relaxations(record, COLUMNS));
+    if let Some(said) = words::without_advice(record) {
+        out.push('\n');
+        out.push_str(&wrapped("  ", "  ", said, COLUMNS));
+    }
     out.push('\n');
     out.push_str(&ending(record));
     out

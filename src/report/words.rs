@@ -244,6 +244,8 @@ pub(super) fn reason_name(reason: Reason) -> &'static str {
         Reason::EvaluationLimit => "evaluation-limit",
         Reason::TimeLimit => "time-limit",
         Reason::Cancelled => "cancelled",
+        Reason::Snapped => "snapped",
+        Reason::ByHand => "by-hand",
     }
 }
 
@@ -256,7 +258,18 @@ pub(super) fn reason(reason: Reason) -> &'static str {
         Reason::EvaluationLimit => "the budget of evaluations was used up",
         Reason::TimeLimit => "the time limit was reached",
         Reason::Cancelled => "cancelled, these are the best answers until then",
+        Reason::Snapped => {
+            "snapped, an answer's lengths were brought to stock sizes and nothing else was searched for"
+        }
+        Reason::ByHand => "fitted under the hand, no search has looked for anything better",
     }
+}
+
+/// Said where a run was asked for its answers alone: what is missing then was not looked for.
+pub(super) fn without_advice(record: &Record) -> Option<&'static str> {
+    let said = "No advice was asked for (solve.advice = false): what conflicts, what can be built and what limits cost \
+                was not looked for.";
+    (!record.problem.resolved.solve.advice).then_some(said)
 }
 
 /// The timing of the target.

@@ -19,7 +19,7 @@ pub struct Beside {
 
 /// Gives the candidates their warnings and says what stands beside them.
 ///
-/// Where the first has warnings and the method is `auto` a second search looks for something to build, with at
+/// Where the first has warnings, the method is `auto` and advice is asked for, a second search looks for something to build, with at
 /// most as many evaluations as the first one took and the budget still has; they are added to the outcome's,
 /// and where the clock or a cancellation cuts it short that becomes the outcome's reason.
 pub fn beside(
@@ -33,7 +33,10 @@ pub fn beside(
     }
     let family = outcome.candidates.first().and_then(|best| family(problem, best));
     let solve = &problem.spec().solve;
-    if solve.method != Method::Auto || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty()) {
+    if !solve.advice
+        || solve.method != Method::Auto
+        || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty())
+    {
         return Beside { family, buildable: None };
     }
     let used = outcome.evaluations.objective;

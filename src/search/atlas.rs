@@ -27,7 +27,7 @@ use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
 /// Entries.
-const ENTRIES: usize = 30_000;
+pub const ENTRIES: usize = 30_000;
 /// Entries drawn from one stream.
 const CHUNK: usize = 500;
 /// The seed of the atlas: it is the same for every problem and run.

@@ -12,6 +12,7 @@
 //! Its coupler turns in step with the candidate's follower and its follower with the candidate's coupler, so
 //! that its transmission angle is the candidate's too; what it may have better is its size and its place.
 
+use super::Budget;
 use super::multistart::unwrapped;
 use super::rank::{exact_sum_sq, severity, size, sort};
 use crate::assess::{assess, assess_on_curve};
@@ -21,16 +22,22 @@ use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::record::{Alternative, Candidate};
 use crate::task::{AngleOffset, Timing};
+use rayon::prelude::*;
 
 /// Sums of squares that differ by less than this part are the same error.
 pub const SAME_ERROR: f64 = 1e-6;
+/// Cognates of a linkage beside itself.
+const COGNATES: usize = 2;
 /// A phase below this (radians) is none.
 const NO_PHASE: f64 = 1e-13;
 
 /// Gives each candidate its cognates as alternatives; where a cognate is the better linkage (accepted, or of a
 /// better worst transmission angle, or smaller) the two change places. Ranks are given anew.
-pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
-    for candidate in candidates.iter_mut() {
+///
+/// Once the budget has stopped, those that would take long to judge stay without alternatives.
+pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget<'_>) {
+    let points = COGNATES * problem.task().len() * candidates.len();
+    candidates.par_iter_mut().filter(|_| budget.leaves_time_for(points)).for_each(|candidate| {
         let mut forms = cognates(problem, candidate);
         forms.insert(0, candidate.clone());
         // Equal ones keep their order: the candidate that was found comes first.
@@ -40,7 +47,7 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
             // It takes the place with figures of its own.
             match assess(problem, &first.linkage, &first.crank_deg, &first.t1_at) {
                 Some(judged) => *candidate = judged,
-                None => continue,
+                None => return,
             }
         }
         // Near a change point far from the origin a cognate's own rounding can move its curve: none is offered.
@@ -50,7 +57,7 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>) {
             first_apart(size, one, (&form.linkage, &form.crank_deg, &form.t1_at)).is_none()
         });
         candidate.alternatives = forms.iter().map(alternative).collect();
-    }
+    });
     if candidates.iter().any(|candidate| candidate.accepted) {
         candidates.retain(|candidate| candidate.accepted);
     }

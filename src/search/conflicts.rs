@@ -107,7 +107,7 @@ pub fn explain(
     found.append(&mut outcome.others);
     found.extend(met);
     (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-    cognates::offer(problem, &mut outcome.candidates);
+    cognates::offer(problem, &mut outcome.candidates, budget);
     // How often the best came back was counted of another one.
     outcome.repeats = None;
     if !outcome.used.iter().any(|used| used == RELAXED) {
@@ -241,7 +241,7 @@ impl Inquiry<'_> {
         });
         let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
         // As a run does: a cognate may take its candidate's place.
-        cognates::offer(&problem, &mut outcome.candidates);
+        cognates::offer(&problem, &mut outcome.candidates, self.budget);
         if self.met.is_empty() {
             let mut ends = outcome.candidates.clone();
             ends.append(&mut outcome.others);

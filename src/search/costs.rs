@@ -70,9 +70,11 @@ pub fn weighted_rms(problem: &Problem, objective: f64) -> f64 {
 
 /// What the limits that a candidate stands on cost, in a fixed order; without [`Cost::rms_without`].
 ///
-/// Empty where it stands on none, is not accepted, is exact, or is no optimum that the limits explain.
+/// Empty where it stands on none, is not accepted, is exact, or is no optimum that the limits explain; and where no
+/// advice is asked for.
 pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     if !candidate.accepted
+        || !problem.spec().solve.advice
         || problem.spec().solve.objective != Objective::SumOfSquares
         || candidate.error.objective <= exact_objective(problem)
     {
@@ -322,13 +324,15 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     for candidate in &mut outcome.candidates {
         candidate.costs = marginal(problem, candidate);
     }
-    if budget.stopped() {
-        return;
-    }
     let polishes = matches!(problem.spec().solve.method, Method::Auto | Method::LeastSquares);
     let Some(best) = outcome.candidates.first_mut().filter(|c| polishes && !c.costs.is_empty()) else {
         return;
     };
+    if let Some(reason) = budget.stop_reason() {
+        // The errors without the limits are not looked for.
+        outcome.reason = reason;
+        return;
+    }
     let demands: Vec<Option<Demand>> = best.costs.iter().map(|cost| Demand::named(&cost.name)).collect();
     let mut distinct: Vec<Demand> = Vec::new();
     for demand in demands.iter().flatten() {

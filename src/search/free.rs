@@ -232,7 +232,7 @@ pub(super) fn search(
             !unfit || refused <= KEPT / 4
         });
         ends.truncate(KEPT);
-        let best = judge_from_the_best(problem, &mut ends, wanted, exact);
+        let best = judge_from_the_best(problem, &mut ends, wanted, exact, budget);
         if let Some(reason) = stop {
             local.reason = reason;
             break;
@@ -290,17 +290,27 @@ pub(super) fn search(
 }
 
 /// Targets of fewer points are not matched with the atlas.
-const LEAST_MATCHED: usize = 24;
+pub const LEAST_MATCHED: usize = 24;
 
 /// Judges ends from the least merit up: where one answer is wanted until the first accepted one, else all that
 /// can be among the best.
-fn judge_from_the_best(problem: &Problem, ends: &mut [End], wanted: usize, exact: f64) -> Option<Candidate> {
+fn judge_from_the_best(
+    problem: &Problem,
+    ends: &mut [End],
+    wanted: usize,
+    exact: f64,
+    budget: &Budget<'_>,
+) -> Option<Candidate> {
+    let judging = budget.judging(problem.task().len());
     let mut best: Option<Candidate> = None;
     let mut count = 0;
     let enough = if wanted == 1 { 1 } else { 8 * wanted };
     for end in ends.iter_mut() {
         if count >= enough {
             break;
+        }
+        if end.verdict.is_none() && !judging.may_go_on() {
+            continue;
         }
         let verdict = end.verdict.get_or_insert_with(|| judged(problem, &end.start));
         let Some(candidate) = verdict.as_ref().filter(|c| promising(problem, c)) else { continue };

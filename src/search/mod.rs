@@ -28,12 +28,15 @@ pub mod reduced;
 mod relaxed;
 mod repeats;
 pub mod starts;
+#[cfg(test)]
+mod stopping_tests;
 pub mod timed;
 pub mod warm;
 pub mod warnings;
 
+use crate::linkage::effort::is_stopped_by_a_test;
 use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// What stops a search from outside.
@@ -59,10 +62,45 @@ impl<'a> Budget<'a> {
 
     /// Why the search should end now.
     pub fn stop_reason(&self) -> Option<Reason> {
-        if self.cancel.load(Ordering::Relaxed) {
+        if is_stopped_by_a_test() || self.cancel.load(Ordering::Relaxed) {
             return Some(Reason::Cancelled);
         }
         self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| Reason::TimeLimit)
+    }
+
+    /// Whether something may still be worked out that takes as long as judging candidates with so many target points
+    /// together: always until the search is stopped, and then where it takes a fraction of a second.
+    pub fn leaves_time_for(&self, points: usize) -> bool {
+        points <= JUDGED_AFTER_STOP || !self.stopped()
+    }
+
+    /// Counts how many candidates of `points` target points each may still be judged once the search is stopped.
+    pub fn judging(&self, points: usize) -> Judging<'_> {
+        Judging { budget: self, points, after_stop: AtomicUsize::new(0) }
+    }
+}
+
+/// Target points of the candidates that are still judged after a stop, all of them together. Judging takes about
+/// 200 positions of the linkage a target point, so that this many take a fraction of a second.
+pub const JUDGED_AFTER_STOP: usize = 20_000;
+
+/// How many candidates may still be judged: all of them until the search is stopped, and from then on as many as have
+/// [`JUDGED_AFTER_STOP`] target points together, but always one, so that there is something to give.
+#[derive(Debug)]
+pub struct Judging<'a> {
+    budget: &'a Budget<'a>,
+    points: usize,
+    after_stop: AtomicUsize,
+}
+
+impl Judging<'_> {
+    /// Whether one more may be judged; it counts as judged then.
+    pub fn may_go_on(&self) -> bool {
+        if !self.budget.stopped() {
+            return true;
+        }
+        let before = self.after_stop.fetch_add(1, Ordering::Relaxed);
+        before == 0 || (before + 1).saturating_mul(self.points) <= JUDGED_AFTER_STOP
     }
 }
 

@@ -76,7 +76,7 @@ pub fn round(
     let n = problem.task().len() as u64;
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     for _ in 0..SCREEN {
-        if outcome.evaluations >= allowance {
+        if outcome.evaluations >= allowance || budget.stopped() {
             break;
         }
         outcome.draws += 1;
@@ -109,6 +109,7 @@ pub fn round(
     }
     fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
     fitted.truncate(LONG);
+    let judging = budget.judging(problem.task().len());
     for (_, start) in fitted {
         if budget.stopped() {
             return outcome;
@@ -121,7 +122,8 @@ pub fn round(
         let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, left, budget);
         outcome.evaluations += fit.evaluations;
         outcome.positions += n * fit.evaluations;
-        outcome.found.extend(fit.end.and_then(|end| judged(problem, &end)));
+        let end = fit.end.filter(|_| judging.may_go_on());
+        outcome.found.extend(end.and_then(|end| judged(problem, &end)));
     }
     outcome
 }

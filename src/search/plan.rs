@@ -432,11 +432,16 @@ fn auto(
     let n = problem.task().len() as u64;
     let each = for_polish / end.starts.len().max(1) as u64;
     let worth_it = if each == 0 { Vec::new() } else { end.starts };
+    let judging = budget.judging(problem.task().len());
     let polished: Vec<_> = worth_it
         .into_par_iter()
         .map(|start| {
+            if budget.stopped() {
+                return (None, 0);
+            }
             let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, each, budget);
-            (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
+            let end = fit.end.filter(|_| judging.may_go_on());
+            (end.and_then(|end| judged(problem, &end)), fit.evaluations)
         })
         .collect();
     for (candidate, evaluations) in polished {

@@ -342,11 +342,16 @@ fn polish_all(
     let left = limit.saturating_sub(evaluations.objective);
     starts.truncate(usize::try_from(left).unwrap_or(usize::MAX));
     let each = (left / starts.len().max(1) as u64).min(EVALUATIONS);
+    let judging = budget.judging(problem.task().len());
     let polished: Vec<(Option<Candidate>, u64)> = starts
         .par_iter()
         .map(|start| {
+            if budget.stopped() {
+                return (None, 0);
+            }
             let fit = finish(problem, start, each, budget);
-            (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
+            let end = fit.end.filter(|_| judging.may_go_on());
+            (end.and_then(|end| judged(problem, &end)), fit.evaluations)
         })
         .collect();
     for (candidate, used) in polished {

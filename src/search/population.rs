@@ -14,10 +14,10 @@ use crate::record::{Candidate, Reason};
 use crate::solve::argmin_bridge::{Limits, PopulationProgress, RestartsState, StopReason, run_restarts_from};
 use crate::solve::differential_evolution::DifferentialEvolution;
 use crate::solve::genetic::Genetic;
-use crate::solve::population::{Generations, PopulationError, PopulationProblem};
+use crate::solve::population::{Fitness, Generations, PopulationError, PopulationProblem};
 use crate::solve::random_search::{UniformSampling, UniformSamplingParameters};
 use crate::task::Timing;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Which population search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,6 +107,48 @@ pub fn search_kept(
     search_in(problem, &fitness, which, evaluations, budget, observer, keeper)
 }
 
+/// Targets of fewer points are done with a generation in a fraction of a second: a stop waits for its end.
+const LONG_TARGET: usize = 1000;
+
+/// A fitness that is asked about a stop before each evaluation, where one takes long: those after a stop are skipped and
+/// leave [`Fitness::UNKNOWN`], which no point is worse than. The first is always computed, so that there is an answer.
+struct Stoppable<'a, F> {
+    fitness: &'a F,
+    budget: &'a Budget<'a>,
+    is_long: bool,
+    begun: AtomicBool,
+    skipped: AtomicU64,
+}
+
+impl<'a, F: Searched> Stoppable<'a, F> {
+    fn new(problem: &Problem, fitness: &'a F, budget: &'a Budget<'a>) -> Self {
+        let is_long = problem.task().len() >= LONG_TARGET;
+        Stoppable { fitness, budget, is_long, begun: AtomicBool::new(false), skipped: AtomicU64::new(0) }
+    }
+
+    fn skipped(&self) -> u64 {
+        self.skipped.load(Ordering::Relaxed)
+    }
+}
+
+impl<F: Searched> PopulationProblem for Stoppable<'_, F> {
+    fn bounds(&self) -> &[(f64, f64)] {
+        self.fitness.bounds()
+    }
+
+    fn evaluate(&self, x: &[f64]) -> Fitness {
+        if self.is_long && self.begun.swap(true, Ordering::Relaxed) && self.budget.stopped() {
+            self.skipped.fetch_add(1, Ordering::Relaxed);
+            return Fitness::UNKNOWN;
+        }
+        self.fitness.evaluate(x)
+    }
+
+    fn cost_hint_ns(&self) -> f64 {
+        self.fitness.cost_hint_ns()
+    }
+}
+
 fn search_in<F: Searched>(
     problem: &Problem,
     fitness: &F,
@@ -137,6 +179,7 @@ fn search_in<F: Searched>(
     let limits = Limits { evaluations, target: Some(super::rank::exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(budget.stopped());
+    let stoppable = Stoppable::new(problem, fitness, budget);
     let mut observe = |at: PopulationProgress<'_>| {
         if budget.stopped() {
             stop.store(true, Ordering::Relaxed);
@@ -151,19 +194,36 @@ fn search_in<F: Searched>(
         });
     };
     let mut keep = |state: &dyn Fn() -> RestartsState| {
-        if let Some(keeper) = keeper {
+        // A generation that was cut short is no place to go on from.
+        if let Some(keeper) = keeper.filter(|_| stoppable.skipped() == 0) {
             keeper.keep(stop.load(Ordering::Relaxed), |at| at.population = Some(state()));
         }
     };
     let earlier = keeper.and_then(|keeper| keeper.earlier().population.clone());
     let (algorithm, seed) = (&mut *algorithm, spec.seed);
-    let outcome =
-        run_restarts_from(earlier, fitness, algorithm, &[], seed, &limits, &stop, &mut observe, &mut keep)?;
+    let outcome = run_restarts_from(
+        earlier,
+        &stoppable,
+        algorithm,
+        &[],
+        seed,
+        &limits,
+        &stop,
+        &mut observe,
+        &mut keep,
+    )?;
     let mut starts = Vec::new();
     let mut found = Vec::new();
     let kept =
         [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
+    let (skipped, judging) = (stoppable.skipped(), budget.judging(problem.task().len()));
     for individual in kept {
+        if skipped > 0 && individual.fitness.violation.is_nan() {
+            continue;
+        }
+        if !judging.may_go_on() {
+            break;
+        }
         let Some(start) = fitness.start(&individual.x, budget) else { continue };
         found.extend(judged(problem, &start));
         starts.push(start);
@@ -173,8 +233,8 @@ fn search_in<F: Searched>(
     Ok(PopulationEnd {
         starts,
         found,
-        evaluations: outcome.evaluations,
-        positions: outcome.evaluations * fitness.positions(),
+        evaluations: outcome.evaluations - skipped,
+        positions: (outcome.evaluations - skipped) * fitness.positions(),
         reason: match outcome.reason {
             StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
             // The fitness is no judge: an exact answer has to stand before the referee too.

@@ -219,6 +219,7 @@ pub fn search(
         ample &=
             (wave * WAVE..).zip(&batches).all(|(index, batch)| spared(batch.evaluations, allowance(index)));
         let (found, best, seen, belief) = (&mut at.found, &mut at.best, &mut at.seen, &mut at.belief);
+        let judging = budget.judging(problem.task().len());
         at.wave += 1;
         at.binding_waves += u64::from(binding);
         for batch in batches {
@@ -247,6 +248,9 @@ pub fn search(
                     if accepted {
                         belief.came_back_to(end.cost);
                     }
+                    continue;
+                }
+                if !judging.may_go_on() {
                     continue;
                 }
                 let Some(candidate) = judged(problem, &end.start) else { continue };
@@ -378,7 +382,9 @@ impl<'a> Search<'a> {
         out.evaluations = readings * batch.len() as u64;
         let mut screened: Vec<(f64, usize, usize, AssemblyMode)> = Vec::new();
         for (form, (_, projection)) in self.forms.iter().enumerate() {
-            let costs = projection.screen(&batch);
+            let Some(costs) = projection.screen_unless(&batch, &|| self.budget.stopped()) else {
+                return BatchOutcome::default();
+            };
             for (assembly, costs) in [AssemblyMode::Plus, AssemblyMode::Minus].into_iter().zip(costs) {
                 screened.extend(
                     costs
@@ -413,7 +419,7 @@ impl<'a> Search<'a> {
             let fit = &mut fits[form];
             fit.set_assembly(assembly);
             let options = CompactOptions { max_evaluations: most.min(left), ..options };
-            let end = solve(fit, x, self.forms[form].1.bounds(), &options);
+            let end = solve(fit, x, self.forms[form].1.bounds(), &options, &|| self.budget.stopped());
             *used += u64::from(end.evaluations);
             end.cost.is_finite().then_some((end.cost, end.x))
         };
@@ -429,9 +435,11 @@ impl<'a> Search<'a> {
         }
         short.sort_by(|x, y| x.0.total_cmp(&y.0));
         let mut long: Vec<(f64, Reduced, usize, AssemblyMode)> = Vec::with_capacity(LONG);
-        for (_, x, form, assembly) in short.into_iter().take(LONG) {
+        for (cost, x, form, assembly) in short.into_iter().take(LONG) {
             if self.budget.stopped() {
-                return out;
+                // As it stands: the best so far.
+                long.push((cost, x, form, assembly));
+                break;
             }
             if let Some((cost, x)) = fit(x, form, assembly, LONG_EVALUATIONS, &mut out.evaluations) {
                 long.push((cost, x, form, assembly));
@@ -456,6 +464,9 @@ impl<'a> Search<'a> {
             }
         }
         broken.sort_by(|x, y| x.0.total_cmp(&y.0));
+        if self.budget.stopped() && out.ends.is_empty() {
+            out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
+        }
         let mut polishes = 0;
         for (_, end) in broken {
             let bar = out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
@@ -504,6 +515,9 @@ impl<'a> Search<'a> {
         let mut starts = Vec::new();
         for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
             let x = &batch.draws()[i];
+            if self.budget.stopped() {
+                break;
+            }
             if out.evaluations >= allowance || !self.stays_closed(form, x) {
                 continue;
             }

@@ -4,13 +4,12 @@
 //! same warnings.
 
 use crate::linkage::LinkageType;
+use crate::linkage::transmission::{ForceTransmission, JAM_UNDER_LOAD_DEG};
 use crate::problem::Problem;
 use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
 
 /// Below this worst transmission angle, in degrees, a loaded linkage may jam.
-pub const LEAST_TRANSMISSION_DEG: f64 = 10.0;
-/// Below this one friction alone stops it.
-const CERTAIN_DEG: f64 = 2.0;
+pub const LEAST_TRANSMISSION_DEG: f64 = JAM_UNDER_LOAD_DEG;
 /// Beyond this ratio of the longest to the shortest link a linkage is hard to build.
 pub const GREATEST_LINK_RATIO: f64 = 20.0;
 /// A Grashof margin below this part of the longest link is almost a change point: play and tolerances decide
@@ -28,9 +27,9 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         list.push(Warning { kind, text, key: key.into(), value, limit });
     };
     let worst = candidate.transmission_deg.worst;
-    if worst < LEAST_TRANSMISSION_DEG - ROUNDING * LEAST_TRANSMISSION_DEG {
-        let end = if worst < CERTAIN_DEG { "it will jam" } else { "it may jam under load" };
-        let text = format!("worst transmission angle {} deg: {end}", shown(worst));
+    let force = ForceTransmission::of(worst);
+    if matches!(force, ForceTransmission::MayJamUnderLoad | ForceTransmission::Jams) {
+        let text = format!("worst transmission angle {} deg: {}", shown(worst), force.words());
         push(WarningKind::TransmissionAngle, "transmission_deg.worst", worst, LEAST_TRANSMISSION_DEG, text);
     }
     let ratio = candidate.link_ratio;

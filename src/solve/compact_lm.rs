@@ -49,6 +49,10 @@ pub enum CompactOutcome {
     EvaluationLimit,
     /// Not below `hopeless_cost` in time.
     Hopeless,
+    /// No step can be taken although none promises too little: the damping has outgrown every step.
+    Stalled,
+    /// Ended from outside.
+    Stopped,
     /// The start has no cost.
     NoStart,
 }
@@ -73,12 +77,14 @@ const LAST_DAMPING: f64 = 1e12;
 /// Steps in a row that hardly reduce before a solve counts as converged.
 const QUIET_STEPS: u32 = 2;
 
-/// Solves from a start, which is brought into its bounds. Equal bounds fix an unknown.
+/// Solves from a start, which is brought into its bounds. Equal bounds fix an unknown. `stop` is asked before each
+/// computation of the cost but the first.
 pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
     problem: &mut P,
     start: [f64; N],
     bounds: &[(f64, f64); N],
     options: &CompactOptions,
+    stop: &dyn Fn() -> bool,
 ) -> CompactResult<N> {
     let mut x = start;
     for (value, &(low, high)) in x.iter_mut().zip(bounds) {
@@ -103,11 +109,15 @@ pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
             result.outcome = CompactOutcome::Hopeless;
             return result;
         }
+        if stop() {
+            result.outcome = CompactOutcome::Stopped;
+            return result;
+        }
         let Some((trial, promised)) = step(&normal, &result.x, bounds, damping) else {
             damping *= growth;
             growth *= 2.0;
             if damping > LAST_DAMPING {
-                result.outcome = CompactOutcome::Converged;
+                result.outcome = CompactOutcome::Stalled;
                 return result;
             }
             continue;
@@ -136,7 +146,7 @@ pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
                 damping *= growth;
                 growth *= 2.0;
                 if damping > LAST_DAMPING {
-                    result.outcome = CompactOutcome::Converged;
+                    result.outcome = CompactOutcome::Stalled;
                     return result;
                 }
             }
@@ -262,7 +272,7 @@ mod tests {
 
     #[test]
     fn a_curved_valley_is_followed_to_its_end() {
-        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &OPTIONS);
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &OPTIONS, &|| false);
         assert_eq!(end.outcome, CompactOutcome::Converged);
         assert!((end.x[0] - 1.0).abs() < 1e-9 && (end.x[1] - 1.0).abs() < 1e-9, "{end:?}");
         assert!(end.evaluations < 60, "{}", end.evaluations);
@@ -270,23 +280,56 @@ mod tests {
 
     #[test]
     fn a_bound_that_binds_is_kept_and_the_rest_is_minimised_on_it() {
-        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &[(-2.0, 0.5), (-10.0, 10.0)], &OPTIONS);
+        let end =
+            solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &[(-2.0, 0.5), (-10.0, 10.0)], &OPTIONS, &|| false);
         assert_eq!(end.x[0], 0.5);
         assert!((end.x[1] - 0.25).abs() < 1e-9 && (end.cost - 0.25).abs() < 1e-9, "{end:?}");
-        let fixed = solve(&mut Valley([0.0; 2]), [0.0, 7.0], &[(2.0, 2.0), (-10.0, 10.0)], &OPTIONS);
+        let fixed =
+            solve(&mut Valley([0.0; 2]), [0.0, 7.0], &[(2.0, 2.0), (-10.0, 10.0)], &OPTIONS, &|| false);
         assert_eq!(fixed.x[0], 2.0, "equal bounds fix an unknown, whatever the start says");
         assert!((fixed.x[1] - 4.0).abs() < 1e-9);
     }
 
     #[test]
+    fn a_stop_ends_a_solve_with_its_best_so_far() {
+        let asked = std::cell::Cell::new(0);
+        let stop = || asked.replace(asked.get() + 1) >= 3;
+        let start = [-1.2, 1.0];
+        let before = Valley([0.0; 2]).cost(&start).expect("a cost");
+        let end = solve(&mut Valley([0.0; 2]), start, &WIDE, &OPTIONS, &stop);
+        assert_eq!(end.outcome, CompactOutcome::Stopped);
+        assert!(end.evaluations <= 4 && end.cost < before, "{end:?}");
+    }
+
+    /// A cost whose derivative points the wrong way: every step makes it worse.
+    struct Misled;
+
+    impl CompactLeastSquares<1> for Misled {
+        fn cost(&mut self, x: &[f64; 1]) -> Option<f64> {
+            Some(1.0 + x[0] * x[0])
+        }
+
+        fn normal(&mut self) -> Normal<1> {
+            Normal { matrix: [[1.0]], gradient: [-1.0] }
+        }
+    }
+
+    #[test]
+    fn a_solve_that_no_step_leads_on_from_has_stalled_and_not_converged() {
+        let options = CompactOptions { relative_reduction: 0.0, ..OPTIONS };
+        let end = solve(&mut Misled, [0.0], &[(-1.0, 1.0)], &options, &|| false);
+        assert_eq!(end.outcome, CompactOutcome::Stalled, "{end:?}");
+    }
+
+    #[test]
     fn limits_end_a_solve_and_say_so() {
         let short = CompactOptions { max_evaluations: 5, ..OPTIONS };
-        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &short);
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &short, &|| false);
         assert_eq!((end.outcome, end.evaluations), (CompactOutcome::EvaluationLimit, 5));
         let strict = CompactOptions { hopeless_cost: 1e-9, patience: 4, ..OPTIONS };
-        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &strict);
+        let end = solve(&mut Valley([0.0; 2]), [-1.2, 1.0], &WIDE, &strict, &|| false);
         assert_eq!((end.outcome, end.evaluations), (CompactOutcome::Hopeless, 4));
-        let end = solve(&mut Valley([0.0; 2]), [-1.6, 1.0], &WIDE, &OPTIONS);
+        let end = solve(&mut Valley([0.0; 2]), [-1.6, 1.0], &WIDE, &OPTIONS, &|| false);
         assert_eq!(end.outcome, CompactOutcome::NoStart);
         assert!(end.cost.is_infinite());
     }

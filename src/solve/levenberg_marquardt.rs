@@ -156,6 +156,12 @@ pub enum LmOutcome {
     Exact,
     /// Out of steps or evaluations.
     StepLimit,
+    /// A derivative does not exist at the best point (a toggle, a flat position): no step leads on from there, and
+    /// nothing says that it is an optimum.
+    NoDerivative,
+    /// Every step that promised something made it worse until the damping had outgrown all steps: rounding, or a
+    /// kink. The best point may be an optimum, and nothing says that it is.
+    Stalled,
     /// The start could not be evaluated.
     NoStart,
     /// Given up or stopped from outside.
@@ -202,7 +208,7 @@ struct Penalty {
 }
 
 impl Penalty {
-    /// rho max(0, m - g)^2 summed, and the largest -g.
+    /// rho max(0, m - g)^2 summed.
     fn of<const N: usize, P: BlockLeastSquares<N>>(
         &self,
         problem: &P,
@@ -232,7 +238,7 @@ pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
     worst
 }
 
-/// Solves from a start. `stop` is asked between steps.
+/// Solves from a start. `stop` is asked between steps, and within a step between its passes over the points.
 ///
 /// The start is brought into its bounds. The best point so far is always what is returned.
 pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
@@ -337,8 +343,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
                     normal = Some(assembled);
                 }
                 None => {
-                    // A toggle or a flat position: no derivative, no step.
-                    result.outcome = LmOutcome::Converged;
+                    result.outcome = LmOutcome::NoDerivative;
                     return;
                 }
             }
@@ -348,7 +353,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
             damping *= growth;
             growth *= 2.0;
             if damping > LAST_DAMPING {
-                result.outcome = LmOutcome::Converged;
+                result.outcome = LmOutcome::Stalled;
                 return;
             }
             continue;
@@ -364,9 +369,12 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
             if !problem.retract(&result.x, &result.state, &work.tau, trial, state) {
                 return None;
             }
+            if stop() {
+                return None;
+            }
             if !work.gaps.is_empty() {
                 problem.join(state, work.order.leaders());
-                if !put_in_order(problem, trial, state, &work.stiffness) {
+                if !put_in_order(problem, trial, state, &work.stiffness, stop) {
                     return None;
                 }
             }
@@ -387,6 +395,11 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
                     work.own_steps_after(&shared, nu, !work.gaps.is_empty());
                 }
             }
+        }
+        if stop() {
+            result.evaluations += evaluations;
+            result.outcome = LmOutcome::Abandoned;
+            return;
         }
         if trial_merit.is_none() {
             evaluations += 1;
@@ -420,7 +433,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
                 damping *= growth;
                 growth *= 2.0;
                 if damping > LAST_DAMPING {
-                    result.outcome = LmOutcome::Converged;
+                    result.outcome = LmOutcome::Stalled;
                     return;
                 }
                 // The elimination depends on nu: assemble again where points have unknowns of their own.
@@ -433,15 +446,20 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
     result.outcome = LmOutcome::StepLimit;
 }
 
-/// Pools what a step has let pass each other after all, because the way back to the curves is not straight.
+/// Pools what a step has let pass each other after all, because the way back to the curves is not straight; `false`
+/// where that fails or `stop` says so.
 fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     x: &[f64; N],
     state: &mut P::State,
     stiffness: &[f64],
+    stop: &dyn Fn() -> bool,
 ) -> bool {
     let mut gaps = Vec::with_capacity(stiffness.len());
     for _ in 0..MOST_REPAIRS {
+        if stop() {
+            return false;
+        }
         gaps.clear();
         if !problem.gaps(x, state, &mut gaps) {
             return true;

@@ -67,6 +67,12 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
             None => "Not sure: the budget of evaluations ended.".into(),
         },
         Reason::TimeLimit | Reason::Cancelled => "Not sure: it was cut short.".into(),
+        Reason::Snapped => {
+            "Not sure: its lengths were brought to stock sizes, nothing else was searched for.".into()
+        }
+        Reason::ByHand => {
+            "Not sure: it was fitted under the hand, no search has looked for anything better.".into()
+        }
     }
 }
 

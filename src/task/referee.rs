@@ -2,13 +2,15 @@
 //!
 //! Circuits and branches are those of Chase and Mirth (1993), told from the closed forms of
 //! [`crate::linkage::mobility`]; that the loop stays closed between the points is checked on dense samples.
-//! Nothing here is used by, or takes the word of, an optimiser.
+//! Nothing here asks an optimiser: every verdict is worked out from the linkage and its positions alone. Searches do ask
+//! the referee: they rank by its verdicts and keep its [`ORDER_TOLERANCE`].
 //!
 //! *Order* is judged where the timing is free (prescribed angles are an order by themselves): the parameter
 //! of the circuit (the crank angle, or psi where the input rocks) must run one way through the points and
 //! less than once around.
 
 use super::{PathTask, Timing};
+use crate::linkage::effort::computed;
 use crate::linkage::{
     AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility,
     mobility::wrapped,
@@ -97,6 +99,7 @@ pub fn judge(
     assemblies: &[AssemblyMode],
 ) -> Verdict {
     let n = task.len();
+    computed((1 + CLOSURE_SAMPLES) * n);
     let mobility = linkage.mobility();
     let linkage = linkage.with_assembly(assemblies[0]);
     let first = mobility.branch(crank_angles[0], assemblies[0]);
@@ -282,7 +285,7 @@ impl UsedMotion {
     }
 
     /// [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
-    /// golden section around its sample.
+    /// ternary search around its sample.
     pub fn footprint(&self) -> [f64; 4] {
         const SAMPLES: usize = 720;
         let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
@@ -293,18 +296,26 @@ impl UsedMotion {
         hold(self.linkage.crank_pivot());
         hold(self.linkage.follower_pivot());
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
+        // Each sample once, for all joints and directions.
+        let [low, high] = self.range;
+        let sampled: Vec<Option<Joints>> =
+            (0..=SAMPLES).map(|i| self.joints_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
         for joint in 0..3 {
             for direction in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
-                let reach = |t: f64| {
-                    self.joints_at(t.clamp(self.range[0], self.range[1])).map_or(f64::NEG_INFINITY, |j| {
-                        let p = joints_of(&j)[joint];
-                        direction.0 * p.re + direction.1 * p.im
-                    })
+                let toward = |joints: &Joints| {
+                    let p = joints_of(joints)[joint];
+                    direction.0 * p.re + direction.1 * p.im
                 };
-                let best = (0..=SAMPLES)
-                    .map(|i| self.blend(i, SAMPLES))
-                    .max_by(|s, t| reach(*s).total_cmp(&reach(*t)));
-                let Some(best) = best else { continue };
+                let reach = |t: f64| {
+                    let joints = self.joints_at(t.clamp(self.range[0], self.range[1]));
+                    joints.as_ref().map_or(f64::NEG_INFINITY, toward)
+                };
+                // Of equal ones the last.
+                let samples = (0..=SAMPLES).map(|i| self.blend(i, SAMPLES)).zip(&sampled);
+                let best = samples
+                    .map(|(t, joints)| (t, joints.as_ref().map_or(f64::NEG_INFINITY, toward)))
+                    .max_by(|one, other| one.1.total_cmp(&other.1));
+                let Some((best, _)) = best else { continue };
                 let (mut low, mut high) = (best - step, best + step);
                 for _ in 0..60 {
                     let third = (high - low) / 3.0;

@@ -184,9 +184,11 @@ fn the_better_cognate_takes_the_candidates_place() {
     let problem = problem("p12", &[("solve.candidates", "1")]);
     let best = distinct(&problem, found(&problem), 1).remove(0);
     let forms = cognates(&problem, &best);
+    let flag = AtomicBool::new(false);
+    let endless = Budget { cancel: &flag, deadline: None };
     for start in forms.iter().chain([&best]) {
         let mut list = vec![start.clone()];
-        cognates::offer(&problem, &mut list);
+        cognates::offer(&problem, &mut list, &endless);
         let first = &list[0];
         assert!(first.accepted);
         assert_eq!(first.alternatives.len(), 2);
@@ -198,7 +200,7 @@ fn the_better_cognate_takes_the_candidates_place() {
         }
         // Whichever of the three was found, the same one is given.
         let mut from_best = vec![best.clone()];
-        cognates::offer(&problem, &mut from_best);
+        cognates::offer(&problem, &mut from_best, &endless);
         assert!((first.linkage.crank() - from_best[0].linkage.crank()).abs() < 1e-9);
         assert!((first.linkage.crank_pivot() - from_best[0].linkage.crank_pivot()).norm() < 1e-9);
     }

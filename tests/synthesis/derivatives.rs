@@ -6,7 +6,7 @@ use linkwright::problem::timed::TimedFit;
 use linkwright::problem::torus::TorusFit;
 use linkwright::search::starts::{Start, Starts};
 use linkwright::solve::levenberg_marquardt::{
-    BlockLeastSquares, LmOptions, LmOutcome, derivative_error, solve,
+    BlockLeastSquares, ConstraintRow, LmOptions, LmOutcome, PointBlock, derivative_error, solve,
 };
 use linkwright::solve::streams::stream;
 
@@ -165,5 +165,57 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
             assert_eq!(before.is_none(), outcome == LmOutcome::NoStart, "{name}");
             assert!(outcome == LmOutcome::NoStart || cost.is_finite(), "{name}");
         }
+    }
+}
+
+/// One unknown, one residual |x| + 1 whose derivative is missing, or is claimed to be 1 on both sides of its kink.
+struct Kink {
+    has_derivative: bool,
+    bounds: [(f64, f64); 1],
+}
+
+impl BlockLeastSquares<1> for Kink {
+    type State = ();
+
+    fn points(&self) -> usize {
+        1
+    }
+
+    fn bounds(&self) -> &[(f64, f64); 1] {
+        &self.bounds
+    }
+
+    fn cost(&self, x: &[f64; 1], _: &()) -> Option<f64> {
+        Some((x[0].abs() + 1.0).powi(2))
+    }
+
+    fn linearise(&self, x: &[f64; 1], _: &(), each: &mut dyn FnMut(&PointBlock<1>)) -> bool {
+        let jacobian = [[1.0], [0.0]];
+        each(&PointBlock { residual: [x[0].abs() + 1.0, 0.0], jacobian, tangent: [0.0, 0.0], weight: 1.0 });
+        self.has_derivative
+    }
+
+    fn retract(&self, _: &[f64; 1], _: &(), _: &[f64], _: &[f64; 1], _: &mut ()) -> bool {
+        true
+    }
+
+    fn constraints(&self, _: &[f64; 1], _: &(), _: &mut dyn FnMut(&ConstraintRow<1>)) {}
+}
+
+#[test]
+fn a_dead_end_is_not_called_convergence() {
+    let options = LmOptions {
+        max_steps: 1000,
+        max_rounds: 1,
+        max_evaluations: 1000,
+        relative_reduction: 0.0,
+        exact_cost: 0.0,
+        feasibility: 1e-9,
+        hopeless_cost: f64::INFINITY,
+    };
+    for (has_derivative, outcome) in [(false, LmOutcome::NoDerivative), (true, LmOutcome::Stalled)] {
+        let kink = Kink { has_derivative, bounds: [(-5.0, 5.0)] };
+        let end = solve(&kink, [0.0], (), &options, &|| false);
+        assert_eq!((end.outcome, end.x, end.cost), (outcome, [0.0], 1.0));
     }
 }

@@ -4,7 +4,7 @@ use crate::common::{bytes, literature, run_on};
 use linkwright::linkage::{AssemblyMode, Complex, FourBar};
 use linkwright::problem::Problem;
 use linkwright::problem::spec::ProblemSpec;
-use linkwright::record::{Candidate, Record};
+use linkwright::record::{Candidate, Reason, Record, Termination};
 use linkwright::search::Budget;
 use linkwright::search::rank::compare;
 use linkwright::snap::{Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap};
@@ -61,6 +61,8 @@ fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
         }
         assert_eq!(found.lengths.len(), 6);
         let told = record(&problem, "snapped", None, None, &request, &found).expect("a record");
+        // No search ended: the record must not say that one ran out of ideas.
+        assert_eq!(told.termination, Termination { reason: Reason::Snapped, reproducible: true });
         assert_eq!(verify(&told).expect("a problem"), []);
         // What was done to the lengths one after another is never worse than all of them at once.
         let nearest = found.nearest.as_ref().expect("it closes");

@@ -1,5 +1,6 @@
 //! Files, texts, command line, reports: what a user reads and types.
 
+mod advice;
 mod analysis_sheets;
 mod analyze;
 mod bad_input;
@@ -16,6 +17,7 @@ mod documents;
 mod exports;
 mod faults;
 mod long_runs;
+mod numbers_document;
 mod player_golden;
 mod problem_file_document;
 mod proving;
@@ -23,6 +25,7 @@ mod proving;
 mod random;
 #[path = "../reference/mod.rs"]
 mod reference;
+mod remedies;
 mod report;
 mod report_page;
 mod rooms;

@@ -532,3 +532,34 @@ fn pages_for_the_test_in_a_browser_are_written() {
         fs::write(place.join(name).with_extension("html"), page).expect("it can be written");
     }
 }
+
+#[test]
+fn a_page_has_one_verdict_on_a_transmission_angle() {
+    use linkwright::linkage::transmission::ForceTransmission;
+    use linkwright::problem::Problem;
+    use linkwright::search::warnings::warnings;
+    let words = [
+        ForceTransmission::Good,
+        ForceTransmission::Fair,
+        ForceTransmission::Poor,
+        ForceTransmission::MayJamUnderLoad,
+        ForceTransmission::Jams,
+    ]
+    .map(ForceTransmission::words);
+    // At each limit a miss by rounding is none.
+    for (worst, verdict) in
+        [(50.0, 0), (40.0 - 1e-7, 0), (35.0, 1), (20.0, 2), (10.0 - 1e-7, 2), (5.0, 3), (1.0, 4), (0.0, 4)]
+    {
+        let mut record = k18();
+        record.candidates.truncate(1);
+        let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
+        let candidate = &mut record.candidates[0];
+        candidate.transmission_deg.worst = worst;
+        candidate.warnings = warnings(&problem, candidate);
+        let page = report_html(&record, 0);
+        for (i, words) in words.iter().enumerate() {
+            // "it will jam" is not a part of the others.
+            assert_eq!(page.contains(words), i == verdict, "{worst}: {words}");
+        }
+    }
+}

@@ -189,6 +189,8 @@ fn a_job_saves_the_bytes_of_synth_and_all_that_is_told_of_it_is_what_the_command
     assert!(costs(&details) && costs(&by_hand), "{}", by_hand["words"]);
     let html = guest.posts("/export", &json!({"of": drawn, "format": "html"}));
     assert!(html.status() == 200 && body(&html).contains("an egg"), "{}", html.0);
+    // No search was cancelled: there was none.
+    assert!(body(&html).contains("by-hand") || body(&html).contains("fitted under the hand"), "{}", html.0);
     // Another studio, later, lists the same.
     drop(studio);
     let later = self::studio(&saved, "18442");

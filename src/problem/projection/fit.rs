@@ -16,6 +16,7 @@
 
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::{AssemblyMode, Complex, turned};
 use crate::problem::design_space::{Shape, unit};
@@ -445,6 +446,7 @@ impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
         let (turn, theta) = self.form.angles(x[3]);
         let (turn, direction) = (Complex::from_polar(1.0, turn), Complex::from_polar(1.0, theta));
         let weight = self.form.total_weight;
+        computed(self.form.points());
         vectorised(
             #[inline(always)]
             || self.project(ratio, turn, direction),
@@ -455,6 +457,7 @@ impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
     fn normal(&mut self) -> Normal<UNKNOWNS> {
         let nothing = Normal { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], gradient: [0.0; UNKNOWNS] };
         let Some(linear) = self.linear else { return nothing };
+        computed(self.form.points());
         vectorised(
             #[inline(always)]
             || self.linearised(&linear),

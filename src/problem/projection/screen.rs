@@ -14,6 +14,7 @@
 
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::linkage::dispatch::vectorised;
+use crate::linkage::effort::computed;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::{AssemblyMode, Complex};
 
@@ -133,13 +134,22 @@ impl Projection {
     /// The costs of a batch on both assemblies, t1 = +1 first: infinite where the loop does not close at a
     /// point, the linear system is singular or the ground comes out reversed. Two evaluations a draw.
     pub fn screen(&self, batch: &Batch) -> [Vec<f64>; 2] {
+        self.screen_unless(batch, &|| false).unwrap_or_default()
+    }
+
+    /// As [`Projection::screen`]; `None` where `stop` says so, which is asked before every `LANES` draws.
+    pub fn screen_unless(&self, batch: &Batch, stop: &dyn Fn() -> bool) -> Option<[Vec<f64>; 2]> {
         let padded = batch.ratio[0].len();
         let mut costs = [vec![0.0; padded], vec![0.0; padded]];
         let [plus, minus] = &mut costs;
-        vectorised(
+        let all = vectorised(
             #[inline(always)]
             || {
                 for at in (0..padded).step_by(LANES) {
+                    if stop() {
+                        return false;
+                    }
+                    computed(2 * LANES * self.points);
                     let ratio = [0, 1, 2].map(|k| F64x8::load(&batch.ratio[k], at));
                     let angle =
                         Pair { re: F64x8::load(&batch.angle[0], at), im: F64x8::load(&batch.angle[1], at) };
@@ -147,12 +157,16 @@ impl Projection {
                     p.store(plus, at);
                     m.store(minus, at);
                 }
+                true
             },
         );
+        if !all {
+            return None;
+        }
         for column in &mut costs {
             column.truncate(batch.len());
         }
-        costs
+        Some(costs)
     }
 
     /// What [`Projection::screen`] gives for a single draw, in scalar arithmetic: the same bits.

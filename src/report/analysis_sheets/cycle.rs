@@ -6,11 +6,12 @@ use super::chart::{Abscissa, Chart, Range, Series};
 use super::vectors::per_time;
 use super::{CYCLE_ROWS, degrees};
 use crate::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
+use crate::linkage::transmission::POOR_DEG;
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;
 /// Transmission angles nearer than this to 0 or 180 degrees are hard to drive.
-const POOR_TRANSMISSION_DEG: f64 = 30.0;
+const POOR_TRANSMISSION_DEG: f64 = POOR_DEG;
 /// More turns than this have no toggles and open stretches marked: there would be nothing else to see.
 const MOST_TURNS: f64 = 10.0;
 

@@ -80,6 +80,9 @@ pub(super) fn header(record: &Record) -> String {
     {
         out.push_str(&paragraph("facts", &sentence));
     }
+    if let Some(said) = words::without_advice(record) {
+        out.push_str(&paragraph("facts", said));
+    }
     if let Some(text) = price::conflict(record) {
         out.push_str(&paragraph("lead bad", &text));
         let changes = price::changes(record);

@@ -1,6 +1,7 @@
 //! Mobility and defects in words.
 
 use super::page::escaped;
+use crate::linkage::transmission::ForceTransmission;
 use crate::linkage::{InputRange, LinkageType};
 use crate::problem::spec::TransmissionOver;
 use crate::record::{Candidate, Record};
@@ -89,12 +90,7 @@ fn transmission(c: &Candidate) -> String {
         TransmissionOver::Cycle => "over the full turn",
         TransmissionOver::Used => "over the part used",
     };
-    let verdict = match t.worst {
-        worst if worst >= 40.0 => "forces pass well",
-        worst if worst >= 30.0 => "good enough for most loads",
-        worst if worst >= 10.0 => "below 30° a loaded linkage may jam",
-        _ => "it will jam under load",
-    };
+    let verdict = ForceTransmission::of(t.worst).words();
     format!(
         "Transmission angle from {}° to {}° {over}: {} from 0° or 180° at its worst; {verdict}.",
         significant(t.min, 4),

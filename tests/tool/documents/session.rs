@@ -68,7 +68,7 @@ pub fn of_console(block: &Block) -> Vec<Step> {
 /// A line without its times and without blanks at its end.
 pub fn masked(line: &str) -> String {
     let mut text = line.trim_end().to_owned();
-    for unit in [" s of search", " s more for the buildable one", " s more for"] {
+    for unit in [" s in all", " s of search", " s for ", " s more for"] {
         while let Some(end) = text.find(unit) {
             let start = text[..end].rfind(|c: char| !(c.is_ascii_digit() || c == '.')).map_or(0, |at| at + 1);
             if start == end {

@@ -1,0 +1,62 @@
+//! Numbers in the prose of the documents are those of the program.
+
+use crate::common::root;
+use linkwright::linkage::lane::LANES;
+use linkwright::linkage::transmission::{CERTAIN_JAM_DEG, GOOD_DEG, JAM_UNDER_LOAD_DEG, POOR_DEG};
+use linkwright::problem::spec::SolveSpec;
+use linkwright::record::GENERIC_CLASSES;
+use linkwright::search::atlas::ENTRIES;
+use linkwright::search::free::LEAST_MATCHED;
+use std::fs;
+
+/// With commas between thousands.
+fn number(n: usize) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+/// A document on one line.
+fn prose(place: &str) -> String {
+    let text = fs::read_to_string(root().join(place)).expect("it is there");
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn the_documents_have_the_numbers_of_the_program() {
+    assert_eq!(LANES, 8);
+    let (atlas, least) = (number(ENTRIES), LEAST_MATCHED);
+    let poor = format!("below {POOR_DEG} a loaded linkage may jam");
+    let evaluations = SolveSpec::default().evaluations;
+    for (place, said) in [
+        (
+            "docs/how-it-works.md",
+            format!("an atlas of {atlas} coupler curves for targets of {least} points and more"),
+        ),
+        (
+            "README.md",
+            format!("for targets of {least} points and more also from an atlas of {atlas} coupler curves"),
+        ),
+        ("docs/how-it-works.md", "screened, eight at a time".to_owned()),
+        (
+            "docs/how-it-works.md",
+            format!("the equations have {} different solutions", number(GENERIC_CLASSES)),
+        ),
+        ("README.md", poor.clone()),
+        ("docs/guide.md", poor),
+        (
+            "docs/problem-file.md",
+            format!("How many evaluations of the objective at most; {evaluations} where silent."),
+        ),
+        ("docs/certificate.md", "used on boxes with f >= 1e-4 only".to_owned()),
+    ] {
+        assert!(prose(place).contains(&said), "{place} does not say: {said}");
+    }
+    assert!(CERTAIN_JAM_DEG < JAM_UNDER_LOAD_DEG && JAM_UNDER_LOAD_DEG < POOR_DEG && POOR_DEG < GOOD_DEG);
+}
