@@ -42,7 +42,7 @@ pub enum Command {
     Certify(Certify),
     /// Write a result as a page to look at, print and mail: one HTML file
     Report(Report),
-    /// Positions, velocities, accelerations and mobility of a linkage file
+    /// Positions, velocities, accelerations and mobility of a linkage
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
     Cognates(Cognates),
@@ -132,6 +132,9 @@ pub struct New {
     /// Take the target from these points (CSV) or this drawing (SVG)
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `compare`.
@@ -158,6 +161,9 @@ pub struct Compare {
     /// Write a page with curves and tables too: one file, needs no network
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
@@ -209,12 +215,15 @@ pub struct Report {
     /// Where the page goes [default: report.html in the folder, or beside a record under another name]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `analyze`.
 #[derive(Debug, Args)]
 pub struct Analyze {
-    /// A linkage file (TOML)
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
@@ -244,6 +253,9 @@ pub struct Analyze {
     /// Draw the sheets into one SVG file
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
@@ -252,7 +264,7 @@ pub struct Analyze {
 /// Options of `cognates`.
 #[derive(Debug, Args)]
 pub struct Cognates {
-    /// A linkage file (TOML)
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
@@ -261,6 +273,9 @@ pub struct Cognates {
     /// Draw all three together
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `build`.
@@ -308,6 +323,9 @@ pub struct Snap {
     /// Where the result goes: a folder, or FILE.toml for the best linkage alone [default: results/NAME-snapped]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `suite`.
@@ -331,6 +349,9 @@ pub struct Suite {
     /// Write results/literature.md and results/literature.json too (all problems, no FILTER)
     #[arg(long, conflicts_with = "filter")]
     pub write: bool,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `studio`.
@@ -340,8 +361,8 @@ pub struct Studio {
     /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
     #[arg(value_name = "PROBLEM")]
     pub problem: Option<PathBuf>,
-    /// The port on 127.0.0.1 [default: 8017, or a free one where that is taken]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
+    #[arg(long, value_name = "N")]
     pub port: Option<u16>,
     /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
     #[arg(long, value_name = "DIR")]
@@ -366,6 +387,9 @@ pub struct Export {
     /// Write it to this file [default: to standard output]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 fn finite(text: &str) -> Result<f64, String> {

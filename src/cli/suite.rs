@@ -7,7 +7,8 @@ use crate::diagnostic::escaped;
 use crate::problem::spec::CertifySpec;
 use crate::problem_file::{self, ProblemFile};
 use crate::report::suite::{suite_markdown, suite_text};
-use crate::results_folder::replace_file;
+use crate::generator::FileKind;
+use crate::results_folder::{OutputFile, Replace, check_files, write_files};
 use crate::suite::{Options, Step, Suite, suite};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,7 @@ const DATA: &str = "literature.json";
 pub fn run(asked: &Asked) -> Ended {
     let Some(problems) = problems(asked) else { return Ended::Refused };
     // The place is looked at before anything runs: one that cannot be written to costs no search.
-    let place = match asked.write.then(|| Place::take(Path::new(RESULTS))).transpose() {
+    let place = match asked.write.then(|| Place::take(Path::new(RESULTS), asked.force)).transpose() {
         Ok(place) => place,
         Err(e) => return refuse(&e),
     };
@@ -176,25 +177,33 @@ fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 struct Place {
     folder: PathBuf,
     made: bool,
+    replace: Replace<'static>,
 }
 
 impl Place {
-    fn take(folder: &Path) -> Result<Self, String> {
+    fn take(folder: &Path, force: bool) -> Result<Self, String> {
         let made = !folder.exists();
         let shown = folder.display();
         std::fs::create_dir_all(folder).map_err(|e| format!("{shown}: {e}"))?;
-        let place = Place { folder: folder.into(), made };
+        let replace = if force { Replace::Anything } else { Replace::Ours(&[]) };
+        let place = Place { folder: folder.into(), made, replace };
+        let [data, page] = [DATA, PAGE].map(|name| folder.join(name));
+        check_files(&outputs((&data, ""), (&page, "")), replace).map_err(|e| e.to_string())?;
         tempfile::tempfile_in(folder).map_err(|e| format!("{shown} cannot be written to: {e}"))?;
         Ok(place)
     }
 
     fn write(&self, suite: &Suite, json: &str) -> Result<(), String> {
         let page = suite_markdown(suite);
-        for (name, text) in [(DATA, json), (PAGE, page.as_str())] {
-            replace_file(&self.folder, name, text.as_bytes()).map_err(|e| e.to_string())?;
-        }
-        Ok(())
+        let [data_at, page_at] = [DATA, PAGE].map(|name| self.folder.join(name));
+        write_files(&outputs((&data_at, json), (&page_at, &page)), self.replace).map_err(|e| e.to_string())
     }
+}
+
+/// The suite's two files.
+fn outputs<'a>(data: (&'a Path, &'a str), page: (&'a Path, &'a str)) -> [OutputFile<'a>; 2] {
+    let file = |(path, text): (&'a Path, &'a str), kind| OutputFile { path, kind, bytes: text.as_bytes() };
+    [file(data, FileKind::SuiteJson), file(page, FileKind::SuiteMarkdown)]
 }
 
 impl Drop for Place {

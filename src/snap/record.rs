@@ -52,7 +52,7 @@ pub fn record(
             asked: spec.solve.method,
             used: vec![format!("snap {} to {}", keys.join(", "), request.stock.words())],
         },
-        termination: Termination { reason: Reason::Stalled, reproducible: true },
+        termination: Termination { reason: snapped.reason, reproducible: snapped.reason == Reason::Stalled },
         evaluations: snapped.evaluations,
         family: candidates.first().and_then(|best| family(problem, best)),
         buildable: None,

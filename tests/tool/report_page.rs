@@ -6,7 +6,8 @@ use linkwright::linkage::AssemblyMode;
 use linkwright::practicality::{Build, Practicality, millimetre};
 use linkwright::problem::Problem;
 use linkwright::record::*;
-use linkwright::report::html::{Extent, is_report, report_html, report_with_drawings};
+use linkwright::generator::FileKind;
+use linkwright::report::html::{Extent, report_html, report_with_drawings};
 use linkwright::task::Defect;
 use std::fs;
 use std::path::Path;
@@ -286,6 +287,7 @@ fn the_same_record_gives_the_same_bytes() {
     let page = report_html(&record, 0);
     let text = serde_json::to_string(&record).expect("JSON");
     assert_eq!(page, report_html(&serde_json::from_str(&text).expect("a record"), 0));
+    let is_report = |bytes: &[u8]| FileKind::Html.is_written_by_us(bytes, b"");
     assert!(is_report(page.as_bytes()) && !is_report(b"<!doctype html>\n<html><head>"));
 }
 
@@ -528,7 +530,7 @@ fn pages_for_the_test_in_a_browser_are_written() {
     ];
     for (name, record) in records {
         let page = report_html(&record, 0);
-        assert!(is_report(page.as_bytes()));
+        assert!(FileKind::Html.is_written_by_us(page.as_bytes(), b""));
         fs::write(place.join(name).with_extension("html"), page).expect("it can be written");
     }
 }
