@@ -137,9 +137,10 @@ fn remedy(error: &io::Error) -> &'static str {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "change its permissions or name another place"
         }
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "make room on the disk or name another place"
         }
+        io::ErrorKind::FileTooLarge => "raise the limit of a file's size (ulimit -f) or name another place",
         io::ErrorKind::AlreadyExists => "choose another name",
         io::ErrorKind::NotADirectory => "a part of this path is a file: name another place",
         io::ErrorKind::IsADirectory => "this is a folder: name a file",

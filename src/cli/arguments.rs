@@ -59,7 +59,7 @@ pub enum Command {
     Studio(Studio),
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
-        /// problem or linkage
+        /// problem, linkage or record
         #[arg(value_parser = schema_kind)]
         kind: SchemaKind,
         /// Print a reference page (Markdown) of its keys instead
@@ -334,9 +334,10 @@ pub struct Suite {
     /// Only problems whose name or file name holds this
     #[arg(value_name = "FILTER")]
     pub filter: Option<String>,
-    /// The folder of the problem files; those with `best_known_sum_sq` in `[expect]` are run
-    #[arg(long, value_name = "DIR", default_value = crate::cli::suite::PROBLEMS)]
-    pub problems: PathBuf,
+    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default: the literature's, which
+    /// linkwright holds]
+    #[arg(long, value_name = "DIR")]
+    pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
@@ -346,7 +347,7 @@ pub struct Suite {
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
-    /// Write results/literature.md and results/literature.json too (all problems, no FILTER)
+    /// Write results/literature.md and results/literature.json too (all problems, no FILTER): for linkwright's repository
     #[arg(long, conflicts_with = "filter")]
     pub write: bool,
     /// Replace a file that is there even where linkwright did not write it, or where this command reads it

@@ -63,6 +63,7 @@ const BUG: u8 = 70;
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
+    interrupt::outlive_large_files();
     let arguments = Arguments::parse();
     match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
         Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),

@@ -9,12 +9,10 @@ use crate::problem_file::{self, ProblemFile};
 use crate::report::suite::{suite_markdown, suite_text};
 use crate::generator::FileKind;
 use crate::results_folder::{OutputFile, Replace, check_files, write_files};
-use crate::suite::{Options, Step, Suite, suite};
+use crate::suite::{Options, Step, Suite, literature, suite};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
 
-/// Where the problems are when nothing is said.
-pub const PROBLEMS: &str = "problems/literature";
 /// Where the page goes.
 const RESULTS: &str = "results";
 const PAGE: &str = "literature.md";
@@ -89,12 +87,13 @@ fn command(asked: &Asked) -> String {
             format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
-    let mut command = String::from("cargo run --release -- suite");
+    // The page is written in the repository.
+    let mut command = String::from(if asked.write { "cargo run --release -- suite" } else { "linkwright suite" });
     if let Some(filter) = &asked.filter {
         command.push_str(&format!(" {}", quoted(filter)));
     }
-    if asked.problems != Path::new(PROBLEMS) {
-        command.push_str(&format!(" --problems {}", quoted(&asked.problems.display().to_string())));
+    if let Some(folder) = &asked.problems {
+        command.push_str(&format!(" --problems {}", quoted(&folder.display().to_string())));
     }
     command.push_str(&format!(" --seeds {}", asked.seeds));
     if asked.certify {
@@ -106,25 +105,27 @@ fn command(asked: &Asked) -> String {
     command
 }
 
-/// The problems that are asked for, by file name; `None` after saying why there is none.
-fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
-    let shown = escaped(&asked.problems.display().to_string());
-    let files = match files(&asked.problems) {
+/// Problems with the names of their files.
+type Named = Vec<(String, ProblemFile)>;
+
+/// The problems of a folder, by file name; `None` after saying why there is none.
+fn of_folder(folder: &Path) -> Option<Named> {
+    let shown = escaped(&folder.display().to_string());
+    let files = match files(folder) {
         Ok(files) => files,
         Err(e) => {
-            let remedy = "run it in linkwright's own folder or name another with --problems";
+            let remedy = "name another with --problems, or leave it out for the problems that linkwright has in it";
             terminal::complain(&format!("the folder of problems {shown} cannot be read: {e}; {remedy}"));
             return None;
         }
     };
-    let mut known = Vec::new();
+    let mut found = Vec::new();
     let mut refused = false;
     for path in files {
         match problem_file::load(&path, &[]) {
             Ok(problem) => {
-                if problem.expect.as_ref().is_some_and(|expect| expect.best_known_sum_sq.is_some()) {
-                    known.push((path, problem));
-                }
+                let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+                found.push((stem.unwrap_or_default(), problem));
             }
             Err(diagnostic) => {
                 terminal::diagnose(ReportKind::Error, &diagnostic);
@@ -132,17 +133,38 @@ fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
             }
         }
     }
-    if refused {
-        return None;
+    (!refused).then_some(found)
+}
+
+/// The problems of the literature, which the program holds.
+fn built_in() -> Option<Named> {
+    match literature::problems() {
+        Ok(problems) => {
+            let stem = |name: &str| name.trim_end_matches(".toml").to_owned();
+            Some(problems.into_iter().map(|(name, problem)| (stem(name), problem)).collect())
+        }
+        Err(diagnostic) => {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            None
+        }
     }
+}
+
+/// The problems that are asked for, by file name; `None` after saying why there is none.
+fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
+    let shown = match &asked.problems {
+        Some(folder) => escaped(&folder.display().to_string()),
+        None => "the literature".to_owned(),
+    };
+    let mut known = asked.problems.as_deref().map_or_else(built_in, of_folder)?;
+    known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
     if known.is_empty() {
         terminal::complain(&format!("no problem in {shown} has an [expect] table with best_known_sum_sq"));
         return None;
     }
     let names: Vec<String> = known.iter().map(|(_, problem)| problem.name.clone()).collect();
     let filter = asked.filter.as_deref().unwrap_or_default();
-    let stem = |path: &Path| path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    known.retain(|(path, problem)| problem.name.contains(filter) || stem(path).contains(filter));
+    known.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
     if known.is_empty() {
         let names = names.join(", ");
         terminal::complain(&format!("no problem in {shown} has {filter:?} in its name; there are {names}"));

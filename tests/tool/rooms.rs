@@ -74,7 +74,7 @@ fn every_room_uses_only_what_the_picture_allows() {
         ),
         ("published.rs", &["assess", "linkage", "problem", "problem_file", "record", "search"]),
         ("suite.rs", &["problem", "problem_file", "published", "record", "run", "search"]),
-        ("suite", &["record"]),
+        ("suite", &["diagnostic", "problem_file", "record"]),
         ("analysis.rs", &["linkage", "record"]),
         ("analysis", &["linkage", "record"]),
         ("export.rs", &["analysis", "generator", "linkage", "linkage_file", "report"]),
