@@ -6,6 +6,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+mod content;
 mod disk;
 mod lock;
 mod output_file;
@@ -140,7 +141,9 @@ fn remedy(error: &io::Error) -> &'static str {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "make room on the disk or name another place"
         }
-        io::ErrorKind::FileTooLarge => "raise the limit of a file's size (ulimit -f) or name another place",
+        io::ErrorKind::FileTooLarge => {
+            "make room on the disk, raise the limit of a file's size (ulimit -f), or name another place"
+        }
         io::ErrorKind::AlreadyExists => "choose another name",
         io::ErrorKind::NotADirectory => "a part of this path is a file: name another place",
         io::ErrorKind::IsADirectory => "this is a folder: name a file",
@@ -224,6 +227,9 @@ fn foreign(path: &Path, names: &[String]) -> Option<String> {
     }
     if let Some(foreign) = names.iter().find(|name| !is_ours(name)) {
         return Some(foreign.clone());
+    }
+    if let Some(foreign) = names.iter().find(|name| !content::is_of_a_run(&path.join(name), name)) {
+        return Some(format!("{foreign} with other contents"));
     }
     let has_record = names.iter().any(|name| name == RECORD);
     let half_done = begins_as_a_checkpoint(&path.join(CHECKPOINT));

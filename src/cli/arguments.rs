@@ -334,8 +334,8 @@ pub struct Suite {
     /// Only problems whose name or file name holds this
     #[arg(value_name = "FILTER")]
     pub filter: Option<String>,
-    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default: the literature's, which
-    /// linkwright holds]
+    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
+    /// problems/literature where it is here, else the same files, which linkwright holds]
     #[arg(long, value_name = "DIR")]
     pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem

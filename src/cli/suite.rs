@@ -13,6 +13,8 @@ use crate::suite::{Options, Step, Suite, literature, suite};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
 
+/// The folder of the literature's problems in the repository.
+const PROBLEMS: &str = "problems/literature";
 /// Where the page goes.
 const RESULTS: &str = "results";
 const PAGE: &str = "literature.md";
@@ -87,8 +89,8 @@ fn command(asked: &Asked) -> String {
             format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
-    // The page is written in the repository.
-    let mut command = String::from(if asked.write { "cargo run --release -- suite" } else { "linkwright suite" });
+    let here = asked.write || folder(asked).is_some();
+    let mut command = String::from(if here { "cargo run --release -- suite" } else { "linkwright suite" });
     if let Some(filter) = &asked.filter {
         command.push_str(&format!(" {}", quoted(filter)));
     }
@@ -107,6 +109,13 @@ fn command(asked: &Asked) -> String {
 
 /// Problems with the names of their files.
 type Named = Vec<(String, ProblemFile)>;
+
+/// The folder of the problems: the one that was named, or that of the literature where it is here; `None` where the
+/// program's own are run.
+fn folder(asked: &Asked) -> Option<&Path> {
+    let here = Path::new(PROBLEMS);
+    asked.problems.as_deref().or_else(|| here.is_dir().then_some(here))
+}
 
 /// The problems of a folder, by file name; `None` after saying why there is none.
 fn of_folder(folder: &Path) -> Option<Named> {
@@ -152,11 +161,12 @@ fn built_in() -> Option<Named> {
 
 /// The problems that are asked for, by file name; `None` after saying why there is none.
 fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
-    let shown = match &asked.problems {
+    let folder = folder(asked);
+    let shown = match folder {
         Some(folder) => escaped(&folder.display().to_string()),
         None => "the literature".to_owned(),
     };
-    let mut known = asked.problems.as_deref().map_or_else(built_in, of_folder)?;
+    let mut known = folder.map_or_else(built_in, of_folder)?;
     known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
     if known.is_empty() {
         terminal::complain(&format!("no problem in {shown} has an [expect] table with best_known_sum_sq"));

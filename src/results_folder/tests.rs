@@ -16,8 +16,16 @@ fn record(name: &str) -> Vec<u8> {
     serde_json::to_vec_pretty(&record).expect("it is data")
 }
 
+/// A file as a run writes it, with `text` somewhere in it.
 fn file(name: &str, text: &str) -> (String, Vec<u8>) {
-    (name.into(), text.as_bytes().to_vec())
+    let mark = crate::generator::mark();
+    let content = match name.rsplit_once('.').map(|(_, ending)| ending) {
+        Some("json") => format!("{{\"total_s\": 1, \"text\": \"{text}\"}}"),
+        Some("toml") => format!("# A four-bar linkage, {mark}.\n# {text}\n[linkage]\n"),
+        Some("svg") => format!("<svg>\n<!-- {mark} -->\n{text}</svg>\n"),
+        _ => format!("rank,accepted,text\n1,true,{text}\n"),
+    };
+    (name.into(), content.into_bytes())
 }
 
 fn old() -> Files {
@@ -432,4 +440,31 @@ fn a_link_among_the_files_of_a_result_is_foreign() {
     let error = run(&path).expect_err("a run writes no links");
     assert!(error.to_string().contains("candidate-3.svg"), "{error}");
     assert!(fs::symlink_metadata(path.join("candidate-3.svg")).is_ok());
+}
+
+#[test]
+fn a_file_of_a_user_under_the_name_of_a_results_file_is_refused_and_stays() {
+    let names = [
+        "candidates.csv",
+        "timing.json",
+        "report.html",
+        "contact-sheet.svg",
+        "exact.svg",
+        "candidate-7.svg",
+        "linkage-7.toml",
+        "curve-buildable.csv",
+    ];
+    for name in names {
+        let place = place(true);
+        let path = place.path().join("r");
+        for text in ["my notes\n", "<svg><!-- drawn by hand --></svg>", "{\"total\": 3}", "x,y\n1,2\n", "a = 1\n"] {
+            fs::write(path.join(name), text).expect("there is room");
+            let error = run(&path).expect_err("it is a user's");
+            assert!(error.to_string().contains(name), "{error}");
+            assert_eq!(fs::read_to_string(path.join(name)).expect("it is there"), text);
+        }
+        // An empty one holds nothing that could be lost.
+        fs::write(path.join(name), "").expect("there is room");
+        run(&path).expect("it is free");
+    }
 }
