@@ -96,9 +96,13 @@ impl FileKind {
         match self {
             // A drawing that another program saved again may begin with an XML declaration.
             FileKind::Svg => {
-                (head.starts_with("<svg") || head.starts_with("<?xml")) && head.contains(&format!("<!-- {MARK}"))
+                (head.starts_with("<svg") || head.starts_with("<?xml"))
+                    && head.contains(&format!("<!-- {MARK}"))
             }
-            FileKind::Html => head.starts_with("<!doctype html>") && head.contains(&format!("<meta name=\"generator\" content=\"{NAME} ")),
+            FileKind::Html => {
+                head.starts_with("<!doctype html>")
+                    && head.contains(&format!("<meta name=\"generator\" content=\"{NAME} "))
+            }
             FileKind::Dxf => line(0) == "999" && line(1).starts_with(MARK),
             FileKind::Stl => line(0).starts_with("solid ") && line(0).contains(MARK),
             FileKind::Scad => {
@@ -110,7 +114,9 @@ impl FileKind {
             FileKind::Csv => first_line(existing) == first_line(new) && !first_line(new).is_empty(),
             FileKind::LinkageJson => is_json(existing, "linkage", "candidates"),
             FileKind::SuiteJson => is_json(existing, "problems", "problem"),
-            FileKind::SuiteMarkdown => line(0).starts_with("# ") && line(2).starts_with("Written by linkwright "),
+            FileKind::SuiteMarkdown => {
+                line(0).starts_with("# ") && line(2).starts_with("Written by linkwright ")
+            }
             FileKind::Png => existing.starts_with(b"\x89PNG\r\n\x1a\n") && holds(existing, "linkwright "),
             FileKind::Gif => existing.starts_with(b"GIF8") && holds(existing, MARK),
         }

@@ -42,8 +42,12 @@ impl NameError {
             NameError::Path => {
                 "a name has no folder in it: write only its last part (--out says where results go)"
             }
-            NameError::Device(_) => "put something in front or behind it, such as `my-` (a dot is not enough)",
-            _ => "a name is 1 to 64 letters, digits, blanks and - _ . and starts with a letter, a digit or _, and does not end with a dot",
+            NameError::Device(_) => {
+                "put something in front or behind it, such as `my-` (a dot is not enough)"
+            }
+            NameError::LeadingDash => "begin the name with a letter, a digit or _",
+            NameError::TrailingDot => "leave the dot at the end out",
+            _ => "a name is 1 to 64 letters, digits, blanks and - _ . and does not start with a dot",
         }
     }
 }
@@ -56,7 +60,12 @@ fn is_allowed(c: char) -> bool {
 /// superscript digits too (Microsoft, "Naming Files, Paths, and Namespaces").
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or(name).trim_end().to_ascii_lowercase();
-    let port = |rest: &str| matches!(rest, "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "\u{b9}" | "\u{b2}" | "\u{b3}");
+    let port = |rest: &str| {
+        matches!(
+            rest,
+            "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "\u{b9}" | "\u{b2}" | "\u{b3}"
+        )
+    };
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul" | "conin$" | "conout$")
         || ["com", "lpt"].iter().any(|device| stem.strip_prefix(device).is_some_and(port))
 }
@@ -108,8 +117,11 @@ pub fn from_file(file: &str, fallback: &str) -> String {
         Some(dot) if dot > 0 => &last[..dot],
         _ => last,
     };
-    let legal: String =
-        stem.chars().map(|c| if is_allowed(c) { c } else { '-' }).skip_while(|c| ".- ".contains(*c)).collect();
+    let legal: String = stem
+        .chars()
+        .map(|c| if is_allowed(c) { c } else { '-' })
+        .skip_while(|c| ".- ".contains(*c))
+        .collect();
     let legal = if is_device(&legal) { format!("{fallback} {legal}") } else { legal };
     let legal: String = legal.chars().take(MAX_NAME).collect();
     let legal = legal.trim_end_matches(['.', ' ']);
@@ -146,12 +158,27 @@ mod tests {
             assert!(check(name).is_err(), "{name:?}");
         }
         for name in [
-            "CON", "con", "nul", "NUL.v2", "aux .x", "PRN", "COM1", "com9.a", "LPT1", "lpt0", "COM\u{b9}", "-rf", "--help", "-", "end.",
+            "CON",
+            "con",
+            "nul",
+            "NUL.v2",
+            "aux .x",
+            "PRN",
+            "COM1",
+            "com9.a",
+            "LPT1",
+            "lpt0",
+            "COM\u{b9}",
+            "-rf",
+            "--help",
+            "-",
+            "end.",
             "end..",
         ] {
             assert!(check(name).is_err(), "{name:?}");
         }
-        for name in ["CONTROL", "null", "com10", "COM", "lpt", "my-nul", "a-rf", "x.con", "_", "v1.2", "aux1"] {
+        for name in ["CONTROL", "null", "com10", "COM", "lpt", "my-nul", "a-rf", "x.con", "_", "v1.2", "aux1"]
+        {
             assert_eq!(check(name), Ok(()), "{name:?}");
         }
         assert_eq!(check(&"n".repeat(65)), Err(NameError::TooLong(65)));
@@ -166,8 +193,14 @@ mod tests {
             assert_eq!(check(&from_file(file, "problem")), Ok(()), "{file:?}");
         }
         let cut = format!("{}.tail.csv", "n".repeat(63));
-        for file in ["con.csv", "NUL", "-rf.toml", "--help", "a..csv", "- .", "com1.v2.csv", "?nul.csv", &cut] {
-            assert_eq!(check(&from_file(file, "problem")), Ok(()), "{file:?}: {}", from_file(file, "problem"));
+        for file in ["con.csv", "NUL", "-rf.toml", "--help", "a..csv", "- .", "com1.v2.csv", "?nul.csv", &cut]
+        {
+            assert_eq!(
+                check(&from_file(file, "problem")),
+                Ok(()),
+                "{file:?}: {}",
+                from_file(file, "problem")
+            );
             assert_eq!(check(&legal(file, "problem")), Ok(()), "{file:?}");
         }
         for suffix in ["-1", "-buildable", "-cognate-2"] {

@@ -64,7 +64,9 @@ pub enum FolderError {
         foreign: String,
     },
     /// A file that a person named for writing is there, and this program did not write it.
-    #[error("{path} is there and is not {kind} that linkwright wrote; name another file, or replace it with --force")]
+    #[error(
+        "{path} is there and is not {kind} that linkwright wrote; name another file, or replace it with --force"
+    )]
     NotOurs {
         /// Which file.
         path: String,

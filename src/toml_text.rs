@@ -248,7 +248,8 @@ pub(crate) fn too_large_help(key: &str) -> &'static str {
         "write fewer seconds, or remove the key: without it there is no such limit"
     } else if key.ends_with("_deg") {
         "write an angle in degrees, such as 30"
-    } else if is_one(&["gap", "weight", "link_ratio_max", "vector", "goal_sum_sq"]) || key.ends_with("sum_sq") {
+    } else if is_one(&["gap", "weight", "link_ratio_max", "vector", "goal_sum_sq"]) || key.ends_with("sum_sq")
+    {
         TOO_LARGE
     } else {
         "use a larger unit, such as m for mm"

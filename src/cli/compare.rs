@@ -4,10 +4,10 @@ use super::arguments::Compare;
 use super::result::{self, Given, Which};
 use super::{Ended, output::Output, terminal};
 use crate::diagnostic::escaped;
+use crate::generator::FileKind;
 use crate::measured::{NotCompared, Target, compared};
 use crate::problem_file;
 use crate::report::compare::Comparison;
-use crate::generator::FileKind;
 use ariadne::ReportKind;
 use std::path::Path;
 

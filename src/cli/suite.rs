@@ -4,10 +4,10 @@ use super::arguments::Suite as Asked;
 use super::progress::SuiteShown;
 use super::{Ended, interrupt, terminal};
 use crate::diagnostic::escaped;
+use crate::generator::FileKind;
 use crate::problem::spec::CertifySpec;
 use crate::problem_file::{self, ProblemFile};
 use crate::report::suite::{suite_markdown, suite_text};
-use crate::generator::FileKind;
 use crate::results_folder::{OutputFile, Replace, check_files, write_files};
 use crate::suite::{Options, Step, Suite, literature, suite};
 use ariadne::ReportKind;
@@ -123,7 +123,8 @@ fn of_folder(folder: &Path) -> Option<Named> {
     let files = match files(folder) {
         Ok(files) => files,
         Err(e) => {
-            let remedy = "name another with --problems, or leave it out for the problems that linkwright has in it";
+            let remedy =
+                "name another with --problems, or leave it out for the problems that linkwright has in it";
             terminal::complain(&format!("the folder of problems {shown} cannot be read: {e}; {remedy}"));
             return None;
         }

@@ -57,7 +57,10 @@ fn with_software(mut png: Vec<u8>) -> Vec<u8> {
 /// The check sum of ISO 3309, as PNG has it (annex D of its specification).
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 })
+        (0..8).fold(
+            crc ^ u32::from(*byte),
+            |crc, _| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 },
+        )
     })
 }
 
@@ -84,7 +87,7 @@ pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     let mut encoder =
         gif::Encoder::new(&mut bytes, width, height, &flat).map_err(|e| failed(&e.to_string()))?;
     encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e.to_string()))?;
-    let comment = gif::AnyExtension(gif::Extension::Comment.into_const());
+    let comment: gif::AnyExtension = gif::Extension::Comment.into();
     let marked = encoder.write_raw_extension(comment, &[generator::mark().as_bytes()]);
     marked.map_err(|e| failed(&e.to_string()))?;
     let mut nearest = Nearest::new(palette);

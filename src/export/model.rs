@@ -148,7 +148,9 @@ impl<'a> Model<'a> {
                             let other = brief(other.to_degrees(), 4);
                             format!("choose another crank_deg, such as {other}, or leave it out")
                         }
-                        Err(_) => "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned(),
+                        Err(_) => {
+                            "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned()
+                        }
                     },
                 )
             });

@@ -36,8 +36,7 @@ pub(super) fn script(model: &Model<'_>, settings: &Settings) -> Result<String, R
         ("Py", offset.im, "P across C -> D, left positive"),
         ("chord", model.chord, "how far an arc may lie from its polygon"),
     ];
-    let mut out =
-        format!("// {}\n// {}; every number is a parameter\n\n", model.heading(), mark());
+    let mut out = format!("// {}\n// {}; every number is a parameter\n\n", model.heading(), mark());
     out.push_str("view = \"plates\"; // [plates, assembly]\n");
     for (name, value, about) in numbers {
         let about = if about.is_empty() { String::new() } else { format!(" // {about}") };

@@ -19,7 +19,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
                 "choose a smaller hole_mm, or a larger margin_mm or chord_mm",
             )
         })?;
-        let mark = if out.is_empty() { format!(", {}", mark()) } else { String::new() };
+        let mark = if out.is_empty() { format!(" {}", mark()) } else { String::new() };
         let _ = writeln!(out, "solid {name}{mark}");
         for triangle in &mesh.triangles {
             let _ = writeln!(out, "facet normal {}", numbers(mesh.normal(*triangle).map(|x| x as f32)));

@@ -4,7 +4,9 @@ use crate::linkage::{AssemblyMode, FourBar, LinkageType};
 use serde::{Deserialize, Serialize};
 
 /// Why a linkage that meets every requirement may still be a poor one to build.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum WarningKind {
     /// The worst transmission angle is below 10 degrees.

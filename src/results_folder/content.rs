@@ -11,7 +11,8 @@ const HEAD: u64 = 1 << 16;
 const CANDIDATES: &[u8] = b"rank,accepted,";
 const CURVE: &[u8] = b"crank_deg,t1,";
 /// The drawings of versions that wrote no mark yet.
-const UNMARKED_DRAWING: &[u8] = b"font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\">";
+const UNMARKED_DRAWING: &[u8] =
+    b"font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\">";
 
 /// Whether the file of this name holds what a run writes under it. An empty file is one that a machine has lost; records
 /// and files of a search half done are judged where they are read.

@@ -37,8 +37,9 @@ pub enum Replace<'a> {
 /// file that is there cannot be read, [`FolderError::Io`].
 pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(), FolderError> {
     for (i, file) in files.iter().enumerate() {
-        may_replace(file, replace)?;
-        if files[..i].iter().any(|other| is_same(other.path, file.path)) {
+        let there = may_replace(file, replace)?;
+        // A stream takes whatever comes.
+        if there != There::Stream && files[..i].iter().any(|other| is_same(other.path, file.path)) {
             return Err(FolderError::NamedTwice { path: file.path.display().to_string() });
         }
     }
@@ -51,17 +52,32 @@ pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
 ///
 /// # Errors
 /// Those of [`check_files`], with nothing written; [`FolderError::Io`] with the path that cannot be written, where what
-/// was there before stays.
+/// was there before stays and new files are taken away again.
 pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(), FolderError> {
     check_files(files, replace)?;
-    files.iter().try_for_each(|file| {
+    let mut made = Vec::new();
+    for file in files {
         // Looked at once more: another program may have written it in between.
-        let there = may_replace(file, replace)?;
-        write(file, there, replace).map_err(|e| FolderError::io(file.path, e))
-    })
+        let written = may_replace(file, replace).and_then(|there| {
+            write(file, there, replace).map_err(|e| FolderError::io(file.path, e)).map(|()| there)
+        });
+        match written {
+            Ok(There::Nothing) => made.push(file.path),
+            Ok(_) => {}
+            Err(e) => {
+                for path in made {
+                    // One that was made a moment ago and stays is replaced by the next try.
+                    let _ = fs::remove_file(path);
+                }
+                return Err(e);
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The file that a new one would replace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum There {
     /// None.
     Nothing,
@@ -109,7 +125,8 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| {
         path.canonicalize().ok().or_else(|| {
-            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let folder =
+                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
             Some(folder.canonicalize().ok()?.join(path.file_name()?))
         })
     };
@@ -124,10 +141,16 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
         There::Stream => fs::write(file.path, file.bytes),
         There::Nothing if replace == Replace::Anything => over(file.path, file.bytes),
         // Whoever else makes this file meanwhile keeps it.
-        There::Nothing => {
-            temporary(file.path, file.bytes)?.persist_noclobber(file.path).map_err(|e| e.error)?;
-            Ok(())
-        }
+        There::Nothing => match temporary(file.path, file.bytes)?.persist_noclobber(file.path) {
+            Ok(_) => Ok(()),
+            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => Err(e.error),
+            // Some file systems can only rename.
+            Err(e) if fs::symlink_metadata(file.path).is_err() => {
+                e.file.persist(file.path).map_err(|e| e.error)?;
+                Ok(())
+            }
+            Err(e) => Err(e.error),
+        },
         There::File if fs::metadata(file.path)?.permissions().readonly() => {
             Err(io::Error::from(io::ErrorKind::PermissionDenied))
         }

@@ -349,6 +349,13 @@ fn a_file_is_written_as_a_whole_or_stays_what_it_was() {
     assert_eq!(fs::read(&path).expect("it is there"), b"first");
     write_file(&path, b"second").expect("there is room");
     assert_eq!(fs::read(&path).expect("it is there"), b"second");
+    // Of several files all are written or none.
+    let [one, other] = ["one.csv", "other.csv"].map(|name| place.path().join(name));
+    let both = [&one, &other].map(|path| OutputFile { path, kind: FileKind::Csv, bytes: b"new" });
+    faults::fail(1..2);
+    write_files(&both, Replace::Nothing).expect_err("the second cannot be written");
+    faults::fail(0..0);
+    assert!(!one.exists() && !other.exists());
     let rescued = rescue(&new()).expect("there is room");
     assert_eq!(shown(&rescued), as_shown(&new()));
     fs::remove_dir_all(rescued).expect("it is ours");
@@ -406,7 +413,9 @@ fn entries_that_no_run_writes_under_a_name_are_refused_and_stay() {
             assert_eq!(fs::read(&kept).expect("it is there"), b"a user's", "{name}");
         }
     }
-    for name in ["candidate-09.svg", "curve-0.csv", "linkage-99999999999.toml", ".linkwright-notes", "candidate-.svg"] {
+    for name in
+        ["candidate-09.svg", "curve-0.csv", "linkage-99999999999.toml", ".linkwright-notes", "candidate-.svg"]
+    {
         let place = place(true);
         let path = place.path().join("r");
         fs::write(path.join(name), "a user's").expect("there is room");
@@ -457,7 +466,9 @@ fn a_file_of_a_user_under_the_name_of_a_results_file_is_refused_and_stays() {
     for name in names {
         let place = place(true);
         let path = place.path().join("r");
-        for text in ["my notes\n", "<svg><!-- drawn by hand --></svg>", "{\"total\": 3}", "x,y\n1,2\n", "a = 1\n"] {
+        for text in
+            ["my notes\n", "<svg><!-- drawn by hand --></svg>", "{\"total\": 3}", "x,y\n1,2\n", "a = 1\n"]
+        {
             fs::write(path.join(name), text).expect("there is room");
             let error = run(&path).expect_err("it is a user's");
             assert!(error.to_string().contains(name), "{error}");

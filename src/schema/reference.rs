@@ -69,7 +69,9 @@ pub fn reference(kind: SchemaKind) -> String {
     let (title, rules) = match kind {
         SchemaKind::Problem => ("problem file", read),
         SchemaKind::Linkage => ("linkage file", read),
-        SchemaKind::Record => ("record (record.json)", "All numbers are finite; keys that do not apply are absent."),
+        SchemaKind::Record => {
+            ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
+        }
     };
     // A string takes whatever is written to it: the results of `write!` below cannot be errors.
     let _ = write!(

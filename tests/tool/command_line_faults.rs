@@ -52,7 +52,8 @@ fn untrue(folder: &Path) {
         candidate.link_ratio += 1.0;
     }
     fs::create_dir(folder.join("bad")).expect("a folder");
-    fs::write(folder.join("bad/record.json"), serde_json::to_vec(&record).expect("data")).expect("there is room");
+    fs::write(folder.join("bad/record.json"), serde_json::to_vec(&record).expect("data"))
+        .expect("there is room");
 }
 
 #[test]
@@ -171,7 +172,8 @@ fn names_that_a_system_or_a_shell_takes_for_something_else_are_refused() {
     }
     // A file may be called so: its problem then has another name.
     fs::write(folder.path().join("con.csv"), "x,y\n0,0\n10,4\n18,9\n22,17\n").expect("there is room");
-    let output = linkwright(folder.path(), &["synth", "con.csv", "--quiet", "--set", "solve.evaluations=500"]);
+    let output =
+        linkwright(folder.path(), &["synth", "con.csv", "--quiet", "--set", "solve.evaluations=500"]);
     assert!(matches!(output.status.code(), Some(0 | 1)), "{}", said(&output));
     assert!(folder.path().join("results/problem con/record.json").is_file());
     assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 3, "nothing else was made");
@@ -186,7 +188,11 @@ fn the_suite_runs_where_there_is_no_repository() {
     let names: Vec<&str> =
         suite["problems"].as_array().expect("a list").iter().filter_map(|p| p["name"].as_str()).collect();
     assert!(names.contains(&"e5"), "{names:?}");
-    assert!(suite["command"].as_str().expect("text").starts_with("linkwright suite e5"), "{}", suite["command"]);
+    assert!(
+        suite["command"].as_str().expect("text").starts_with("linkwright suite e5"),
+        "{}",
+        suite["command"]
+    );
     let none = linkwright(folder.path(), &["suite", "no-such-problem"]);
     assert_eq!(none.status.code(), Some(2));
     assert!(said(&none).contains("k18"), "the names are told: {}", said(&none));

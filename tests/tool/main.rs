@@ -23,11 +23,11 @@ mod problem_file_document;
 mod proving;
 #[path = "../common/random.rs"]
 mod random;
+mod record_schema;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod report;
 mod report_page;
-mod record_schema;
 mod rooms;
 mod seeds_document;
 mod shipped_problems;

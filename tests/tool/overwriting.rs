@@ -32,7 +32,8 @@ fn place() -> TempDir {
     fs::write(folder.path().join("small.toml"), PROBLEM).expect("there is room");
     let ran = linkwright(folder.path(), &["synth", "small.toml", "--out", "r", "--quiet", "--threads", "1"]);
     assert!(matches!(ran.status.code(), Some(0 | 1)), "{}", said(&ran));
-    fs::copy(folder.path().join("r/linkage-1.toml"), folder.path().join("given.toml")).expect("there is room");
+    fs::copy(folder.path().join("r/linkage-1.toml"), folder.path().join("given.toml"))
+        .expect("there is room");
     folder
 }
 
@@ -167,11 +168,17 @@ fn a_command_does_not_replace_its_own_input_by_whatever_name() {
         assert_eq!(fs::read_to_string(folder.join("small.toml")).expect("it is there"), PROBLEM);
     }
     // An edited linkage of ours that is not the input may be replaced: its mark is still there.
-    fs::write(folder.join("mine.toml"), String::from_utf8_lossy(&given).replace("t1", "# my remark\nt1"))
-        .expect("there is room");
+    fs::write(
+        folder.join("mine.toml"),
+        String::from_utf8_lossy(&given)
+            .replace("\nt1 = 1\n", "\n# my remark\nt1 = 1\n")
+            .replace("[linkage]", "# mine\n[linkage]"),
+    )
+    .expect("there is room");
     let output = linkwright(folder, &["export", "r", "--format", "toml", "--out", "mine.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    let forced = ["export", "given.toml", "--format", "toml", "--set", "scale=2", "--out", "given.toml", "--force"];
+    let forced =
+        ["export", "given.toml", "--format", "toml", "--set", "scale=2", "--out", "given.toml", "--force"];
     assert_eq!(linkwright(folder, &forced).status.code(), Some(0));
     assert!(fs::read(folder.join("given.toml")).expect("it is there") != given);
 }
@@ -187,7 +194,10 @@ fn links_lead_to_the_same_refusals() {
     symlink("given.toml", folder.join("link.toml")).expect("a link");
     symlink("nowhere.svg", folder.join("dangling.svg")).expect("a link");
     for (arguments, words) in [
-        (["export", "r", "--format", "svg", "--out", "link.svg"], "is not an SVG drawing that linkwright wrote"),
+        (
+            ["export", "r", "--format", "svg", "--out", "link.svg"],
+            "is not an SVG drawing that linkwright wrote",
+        ),
         (["export", "given.toml", "--format", "toml", "--out", "link.toml"], "is an input"),
         (["export", "link.toml", "--format", "toml", "--out", "given.toml"], "is an input"),
         (["export", "r", "--format", "svg", "--out", "dangling.svg"], "dangling.svg"),

@@ -27,7 +27,8 @@ fn the_references_of_the_files_are_made_from_their_schemas() {
 #[test]
 fn the_examples_of_the_linkage_file_are_linkage_files() {
     let page = reference(SchemaKind::Linkage);
-    let blocks: Vec<&str> = page.split("```toml\n").skip(1).filter_map(|part| part.split("```").next()).collect();
+    let blocks: Vec<&str> =
+        page.split("```toml\n").skip(1).filter_map(|part| part.split("```").next()).collect();
     assert!(blocks.len() >= 2);
     for block in blocks {
         linkwright::linkage_file::parse("example.toml", block).expect("it is a linkage file");

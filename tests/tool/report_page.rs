@@ -2,11 +2,11 @@
 
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
+use linkwright::generator::FileKind;
 use linkwright::linkage::AssemblyMode;
 use linkwright::practicality::{Build, Practicality, millimetre};
 use linkwright::problem::Problem;
 use linkwright::record::*;
-use linkwright::generator::FileKind;
 use linkwright::report::html::{Extent, report_html, report_with_drawings};
 use linkwright::task::Defect;
 use std::fs;
@@ -485,7 +485,11 @@ fn a_record_that_is_not_true_gets_no_report_and_foreign_pages_stay() {
     fs::copy(&place, folder.path().join("mine.json")).expect("it can be copied");
     let said = linkwright(folder.path(), &["report", "mine.json"]);
     assert_eq!(said.code, 2);
-    assert!(said.stderr.contains("mine.html is there and is not an HTML page that linkwright wrote"), "{}", said.stderr);
+    assert!(
+        said.stderr.contains("mine.html is there and is not an HTML page that linkwright wrote"),
+        "{}",
+        said.stderr
+    );
     assert!(said.stderr.contains("--force"), "{}", said.stderr);
     record.candidates[0].error.rms *= 0.5;
     fs::write(folder.path().join("false.json"), serde_json::to_vec(&record).expect("JSON")).expect("written");

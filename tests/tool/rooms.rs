@@ -78,7 +78,10 @@ fn every_room_uses_only_what_the_picture_allows() {
         ("analysis.rs", &["linkage", "record"]),
         ("analysis", &["linkage", "record"]),
         ("export.rs", &["analysis", "generator", "linkage", "linkage_file", "report"]),
-        ("export", &["generator", "linkage", "linkage_file", "name", "plates", "record", "report", "toml_text"]),
+        (
+            "export",
+            &["generator", "linkage", "linkage_file", "name", "plates", "record", "report", "toml_text"],
+        ),
         ("plates.rs", &["linkage"]),
         ("plates", &["linkage"]),
         ("record.rs", &["linkage", "task", "problem"]),
