@@ -35,6 +35,7 @@ pub use settings::{Refusal, Settings};
 pub use subject::Subject;
 
 use crate::analysis::{Request, analyze, full_turn};
+use crate::generator;
 use crate::linkage::motion::CrankMotion;
 use crate::report::analysis_csv::analysis_csv;
 use model::Model;
@@ -109,6 +110,8 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
         _ => {
             let mut object = serde_json::Map::new();
             object.insert("format".into(), crate::linkage_file::FORMAT.into());
+            let version = env!("CARGO_PKG_VERSION");
+            object.insert("tool".into(), serde_json::json!({"name": generator::NAME, "version": version}));
             object.insert("name".into(), subject.legal_name().into());
             if let Some(unit) = unit {
                 object.insert("unit".into(), unit.label().into());

@@ -36,14 +36,15 @@
 //! | [`plates`] | the links as plates with holes: outlines, distances between them | linkage |
 //! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
 //! | [`mod@verify`] | is a record true? everything recomputed | assess, certificate, problem, record, run |
-//! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | linkage, task, problem |
+//! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | generator, linkage, task, problem |
 //! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | the same |
 //! | [`diagnostic`] | an error with file, line, caret and remedy | |
-//! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | linkage, plates, record, report, analysis, linkage_file, name |
-//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | linkage, linkage_file, task, problem, record, analysis, suite, plates, practicality, snap |
+//! | [`generator`] | the mark of written files: whether a file is one that this program wrote as the same kind | |
+//! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | generator, linkage, plates, record, report, analysis, linkage_file, name |
+//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | generator, linkage, linkage_file, task, problem, record, analysis, suite, plates, practicality, snap |
 //! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
 //! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
-//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | record |
+//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | generator, record |
 //! | [`given`], [`measured`] | a result, a candidate or a linkage that is to be compared; its figures, by the referee | assess, linkage, linkage_file, problem, problem_file, record, report, results_folder, run, search, task, verify |
 //! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint, certificate |
 //! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
@@ -58,6 +59,7 @@ pub mod cli;
 pub mod diagnostic;
 pub mod exact;
 pub mod export;
+pub mod generator;
 pub mod given;
 mod input_text;
 pub mod linkage;

@@ -323,7 +323,7 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     let unit = unit.map_or(String::new(), |u| format!("unit = \"{}\"\n", u.label()));
     let ([ax, ay], [bx, by]) = (p.crank_pivot, p.follower_pivot);
     format!(
-        "# A four-bar linkage, written by linkwright.\n\
+        "# A four-bar linkage, {}.\n\
          # A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point.\n\
          # a = |AC| crank, b = |CD| coupler, c = |BD| follower, d = |CP|, e = |DP|.\n\
          # t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line from C to D.\n\
@@ -334,6 +334,7 @@ pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
          A = [{ax:?}, {ay:?}]\n\
          B = [{bx:?}, {by:?}]\n\
          a = {:?}\nb = {:?}\nc = {:?}\nd = {:?}\ne = {:?}\nt1 = {}\nt2 = {}\n",
+        crate::generator::mark(),
         p.crank,
         p.coupler,
         p.follower,

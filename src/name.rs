@@ -24,6 +24,15 @@ pub enum NameError {
     /// A character that is not allowed.
     #[error("the name has {0:?} in it")]
     Character(char),
+    /// Commands would take it for an option.
+    #[error("the name starts with -, so that commands take it for an option")]
+    LeadingDash,
+    /// Windows drops it.
+    #[error("the name ends with a dot, which Windows drops")]
+    TrailingDot,
+    /// The name of a device on Windows, whatever stands behind a dot.
+    #[error("{0} is the name of a device on Windows: no file or folder can be called so there")]
+    Device(String),
 }
 
 impl NameError {
@@ -33,6 +42,11 @@ impl NameError {
             NameError::Path => {
                 "a name has no folder in it: write only its last part (--out says where results go)"
             }
+            NameError::Device(_) => {
+                "put something in front or behind it, such as `my-` (a dot is not enough)"
+            }
+            NameError::LeadingDash => "begin the name with a letter, a digit or _",
+            NameError::TrailingDot => "leave the dot at the end out",
             _ => "a name is 1 to 64 letters, digits, blanks and - _ . and does not start with a dot",
         }
     }
@@ -42,7 +56,22 @@ fn is_allowed(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, ' ' | '-' | '_' | '.')
 }
 
-/// Whether a text may be a name: 1 to 64 letters, digits, blanks, `-`, `_`, `.`, not starting with a dot.
+/// Whether a text is the name of a device on Windows, in capitals or not: `CON`, `nul.v2`, `COM1`, `lpt9`. It is so for
+/// superscript digits too (Microsoft, "Naming Files, Paths, and Namespaces").
+fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or(name).trim_end().to_ascii_lowercase();
+    let port = |rest: &str| {
+        matches!(
+            rest,
+            "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "\u{b9}" | "\u{b2}" | "\u{b3}"
+        )
+    };
+    matches!(stem.as_str(), "con" | "prn" | "aux" | "nul" | "conin$" | "conout$")
+        || ["com", "lpt"].iter().any(|device| stem.strip_prefix(device).is_some_and(port))
+}
+
+/// Whether a text may be a name: 1 to 64 letters, digits, blanks, `-`, `_`, `.`, not starting with a dot or `-`, not
+/// ending with a dot, and not the name of a device on Windows.
 ///
 /// # Errors
 /// [`NameError`], the first that applies.
@@ -58,6 +87,15 @@ pub fn check(name: &str) -> Result<(), NameError> {
     }
     if let Some(c) = name.chars().find(|&c| !is_allowed(c)) {
         return Err(NameError::Character(c));
+    }
+    if name.starts_with('-') {
+        return Err(NameError::LeadingDash);
+    }
+    if name.ends_with('.') {
+        return Err(NameError::TrailingDot);
+    }
+    if is_device(name) {
+        return Err(NameError::Device(name.to_owned()));
     }
     if name.starts_with(' ') || name.ends_with(' ') {
         return Err(NameError::OuterBlank);
@@ -80,13 +118,33 @@ pub fn from_file(file: &str, fallback: &str) -> String {
         _ => last,
     };
     let legal: String = stem
-        .trim_start_matches('.')
         .chars()
         .map(|c| if is_allowed(c) { c } else { '-' })
-        .take(MAX_NAME)
+        .skip_while(|c| ".- ".contains(*c))
         .collect();
-    let legal = legal.trim();
+    let legal = if is_device(&legal) { format!("{fallback} {legal}") } else { legal };
+    let legal: String = legal.chars().take(MAX_NAME).collect();
+    let legal = legal.trim_end_matches(['.', ' ']);
     if legal.is_empty() { fallback.to_owned() } else { legal.to_owned() }
+}
+
+/// The name itself where it is one, else a name made of it.
+pub fn legal(name: &str, fallback: &str) -> String {
+    match check(name) {
+        Ok(()) => name.to_owned(),
+        Err(_) => from_file(name, fallback),
+    }
+}
+
+/// A name with something behind it, `my-path-2`, shortened in front where both together are too long.
+///
+/// ```
+/// let long = linkwright::name::with_suffix(&"n".repeat(64), "-snapped");
+/// assert!(long.len() == 64 && long.ends_with("n-snapped"));
+/// ```
+pub fn with_suffix(name: &str, suffix: &str) -> String {
+    let stem: String = name.chars().take(MAX_NAME.saturating_sub(suffix.chars().count())).collect();
+    format!("{}{suffix}", stem.trim_end())
 }
 
 #[cfg(test)]
@@ -99,6 +157,30 @@ mod tests {
         {
             assert!(check(name).is_err(), "{name:?}");
         }
+        for name in [
+            "CON",
+            "con",
+            "nul",
+            "NUL.v2",
+            "aux .x",
+            "PRN",
+            "COM1",
+            "com9.a",
+            "LPT1",
+            "lpt0",
+            "COM\u{b9}",
+            "-rf",
+            "--help",
+            "-",
+            "end.",
+            "end..",
+        ] {
+            assert!(check(name).is_err(), "{name:?}");
+        }
+        for name in ["CONTROL", "null", "com10", "COM", "lpt", "my-nul", "a-rf", "x.con", "_", "v1.2", "aux1"]
+        {
+            assert_eq!(check(name), Ok(()), "{name:?}");
+        }
         assert_eq!(check(&"n".repeat(65)), Err(NameError::TooLong(65)));
         for name in ["eighteen-point", "Trayectoria el\u{ed}ptica 2", "v1.2_b", &"n".repeat(64)] {
             assert_eq!(check(name), Ok(()), "{name:?}");
@@ -109,6 +191,22 @@ mod tests {
     fn any_file_name_gives_a_legal_name() {
         for file in ["", ".", "..", "/", ".csv", "a:b.csv", " x .toml", "\u{1b}[1m.csv", &"n".repeat(300)] {
             assert_eq!(check(&from_file(file, "problem")), Ok(()), "{file:?}");
+        }
+        let cut = format!("{}.tail.csv", "n".repeat(63));
+        for file in ["con.csv", "NUL", "-rf.toml", "--help", "a..csv", "- .", "com1.v2.csv", "?nul.csv", &cut]
+        {
+            assert_eq!(
+                check(&from_file(file, "problem")),
+                Ok(()),
+                "{file:?}: {}",
+                from_file(file, "problem")
+            );
+            assert_eq!(check(&legal(file, "problem")), Ok(()), "{file:?}");
+        }
+        for suffix in ["-1", "-buildable", "-cognate-2"] {
+            for name in ["n", &"n".repeat(64), &format!("{}. x", "n".repeat(60))] {
+                assert_eq!(check(&with_suffix(name, suffix)), Ok(()), "{name}{suffix}");
+            }
         }
         assert_eq!(from_file("dir/heart.v2.csv", "problem"), "heart.v2");
         assert_eq!(from_file(".csv", "problem"), "csv");

@@ -227,7 +227,7 @@ impl<'a> Rows<'a> {
             Ok(value) if value.abs() <= MAX_MAGNITUDE => Ok(value),
             Ok(value) if value.is_finite() => refuse(
                 format!("{column} = {} is too large: numbers go up to 1e12", quoted(cell)),
-                "use a larger unit, such as m for mm",
+                crate::toml_text::too_large_help(column),
             ),
             Ok(_) => refuse(
                 format!("{column} = {} is not a finite number", quoted(cell)),

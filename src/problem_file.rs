@@ -160,7 +160,19 @@ pub fn parse(
 ) -> Result<ProblemFile, Box<Diagnostic>> {
     // What is typed may lead anywhere; what a file says may not.
     let anywhere = ["file", "svg"].iter().any(|key| is_set(overrides, &format!("task.path.{key}")));
-    parse_at(file_name, text, &Whereabouts { folder, anywhere }, overrides)
+    parse_at(file_name, text, &Whereabouts { folder, anywhere, beside: &[] }, overrides)
+}
+
+/// As [`parse`], with points files that are not on the disk: each by the name under which the problem asks for it.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_beside(
+    file_name: &str,
+    text: &str,
+    beside: &[(&str, &str)],
+) -> Result<ProblemFile, Box<Diagnostic>> {
+    parse_at(file_name, text, &Whereabouts { folder: None, anywhere: false, beside }, &[])
 }
 
 /// Whether a key is among the overrides.
@@ -226,7 +238,7 @@ pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<P
     let key = if is_drawing(path) { "svg" } else { "file" };
     let value = toml::Value::String(file.to_owned());
     let text = format!("format = {FORMAT}\n[task.path]\n{key} = {value}\n");
-    let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true };
+    let whereabouts = Whereabouts { folder: Some(folder_of(path)), anywhere: true, beside: &[] };
     parse_at(&shown, &text, &whereabouts, overrides)
 }
 

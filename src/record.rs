@@ -24,7 +24,7 @@ pub use repeats::Repeats;
 pub const FORMAT: u32 = 1;
 
 /// A run: problem, method, termination, candidates.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Record {
     /// [`FORMAT`].
     pub format: u32,
@@ -71,7 +71,7 @@ pub struct Record {
 }
 
 /// Name and version of the program.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Tool {
     /// linkwright.
     pub name: String,
@@ -80,7 +80,7 @@ pub struct Tool {
 }
 
 /// The problem as it was run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ProblemRecord {
     /// Its name.
     pub name: String,
@@ -123,7 +123,7 @@ impl Unit {
 }
 
 /// The method asked for and the methods that ran.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct MethodRecord {
     /// As in the problem file.
     pub asked: Method,
@@ -132,7 +132,7 @@ pub struct MethodRecord {
 }
 
 /// Why a search ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
     /// The best answer was found again and again from different starts.
@@ -168,7 +168,7 @@ impl Reason {
 }
 
 /// Why the search ended and whether the run can be repeated to the digit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Termination {
     /// Why.
     pub reason: Reason,
@@ -177,7 +177,7 @@ pub struct Termination {
 }
 
 /// What a search cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Evaluations {
     /// How often the objective was computed.
     pub objective: u64,
@@ -186,7 +186,7 @@ pub struct Evaluations {
 }
 
 /// One answer with every figure and verdict, all recomputed by the referee.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Candidate {
     /// 1 is the best.
     pub rank: usize,
@@ -228,7 +228,7 @@ pub struct Candidate {
 }
 
 /// The errors of a candidate, in the file's unit.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ErrorRecord {
     /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
     /// point's tolerance where tolerances are given.
@@ -251,7 +251,7 @@ pub struct ErrorRecord {
 }
 
 /// Distances to the whole coupler curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CurveErrorRecord {
     /// The sum of squares.
     pub sum_sq: f64,
@@ -262,7 +262,7 @@ pub struct CurveErrorRecord {
 }
 
 /// The transmission angle's extremes, degrees.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct TransmissionRecord {
     /// The least.
     pub min: f64,
@@ -275,7 +275,7 @@ pub struct TransmissionRecord {
 }
 
 /// A value or a limit of a requirement.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum Figure {
     /// A number.
@@ -301,7 +301,7 @@ impl std::fmt::Display for Figure {
 }
 
 /// A requirement of a candidate.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Requirement {
     /// The key in the problem file.
     pub name: String,
@@ -316,7 +316,7 @@ pub struct Requirement {
 /// What a limit costs that a candidate stands on.
 ///
 /// Errors here are sqrt(objective / sum of weights), which is the rms error where no point has a weight.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Cost {
     /// The requirement: its key in `[require]`, or `design.` with the parameter.
     pub name: String,
@@ -337,7 +337,7 @@ pub struct Cost {
 }
 
 /// What the unit of a limit is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitUnit {
     /// The file's unit of length.
@@ -349,7 +349,7 @@ pub enum LimitUnit {
 }
 
 /// Requirements that cannot be met together.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Conflict {
     /// Their keys in the problem file. Without any one of them the others could be met; a single one cannot be
     /// met by itself.

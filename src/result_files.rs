@@ -1,6 +1,7 @@
 //! Everything that a result's folder holds, as bytes: pure functions of the record, but for its times.
 
 use crate::linkage_file;
+use crate::name;
 use crate::record::Record;
 use crate::report::html::Extent;
 use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
@@ -73,15 +74,15 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
     let mut drawings = Vec::new();
     for (i, candidate) in record.candidates.iter().enumerate() {
         let n = i + 1;
-        let name = numbered(&record.problem.name, &n.to_string());
-        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
+        let named = linkage_name(record, &n.to_string());
+        let toml = linkage_file::to_toml(&named, record.problem.unit, &candidate.linkage);
         files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
         files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
         drawings.push(svg::candidate_svg(record, i));
     }
     if let Some(candidate) = &record.buildable {
-        let name = numbered(&record.problem.name, BUILDABLE);
-        let toml = linkage_file::to_toml(&name, record.problem.unit, &candidate.linkage);
+        let named = linkage_name(record, BUILDABLE);
+        let toml = linkage_file::to_toml(&named, record.problem.unit, &candidate.linkage);
         files.push((format!("linkage-{BUILDABLE}.toml"), toml.into_bytes()));
         files.push((format!("curve-{BUILDABLE}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
     }
@@ -99,9 +100,7 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
     Ok(files)
 }
 
-/// The problem's name with a candidate's rank (or `buildable`), within the length of a name.
-fn numbered(name: &str, n: &str) -> String {
-    let suffix = format!("-{n}");
-    let stem: String = name.chars().take(crate::name::MAX_NAME - suffix.len()).collect();
-    format!("{}{suffix}", stem.trim_end())
+/// The name in the linkage file of a candidate: the problem's with its rank (or `buildable`).
+pub fn linkage_name(record: &Record, which: &str) -> String {
+    name::with_suffix(&name::legal(&record.problem.name, "linkage"), &format!("-{which}"))
 }

@@ -6,6 +6,7 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+mod content;
 mod disk;
 mod lock;
 mod output_file;
@@ -14,14 +15,15 @@ mod replacement;
 mod tests;
 mod together;
 
-pub use output_file::{create_file, write_file};
+pub use output_file::{OutputFile, Replace, check_files, write_files};
 pub use together::put_together;
 
 use lock::Lock;
 use replacement::Wait;
 
 const LOCK: &str = ".lock";
-const RECORD: &str = "record.json";
+/// The file of a record.
+pub const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
 /// The file of a search half done.
 pub const CHECKPOINT: &str = "checkpoint.json";
@@ -60,6 +62,34 @@ pub enum FolderError {
         path: String,
         /// What was found.
         foreign: String,
+    },
+    /// A file that a person named for writing is there, and this program did not write it.
+    #[error(
+        "{path} is there and is not {kind} that linkwright wrote; name another file, or replace it with --force"
+    )]
+    NotOurs {
+        /// Which file.
+        path: String,
+        /// The kind that was to be written.
+        kind: &'static str,
+    },
+    /// A file that a person named for writing is read by the same command.
+    #[error("{path} is an input of this command; name another file, or replace it with --force")]
+    OwnInput {
+        /// Which file.
+        path: String,
+    },
+    /// A file that is to be made is there already.
+    #[error("{path} exists already; choose another name, or replace it with --force")]
+    Exists {
+        /// Which file.
+        path: String,
+    },
+    /// Two files were to be written to one place.
+    #[error("{path} is named twice: each file needs a place of its own")]
+    NamedTwice {
+        /// Which file.
+        path: String,
     },
     /// Another run has it.
     #[error("{path} is in use by another run; wait for it to end or give another folder with --out")]
@@ -110,8 +140,11 @@ fn remedy(error: &io::Error) -> &'static str {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             "change its permissions or name another place"
         }
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "make room on the disk or name another place"
+        }
+        io::ErrorKind::FileTooLarge => {
+            "make room on the disk, raise the limit of a file's size (ulimit -f), or name another place"
         }
         io::ErrorKind::AlreadyExists => "choose another name",
         io::ErrorKind::NotADirectory => "a part of this path is a file: name another place",
@@ -145,21 +178,33 @@ fn begins_as_a_checkpoint(path: &Path) -> bool {
     start[..read].starts_with(b"{\"format\":") && start[..read].windows(12).any(|w| w == b"\"linkwright\"")
 }
 
+/// Whether a text is a rank as a run writes it: 1, 2, .. without zeros in front.
+fn is_rank(text: &str) -> bool {
+    text.parse::<u32>().is_ok_and(|rank| rank > 0 && rank.to_string() == text)
+}
+
 /// Whether a file of this name is one that a run writes.
 fn is_ours(name: &str) -> bool {
     let numbered = |prefix: &str, suffix: &str| {
         name.strip_prefix(prefix)
             .and_then(|rest| rest.strip_suffix(suffix))
-            .is_some_and(|n| n == BUILDABLE || (!n.is_empty() && n.bytes().all(|b| b.is_ascii_digit())))
+            .is_some_and(|n| n == BUILDABLE || is_rank(n))
     };
     matches!(
         name,
         LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
     ) || [CHECKPOINT, LEAVES, CERTIFICATE_CHECKPOINT].contains(&name)
-        || name.starts_with(TEMPORARY)
+        || is_temporary(name)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")
         || numbered("candidate-", ".svg")
+}
+
+/// Whether a name is that of a file half written ([`tempfile`] adds six letters or digits) or of a folder of a
+/// replacement that was broken off.
+fn is_temporary(name: &str) -> bool {
+    let random = |rest: &str| rest.len() == 6 && rest.bytes().all(|b| b.is_ascii_alphanumeric());
+    replacement::is_staging(name) || name.strip_prefix(TEMPORARY).is_some_and(random)
 }
 
 /// Whether a file of this name is one that a run leaves in a result's folder: no lock, nothing temporary.
@@ -179,8 +224,14 @@ pub fn is_in_use(folder: &Path) -> bool {
 
 /// What a folder with these names, sorted, holds that linkwright did not write.
 fn foreign(path: &Path, names: &[String]) -> Option<String> {
+    if let Some(foreign) = names.iter().find_map(|name| replacement::not_of_ours(path, name)) {
+        return Some(foreign);
+    }
     if let Some(foreign) = names.iter().find(|name| !is_ours(name)) {
         return Some(foreign.clone());
+    }
+    if let Some(foreign) = names.iter().find(|name| !content::is_of_a_run(&path.join(name), name)) {
+        return Some(format!("{foreign} with other contents"));
     }
     let has_record = names.iter().any(|name| name == RECORD);
     let half_done = begins_as_a_checkpoint(&path.join(CHECKPOINT));

@@ -1,4 +1,5 @@
-//! JSON Schemas of the files that are read, made from the types that read them.
+//! JSON Schemas of the files that are read and of the record that is written, made from the types that read and write
+//! them.
 
 mod reference;
 
@@ -6,6 +7,7 @@ pub use reference::reference;
 
 use crate::linkage_file::RawLinkageFile;
 use crate::problem_file::RawProblem;
+use crate::record::Record;
 
 /// A kind of file that has a schema.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,17 +16,20 @@ pub enum SchemaKind {
     Problem,
     /// Linkage files.
     Linkage,
+    /// Records: `record.json` of a result.
+    Record,
 }
 
 impl SchemaKind {
     /// Every kind.
-    pub const ALL: [SchemaKind; 2] = [SchemaKind::Problem, SchemaKind::Linkage];
+    pub const ALL: [SchemaKind; 3] = [SchemaKind::Problem, SchemaKind::Linkage, SchemaKind::Record];
 
-    /// `problem` or `linkage`.
+    /// `problem`, `linkage` or `record`.
     pub fn name(self) -> &'static str {
         match self {
             SchemaKind::Problem => "problem",
             SchemaKind::Linkage => "linkage",
+            SchemaKind::Record => "record",
         }
     }
 }
@@ -38,7 +43,7 @@ impl std::str::FromStr for SchemaKind {
 
 /// A word that names no kind of file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no schema of {0:?}: the kinds are problem and linkage")]
+#[error("there is no schema of {0:?}: the kinds are problem, linkage and record")]
 pub struct UnknownKind(pub String);
 
 /// The JSON Schema (draft 2020-12) of a kind of file.
@@ -51,6 +56,7 @@ pub fn schema(kind: SchemaKind) -> serde_json::Value {
     match kind {
         SchemaKind::Problem => schemars::schema_for!(RawProblem),
         SchemaKind::Linkage => schemars::schema_for!(RawLinkageFile),
+        SchemaKind::Record => schemars::schema_for!(Record),
     }
     .to_value()
 }

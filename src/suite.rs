@@ -5,6 +5,7 @@
 //! asked for. Runs go one after the other on one thread, so that their times can be compared. What stands in a
 //! [`Suite`] is the referee's; nothing but the times differs from one machine to the next.
 
+pub mod literature;
 pub mod statistics;
 
 use crate::problem::Problem;

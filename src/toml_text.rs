@@ -116,6 +116,28 @@ impl<'a> TomlText<'a> {
         search(DeTable::parse(self.text).ok()?.get_ref(), key_start, "")
     }
 
+    /// The key of which the value at a place is a part.
+    fn key_around(&self, start: usize) -> Option<String> {
+        fn in_table(table: &DeTable<'_>, start: usize) -> Option<String> {
+            table.iter().find_map(|(key, value)| {
+                let holds = value.span().contains(&start).then(|| key.get_ref().to_string());
+                match value.get_ref() {
+                    // The span of [table] is that of its header.
+                    DeValue::Table(t) => in_table(t, start).or(holds),
+                    DeValue::Array(list) => {
+                        let below = list.iter().find_map(|item| match item.get_ref() {
+                            DeValue::Table(t) => in_table(t, start),
+                            _ => None,
+                        });
+                        below.or(holds)
+                    }
+                    _ => holds,
+                }
+            })
+        }
+        in_table(DeTable::parse(self.text).ok()?.get_ref(), start)
+    }
+
     /// An error of the parser or of serde in a designer's words.
     fn explain(&self, error: &toml::de::Error) -> Box<Diagnostic> {
         let (message, span) = (error.message(), error.span());
@@ -127,6 +149,11 @@ impl<'a> TomlText<'a> {
             self.about_file(format!("the key {key} is missing")).with_help("add it to this table")
         } else {
             let (message, help) = match message.split_once('\n') {
+                // The value does not know the key that it is of.
+                Some((message, TOO_LARGE)) => {
+                    let key = span.as_ref().and_then(|span| self.key_around(span.start));
+                    (message, Some(too_large_help(&key.unwrap_or_default()).to_owned()))
+                }
                 Some((message, help)) => (message, Some(help.to_owned())),
                 None => (message, self.syntax_help(message, span.as_ref())),
             };
@@ -208,6 +235,24 @@ impl<'a> TomlText<'a> {
             ("expected a string", "write text in quotes"),
         ];
         slips.iter().find(|(slip, _)| message.contains(slip)).map(|(_, help)| (*help).to_owned())
+    }
+}
+
+/// The remedy of a number that is too large, of a key that is not known.
+pub(crate) const TOO_LARGE: &str = "write a number of at most 1e12 in magnitude";
+
+/// The remedy of a number that is too large for a key (or a column): lengths have units, times and angles have others.
+pub(crate) fn too_large_help(key: &str) -> &'static str {
+    let is_one = |keys: &[&str]| keys.contains(&key);
+    if key == "time_limit_s" {
+        "write fewer seconds, or remove the key: without it there is no such limit"
+    } else if key.ends_with("_deg") {
+        "write an angle in degrees, such as 30"
+    } else if is_one(&["gap", "weight", "link_ratio_max", "vector", "goal_sum_sq"]) || key.ends_with("sum_sq")
+    {
+        TOO_LARGE
+    } else {
+        "use a larger unit, such as m for mm"
     }
 }
 
@@ -306,6 +351,9 @@ mod tests {
         assert_eq!(text_at("b.c.d.1.0"), Some("3"));
         assert_eq!(toml.at_key("b.c.d", "m").span.map(|s| &toml.text[s]), Some("d"));
         assert_eq!(text_at("nowhere"), None);
+        let key_at = |part: &str| toml.key_around(toml.text.find(part).expect("it is there"));
+        assert_eq!(key_at("3, 4").as_deref(), Some("d"));
+        assert_eq!(key_at("1\n").as_deref(), Some("a"));
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 use crate::linkage::MAX_MAGNITUDE;
 use crate::problem::spec::Limits;
+use crate::toml_text::TOO_LARGE;
 use schemars::JsonSchema;
 use serde::de::{
     self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
@@ -21,10 +22,7 @@ fn usable<E: de::Error>(value: f64) -> Result<f64, E> {
     if value.abs() <= MAX_MAGNITUDE {
         Ok(value)
     } else if value.is_finite() {
-        Err(refuse(
-            format_args!("{value:e} is too large: numbers go up to 1e12"),
-            "use a larger unit, such as m for mm",
-        ))
+        Err(refuse(format_args!("{value:e} is too large: numbers go up to 1e12"), TOO_LARGE))
     } else {
         let name = if value.is_nan() { "nan".to_owned() } else { value.to_string() };
         Err(refuse(format_args!("{name} is not a number that can be used"), "write a finite number"))

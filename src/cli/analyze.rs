@@ -1,52 +1,25 @@
 //! `analyze` and `cognates`: what a given linkage does.
 
 use super::arguments::{Analyze, Cognates};
-use super::{Ended, terminal};
+use super::{Ended, output::Output, result, terminal};
 use crate::analysis::chain::{ChainRequest, analyze_chain};
 use crate::analysis::{PositionMethod, Request, analyze, full_turn};
 use crate::diagnostic::escaped;
+use crate::generator::FileKind;
 use crate::linkage::motion::CrankMotion;
-use crate::linkage_file::{self, Linkage};
+use crate::linkage_file::{self, AnyLinkageFile, Linkage};
+use crate::name;
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
 use crate::report::analysis_text::{analysis_head, analysis_table};
 use crate::report::chain_sheet::chain_svg;
 use crate::report::chain_text::{chain_csv, chain_head, chain_table};
-use crate::results_folder::{create_file, write_file};
-use ariadne::ReportKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The crank angles when none are asked for: every 30 degrees.
 const DEFAULT_POSITIONS: usize = 12;
 /// A table of more rows is not printed when it was written to a file.
 const LONG_TABLE: usize = 72;
-
-fn refused(diagnostic: &crate::diagnostic::Diagnostic) -> Ended {
-    terminal::diagnose(ReportKind::Error, diagnostic);
-    Ended::Refused
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Ended> {
-    write_file(path, text.as_bytes()).map_err(|e| {
-        terminal::complain(&e.to_string());
-        Ended::Refused
-    })
-}
-
-/// Writes files that are not there yet: all of them or none.
-fn create_all(files: &[(PathBuf, String)]) -> Result<(), Ended> {
-    for (i, (path, text)) in files.iter().enumerate() {
-        if let Err(e) = create_file(path, text.as_bytes()) {
-            terminal::complain(&e.to_string());
-            for (made, _) in &files[..i] {
-                // What was made a moment ago and stays is named by the next try.
-                let _ = std::fs::remove_file(made);
-            }
-            return Err(Ended::Refused);
-        }
-    }
-    Ok(())
-}
 
 /// Runs `analyze`.
 pub fn run(options: &Analyze) -> Ended {
@@ -54,7 +27,7 @@ pub fn run(options: &Analyze) -> Ended {
 }
 
 fn inner(options: &Analyze) -> Result<Ended, Ended> {
-    let file = linkage_file::load_any(&options.linkage).map_err(|d| refused(&d))?;
+    let file = result::read_linkage(&options.linkage)?;
     let crank_deg = match (&options.angle, options.cycle) {
         (Some(angles), _) => angles.clone(),
         (None, Some(n)) => full_turn(n as usize),
@@ -130,12 +103,13 @@ fn deliver(
     analysis: &impl serde::Serialize,
     forms: &Forms<'_>,
 ) -> Result<Ended, Ended> {
-    if let Some(path) = &options.csv {
-        write(path, &(forms.csv)())?;
-    }
-    if let Some(path) = &options.svg {
-        write(path, &(forms.svg)())?;
-    }
+    let asked = [
+        options.csv.as_deref().map(|path| (path, FileKind::Csv, (forms.csv)())),
+        options.svg.as_deref().map(|path| (path, FileKind::Svg, (forms.svg)())),
+    ];
+    let written: Vec<_> =
+        asked.iter().flatten().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
+    Output::new([&options.linkage], options.force).write(&written)?;
     if options.json {
         let text = serde_json::to_string_pretty(analysis).map_err(|e| {
             terminal::complain(&format!("the analysis cannot be written as JSON: {e}"));
@@ -163,10 +137,16 @@ pub fn cognates(options: &Cognates) -> Ended {
 }
 
 fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
-    let file = linkage_file::load(&options.linkage).map_err(|d| refused(&d))?;
+    let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
+    let Linkage::FourBar(linkage) = linkage else {
+        let shown = escaped(&options.linkage.display().to_string());
+        let why = "it is a chain, and cognates are of four-bars: give a file with [linkage] or [vector_loop]";
+        terminal::complain(&format!("{shown}: {why}"));
+        return Err(Ended::Refused);
+    };
     let mut found = Vec::new();
     let mut text = String::new();
-    for (place, cognate) in ["A", "B"].iter().zip(file.linkage.cognates()) {
+    for (place, cognate) in ["A", "B"].iter().zip(linkage.cognates()) {
         match cognate {
             Ok(cognate) => {
                 let n = found.len() + 1;
@@ -179,13 +159,24 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
     }
     let mut written = Vec::new();
     for (i, linkage) in found.iter().enumerate() {
-        let name = format!("{}-cognate-{}", file.name, i + 1);
+        let name = name::with_suffix(&name, &format!("-cognate-{}", i + 1));
         let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
-        if path.exists() {
-            terminal::complain(&format!("{} exists already; give another folder with --out", path.display()));
+        if path.exists() && !options.force {
+            terminal::complain(&format!(
+                "{} exists already; give another folder with --out, or replace it with --force",
+                path.display()
+            ));
             return Err(Ended::Refused);
         }
-        written.push((path, linkage_file::to_toml(&name, file.unit, linkage)));
+        written.push((path, FileKind::Linkage, linkage_file::to_toml(&name, unit, linkage)));
+    }
+    if let Some(path) = &options.svg {
+        written.push((path.clone(), FileKind::Svg, cognates_svg(&name, unit, &linkage, &found)));
+    }
+    let output = Output::new([&options.linkage], options.force);
+    // Looked at before the folder is made.
+    for (path, kind, _) in &written {
+        output.check(path, *kind)?;
     }
     if let Some(out) = &options.out {
         std::fs::create_dir_all(out).map_err(|e| {
@@ -193,17 +184,15 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
             Ended::Refused
         })?;
     }
-    create_all(&written)?;
-    for (path, _) in &written {
-        text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
-    }
-    if let Some(path) = &options.svg {
-        write(path, &cognates_svg(&file.name, file.unit, &file.linkage, &found))?;
+    let files: Vec<_> =
+        written.iter().map(|(path, kind, text)| (path.as_path(), *kind, text.as_bytes())).collect();
+    output.write(&files)?;
+    for (path, ..) in &written {
         text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
     }
     terminal::answer(&format!(
         "The Roberts-Chebyshev cognates of {}: other linkages of the same coupler curve\n{text}",
-        crate::report::text::clean(&file.name)
+        crate::report::text::clean(&name)
     ));
     Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
 }

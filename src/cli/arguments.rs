@@ -42,7 +42,7 @@ pub enum Command {
     Certify(Certify),
     /// Write a result as a page to look at, print and mail: one HTML file
     Report(Report),
-    /// Positions, velocities, accelerations and mobility of a linkage file
+    /// Positions, velocities, accelerations and mobility of a linkage
     Analyze(Analyze),
     /// The other two linkages of the same coupler curve
     Cognates(Cognates),
@@ -59,7 +59,7 @@ pub enum Command {
     Studio(Studio),
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
-        /// problem or linkage
+        /// problem, linkage or record
         #[arg(value_parser = schema_kind)]
         kind: SchemaKind,
         /// Print a reference page (Markdown) of its keys instead
@@ -135,6 +135,9 @@ pub struct New {
     /// Take the target from these points (CSV) or this drawing (SVG)
     #[arg(long, value_name = "FILE")]
     pub from: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `compare`.
@@ -161,6 +164,9 @@ pub struct Compare {
     /// Write a page with curves and tables too: one file, needs no network
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
@@ -212,12 +218,15 @@ pub struct Report {
     /// Where the page goes [default: report.html in the folder, or beside a record under another name]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `analyze`.
 #[derive(Debug, Args)]
 pub struct Analyze {
-    /// A linkage file (TOML)
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
@@ -247,6 +256,9 @@ pub struct Analyze {
     /// Draw the sheets into one SVG file
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
@@ -255,7 +267,7 @@ pub struct Analyze {
 /// Options of `cognates`.
 #[derive(Debug, Args)]
 pub struct Cognates {
-    /// A linkage file (TOML)
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
     #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
@@ -264,6 +276,9 @@ pub struct Cognates {
     /// Draw all three together
     #[arg(long, value_name = "FILE")]
     pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `build`.
@@ -311,6 +326,9 @@ pub struct Snap {
     /// Where the result goes: a folder, or FILE.toml for the best linkage alone [default: results/NAME-snapped]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `suite`.
@@ -319,9 +337,10 @@ pub struct Suite {
     /// Only problems whose name or file name holds this
     #[arg(value_name = "FILTER")]
     pub filter: Option<String>,
-    /// The folder of the problem files; those with `best_known_sum_sq` in `[expect]` are run
-    #[arg(long, value_name = "DIR", default_value = crate::cli::suite::PROBLEMS)]
-    pub problems: PathBuf,
+    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
+    /// problems/literature where it is here, else the same files, which linkwright holds]
+    #[arg(long, value_name = "DIR")]
+    pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
@@ -331,9 +350,12 @@ pub struct Suite {
     /// Print JSON instead of the tables
     #[arg(long)]
     pub json: bool,
-    /// Write results/literature.md and results/literature.json too (all problems, no FILTER)
+    /// Write results/literature.md and results/literature.json too (all problems, no FILTER): for linkwright's repository
     #[arg(long, conflicts_with = "filter")]
     pub write: bool,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Options of `studio`.
@@ -343,8 +365,8 @@ pub struct Studio {
     /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
     #[arg(value_name = "PROBLEM")]
     pub problem: Option<PathBuf>,
-    /// The port on 127.0.0.1 [default: 8017, or a free one where that is taken]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
+    #[arg(long, value_name = "N")]
     pub port: Option<u16>,
     /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
     #[arg(long, value_name = "DIR")]
@@ -369,6 +391,9 @@ pub struct Export {
     /// Write it to this file [default: to standard output]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -2,12 +2,12 @@
 
 use super::arguments::Compare;
 use super::result::{self, Given, Which};
-use super::{Ended, terminal};
+use super::{Ended, output::Output, terminal};
 use crate::diagnostic::escaped;
+use crate::generator::FileKind;
 use crate::measured::{NotCompared, Target, compared};
 use crate::problem_file;
 use crate::report::compare::Comparison;
-use crate::results_folder::write_file;
 use ariadne::ReportKind;
 use std::path::Path;
 
@@ -100,20 +100,17 @@ fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
 
 /// Writes the files that were asked for and prints the tables or JSON.
 fn deliver(options: &Compare, comparison: &Comparison) -> Result<Ended, Ended> {
-    let forms: [(&Option<_>, &dyn Fn() -> String); 3] = [
-        (&options.csv, &|| comparison.csv()),
-        (&options.svg, &|| comparison.svg()),
-        (&options.html, &|| comparison.html()),
+    let forms: [(&Option<_>, _, &dyn Fn() -> String); 3] = [
+        (&options.csv, FileKind::Csv, &|| comparison.csv()),
+        (&options.svg, FileKind::Svg, &|| comparison.svg()),
+        (&options.html, FileKind::Html, &|| comparison.html()),
     ];
-    let mut written = Vec::new();
-    for (path, text) in forms {
-        let Some(path) = path else { continue };
-        write_file(path, text().as_bytes()).map_err(|e| {
-            terminal::complain(&e.to_string());
-            Ended::Refused
-        })?;
-        written.push(escaped(&path.display().to_string()));
-    }
+    let asked = forms.iter().filter_map(|(path, kind, text)| Some((path.as_deref()?, *kind, text())));
+    let asked: Vec<(&Path, FileKind, String)> = asked.collect();
+    let files: Vec<_> = asked.iter().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
+    let inputs = options.results.iter().chain(&options.target).chain(&options.reference);
+    Output::new(inputs, options.force).write(&files)?;
+    let written: Vec<String> = files.iter().map(|(path, ..)| escaped(&path.display().to_string())).collect();
     if options.json {
         comparison.notes().iter().for_each(|note| terminal::tell(&format!("note: {}", escaped(note))));
         terminal::answer(&comparison.json());

@@ -2,10 +2,9 @@
 
 use super::arguments::Export;
 use super::result::{self, Given};
-use super::{Ended, terminal};
+use super::{Ended, output::Output, terminal};
 use crate::diagnostic::{Diagnostic, escaped};
 use crate::export::{Refusal, Settings, Subject, export};
-use crate::results_folder::write_file;
 use ariadne::ReportKind;
 
 /// Runs the command.
@@ -32,10 +31,8 @@ fn inner(options: &Export) -> Result<Ended, Ended> {
         terminal::answer(&String::from_utf8_lossy(&exported.bytes));
         return Ok(Ended::Good);
     };
-    write_file(path, &exported.bytes).map_err(|e| {
-        terminal::complain(&e.to_string());
-        Ended::Refused
-    })?;
+    let output = Output::new([&options.result], options.force);
+    output.write(&[(path, options.format.kind(), &exported.bytes)])?;
     terminal::answer(&format!(
         "Wrote {}: {}, {}\n",
         escaped(&path.display().to_string()),

@@ -1,4 +1,5 @@
-//! Ctrl-C: the first ends the search with its best so far, the second ends the process.
+//! Signals. Ctrl-C: the first ends the search with its best so far, the second ends the process. A file over the limit
+//! of its size (`ulimit -f`): the write fails.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -16,3 +17,16 @@ pub fn watch(doing: &'static str) -> &'static AtomicBool {
     let _ = ctrlc::set_handler(handler);
     &CANCELLED
 }
+
+/// Lets a write over the limit of a file's size fail with an error, as a full disk does, where the system would end the
+/// process by SIGXFSZ: from now on nothing half-written stays, and the error names the file.
+#[cfg(unix)]
+pub fn outlive_large_files() {
+    use signal_hook::{consts::SIGXFSZ, flag};
+    // Noting the signal is enough: the write returns EFBIG. Where that cannot be had, it is as it ever was.
+    let _ = flag::register(SIGXFSZ, std::sync::Arc::new(AtomicBool::new(false)));
+}
+
+/// Other systems have no such signal.
+#[cfg(not(unix))]
+pub fn outlive_large_files() {}

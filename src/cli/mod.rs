@@ -14,6 +14,7 @@ mod inputs;
 mod interrupt;
 mod man;
 mod new;
+mod output;
 mod progress;
 mod report;
 mod result;
@@ -30,8 +31,8 @@ use clap::{CommandFactory, Parser};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
-/// How a command ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a command ended, the gravest last: of several inputs the gravest is that of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Ended {
     /// Done, and something acceptable was found or the check passed.
     Good,
@@ -62,6 +63,7 @@ const BUG: u8 = 70;
 
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
+    interrupt::outlive_large_files();
     let arguments = Arguments::parse();
     match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
         Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),

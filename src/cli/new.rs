@@ -2,9 +2,9 @@
 
 use super::arguments::New;
 use super::{Ended, terminal};
-use crate::results_folder::{FolderError, create_file};
+use crate::generator::FileKind;
+use crate::results_folder::{OutputFile, Replace, write_files};
 use ariadne::ReportKind;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Runs the command.
@@ -42,19 +42,13 @@ pub fn run(options: &New) -> Ended {
         return Ended::Refused;
     }
     let path = PathBuf::from(format!("{name}.toml"));
-    match create_file(&path, text.as_bytes()) {
-        Ok(()) => {
-            let shown = path.display();
-            terminal::answer(&format!("Wrote {shown}. Next: linkwright synth {shown:?}\n"));
-            Ended::Good
-        }
-        Err(FolderError::Io { source, .. }) if source.kind() == ErrorKind::AlreadyExists => {
-            terminal::complain(&format!("{} exists already; choose another name", path.display()));
-            Ended::Refused
-        }
-        Err(e) => {
-            terminal::complain(&e.to_string());
-            Ended::Refused
-        }
+    let replace = if options.force { Replace::Anything } else { Replace::Nothing };
+    let file = OutputFile { path: &path, kind: FileKind::Problem, bytes: text.as_bytes() };
+    if let Err(e) = write_files(&[file], replace) {
+        terminal::complain(&e.to_string());
+        return Ended::Refused;
     }
+    let shown = path.display();
+    terminal::answer(&format!("Wrote {shown}. Next: linkwright synth {shown:?}\n"));
+    Ended::Good
 }

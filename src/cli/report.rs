@@ -2,12 +2,10 @@
 
 use super::arguments::Report;
 use super::result::{Run, Which, read_run_of};
-use super::{Ended, terminal};
+use super::{Ended, output::Output, terminal};
 use crate::diagnostic::escaped;
-use crate::report::html::{is_report, report_html};
-use crate::results_folder::write_file;
-use std::fs::File;
-use std::io::Read;
+use crate::generator::FileKind;
+use crate::report::html::report_html;
 use std::path::{Path, PathBuf};
 
 /// So many of the figures that are not so are named.
@@ -31,23 +29,11 @@ pub fn run(options: &Report) -> Ended {
             rank => rank - 1,
         }),
     };
-    let place = match &options.out {
-        Some(place) => place.clone(),
-        None => {
-            let place = beside(Path::new(&run.named));
-            if is_foreign(&place) {
-                let shown = escaped(&place.display().to_string());
-                terminal::complain(&format!(
-                    "{shown} is there and is no report of linkwright; name another place with --out"
-                ));
-                return Ended::Refused;
-            }
-            place
-        }
-    };
-    if let Err(e) = write_file(&place, report_html(&run.record, first).as_bytes()) {
-        terminal::complain(&e.to_string());
-        return Ended::Refused;
+    let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
+    let page = report_html(&run.record, first);
+    let output = Output::new([&options.result], options.force);
+    if let Err(ended) = output.write(&[(&place, FileKind::Html, page.as_bytes())]) {
+        return ended;
     }
     terminal::answer(&format!("{}\n", escaped(&place.display().to_string())));
     Ended::Good
@@ -63,30 +49,21 @@ fn is_true(run: &Run) -> Result<(), Ended> {
     if mismatches.is_empty() {
         return Ok(());
     }
-    let mut text =
-        format!("{shown}: this record is not true, so a report would show figures that are not so:");
+    terminal::complain(&format!(
+        "{shown}: this record is not true, so a report would show figures that are not so:"
+    ));
     for mismatch in mismatches.iter().take(NAMED) {
-        text.push_str(&format!("\n  {}", escaped(&mismatch.to_string())));
+        terminal::tell(&format!("  {}", escaped(&mismatch.to_string())));
     }
     if mismatches.len() > NAMED {
-        text.push_str(&format!(
-            "\n  and {} more: linkwright verify names them all",
-            mismatches.len() - NAMED
-        ));
+        let more = mismatches.len() - NAMED;
+        terminal::tell(&format!("  and {more} more: linkwright verify names them all"));
     }
-    text.push_str("\nrun the problem again to have a true record");
-    terminal::complain(&text);
+    terminal::tell("run the problem again to have a true record");
     Err(Ended::Bad)
 }
 
 /// `report.html` in the result's folder; beside a record that was named by its file, `NAME.html`.
 fn beside(named: &Path) -> PathBuf {
     if named.is_file() { named.with_extension("html") } else { named.join("report.html") }
-}
-
-/// Whether a file is there that no report of ours is.
-fn is_foreign(place: &Path) -> bool {
-    let Ok(file) = File::open(place) else { return place.exists() };
-    let mut start = Vec::new();
-    file.take(1024).read_to_end(&mut start).is_err() || !is_report(&start)
 }

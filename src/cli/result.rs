@@ -4,10 +4,11 @@
 use super::{Ended, terminal};
 use crate::diagnostic::escaped;
 pub use crate::given::{Given, NoCandidate, Run, Which};
-use crate::linkage_file;
-use crate::results_folder::{BUILDABLE, read_record};
+use crate::linkage_file::{self, AnyLinkageFile, Linkage};
+use crate::result_files;
+use crate::results_folder::{BUILDABLE, RECORD, read_record};
 use ariadne::ReportKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl From<NoCandidate> for Ended {
     fn from(none: NoCandidate) -> Ended {
@@ -26,8 +27,7 @@ fn refuse(text: &str) -> Ended {
 /// # Errors
 /// [`Ended::Refused`]; what is wrong has been told.
 pub fn read(argument: &Path) -> Result<Given, Ended> {
-    let is_toml = argument.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
-    if is_toml && !argument.is_dir() {
+    if is_linkage_file(argument) {
         let file = linkage_file::load(argument).map_err(|diagnostic| {
             terminal::diagnose(ReportKind::Error, &diagnostic);
             Ended::Refused
@@ -49,6 +49,43 @@ pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
             argument.display()
         ))),
     }
+}
+
+/// As [`read`], for a command that is about one linkage alone, a chain or a four-bar: of a result it is the candidate
+/// that is named, else the first.
+///
+/// # Errors
+/// [`Ended::Refused`]; what is wrong has been told. [`Ended::Bad`] for a result without any candidate.
+pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
+    if is_linkage_file(argument) {
+        return linkage_file::load_any(argument).map_err(|diagnostic| {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            Ended::Refused
+        });
+    }
+    let run = read_run(argument)?;
+    let chosen = run.one()?;
+    let problem = &run.record.problem;
+    Ok(AnyLinkageFile {
+        // The name that its linkage file has.
+        name: result_files::linkage_name(&run.record, &chosen.suffix),
+        unit: problem.unit,
+        linkage: Linkage::FourBar(chosen.candidate.linkage),
+    })
+}
+
+/// The file that a RESULT is read from: the record in a folder, whatever candidate is named.
+pub fn file_of(argument: &Path) -> PathBuf {
+    let named = match argument.to_str().and_then(|text| text.rsplit_once(':')) {
+        Some((folder, _)) if !argument.exists() => Path::new(folder),
+        _ => argument,
+    };
+    if named.is_dir() { named.join(RECORD) } else { named.to_path_buf() }
+}
+
+/// Whether an argument is the file of a linkage without a run.
+fn is_linkage_file(argument: &Path) -> bool {
+    argument.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !argument.is_dir()
 }
 
 fn read_run(argument: &Path) -> Result<Run, Ended> {

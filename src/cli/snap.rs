@@ -2,17 +2,19 @@
 
 use super::arguments::Snap as Options;
 use super::result::{self, Given};
-use super::{Ended, build, interrupt, synth, terminal};
+use super::{Ended, build, interrupt, output::Output, synth, terminal};
 use crate::diagnostic::{Diagnostic, escaped};
+use crate::generator::FileKind;
 use crate::linkage::{FourBar, xy};
 use crate::linkage_file;
+use crate::name;
 use crate::practicality::{Build, Practicality};
 use crate::problem::Problem;
-use crate::record::{Candidate, Record, Unit};
+use crate::record::{Candidate, Reason, Record, Unit};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
 use crate::report::text::clean;
-use crate::results_folder::{ResultsFolder, write_file};
+use crate::results_folder::ResultsFolder;
 use crate::search::Budget;
 use crate::snap::{Fixed, Length, Request, SnapError, Stock, StockError, own_curve, record, snap};
 use ariadne::ReportKind;
@@ -48,13 +50,17 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
     let subject = subject(&options.result)?;
+    // Told before the work, not after it.
+    if let Some(path) = linkage_place(options) {
+        output(options).check(path, FileKind::Linkage)?;
+    }
     let request = Request {
         stock,
         lengths: options.snap.clone(),
         fixed: fixed(options, &subject.candidate.linkage),
         wanted: subject.problem.spec().solve.candidates,
     };
-    let cancel = interrupt::watch("giving the best so far");
+    let cancel = interrupt::watch("saving the best so far");
     let budget = Budget::new(cancel, None);
     let snapped = match snap(&subject.problem, &subject.candidate, &request, &budget) {
         Ok(snapped) => snapped,
@@ -62,11 +68,14 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
             terminal::complain(&e.to_string());
             return Err(Ended::Bad);
         }
-        Err(SnapError::Interrupted) => return Err(Ended::Interrupted),
+        Err(e @ SnapError::Interrupted) => {
+            terminal::complain(&format!("{e}: nothing was written"));
+            return Err(Ended::Interrupted);
+        }
         Err(e) => return Err(refuse(&e.to_string())),
     };
     let Some(best) = snapped.candidates.first() else { return Err(Ended::Bad) };
-    let name = format!("{}{SUFFIX}", shortened(&subject.name));
+    let name = name::with_suffix(&name::legal(&subject.name, "linkage"), SUFFIX);
     let search_s = begun.elapsed().as_secs_f64();
     let record = record(&subject.problem, &name, subject.source, subject.unit, &request, &snapped)
         .map_err(|e| refuse(&e.to_string()))?;
@@ -80,7 +89,11 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
         terminal::answer(&practicality_text(&found, subject.unit, tolerance, terminal::colour()));
     }
     terminal::answer(&format!("\n  Wrote {}\n", escaped(&written.display().to_string())));
-    Ok(if best.accepted { Ended::Good } else { Ended::Bad })
+    Ok(match snapped.reason {
+        Reason::Cancelled => Ended::Interrupted,
+        _ if best.accepted => Ended::Good,
+        _ => Ended::Bad,
+    })
 }
 
 fn stock(options: &Options) -> Result<Stock, Ended> {
@@ -158,21 +171,22 @@ fn fixed(options: &Options, linkage: &FourBar) -> Fixed {
     fixed
 }
 
-/// A name with room for what is added to it.
-fn shortened(name: &str) -> String {
-    let stem: String = name.chars().take(crate::name::MAX_NAME - SUFFIX.len()).collect();
-    stem.trim_end().to_owned()
+/// The file for the best linkage alone, where one was named.
+fn linkage_place(options: &Options) -> Option<&Path> {
+    options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
+}
+
+fn output(options: &Options) -> Output {
+    Output::new([&options.result].into_iter().chain(&options.pitches), options.force)
 }
 
 /// Writes the record with everything that stands beside it, or the best linkage alone; where it is now.
 fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
     let told = |e: &dyn std::fmt::Display| refuse(&e.to_string());
-    if let Some(path) =
-        options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
-    {
+    if let Some(path) = linkage_place(options) {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
         let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
-        write_file(path, text.as_bytes()).map_err(|e| told(&e))?;
+        output(options).write(&[(path, FileKind::Linkage, text.as_bytes())])?;
         return Ok(path.to_path_buf());
     }
     let place = options.out.clone().unwrap_or_else(|| Path::new("results").join(&record.problem.name));

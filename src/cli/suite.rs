@@ -4,16 +4,17 @@ use super::arguments::Suite as Asked;
 use super::progress::SuiteShown;
 use super::{Ended, interrupt, terminal};
 use crate::diagnostic::escaped;
+use crate::generator::FileKind;
 use crate::problem::spec::CertifySpec;
 use crate::problem_file::{self, ProblemFile};
 use crate::report::suite::{suite_markdown, suite_text};
-use crate::results_folder::replace_file;
-use crate::suite::{Options, Step, Suite, suite};
+use crate::results_folder::{OutputFile, Replace, check_files, write_files};
+use crate::suite::{Options, Step, Suite, literature, suite};
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
 
-/// Where the problems are when nothing is said.
-pub const PROBLEMS: &str = "problems/literature";
+/// The folder of the literature's problems in the repository.
+const PROBLEMS: &str = "problems/literature";
 /// Where the page goes.
 const RESULTS: &str = "results";
 const PAGE: &str = "literature.md";
@@ -23,7 +24,7 @@ const DATA: &str = "literature.json";
 pub fn run(asked: &Asked) -> Ended {
     let Some(problems) = problems(asked) else { return Ended::Refused };
     // The place is looked at before anything runs: one that cannot be written to costs no search.
-    let place = match asked.write.then(|| Place::take(Path::new(RESULTS))).transpose() {
+    let place = match asked.write.then(|| Place::take(Path::new(RESULTS), asked.force)).transpose() {
         Ok(place) => place,
         Err(e) => return refuse(&e),
     };
@@ -88,12 +89,13 @@ fn command(asked: &Asked) -> String {
             format!("'{}'", text.replace('\'', r"'\''"))
         }
     };
-    let mut command = String::from("cargo run --release -- suite");
+    let here = asked.write || folder(asked).is_some();
+    let mut command = String::from(if here { "cargo run --release -- suite" } else { "linkwright suite" });
     if let Some(filter) = &asked.filter {
         command.push_str(&format!(" {}", quoted(filter)));
     }
-    if asked.problems != Path::new(PROBLEMS) {
-        command.push_str(&format!(" --problems {}", quoted(&asked.problems.display().to_string())));
+    if let Some(folder) = &asked.problems {
+        command.push_str(&format!(" --problems {}", quoted(&folder.display().to_string())));
     }
     command.push_str(&format!(" --seeds {}", asked.seeds));
     if asked.certify {
@@ -105,25 +107,35 @@ fn command(asked: &Asked) -> String {
     command
 }
 
-/// The problems that are asked for, by file name; `None` after saying why there is none.
-fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
-    let shown = escaped(&asked.problems.display().to_string());
-    let files = match files(&asked.problems) {
+/// Problems with the names of their files.
+type Named = Vec<(String, ProblemFile)>;
+
+/// The folder of the problems: the one that was named, or that of the literature where it is here; `None` where the
+/// program's own are run.
+fn folder(asked: &Asked) -> Option<&Path> {
+    let here = Path::new(PROBLEMS);
+    asked.problems.as_deref().or_else(|| here.is_dir().then_some(here))
+}
+
+/// The problems of a folder, by file name; `None` after saying why there is none.
+fn of_folder(folder: &Path) -> Option<Named> {
+    let shown = escaped(&folder.display().to_string());
+    let files = match files(folder) {
         Ok(files) => files,
         Err(e) => {
-            let remedy = "run it in linkwright's own folder or name another with --problems";
+            let remedy =
+                "name another with --problems, or leave it out for the problems that linkwright has in it";
             terminal::complain(&format!("the folder of problems {shown} cannot be read: {e}; {remedy}"));
             return None;
         }
     };
-    let mut known = Vec::new();
+    let mut found = Vec::new();
     let mut refused = false;
     for path in files {
         match problem_file::load(&path, &[]) {
             Ok(problem) => {
-                if problem.expect.as_ref().is_some_and(|expect| expect.best_known_sum_sq.is_some()) {
-                    known.push((path, problem));
-                }
+                let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
+                found.push((stem.unwrap_or_default(), problem));
             }
             Err(diagnostic) => {
                 terminal::diagnose(ReportKind::Error, &diagnostic);
@@ -131,17 +143,39 @@ fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
             }
         }
     }
-    if refused {
-        return None;
+    (!refused).then_some(found)
+}
+
+/// The problems of the literature, which the program holds.
+fn built_in() -> Option<Named> {
+    match literature::problems() {
+        Ok(problems) => {
+            let stem = |name: &str| name.trim_end_matches(".toml").to_owned();
+            Some(problems.into_iter().map(|(name, problem)| (stem(name), problem)).collect())
+        }
+        Err(diagnostic) => {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            None
+        }
     }
+}
+
+/// The problems that are asked for, by file name; `None` after saying why there is none.
+fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
+    let folder = folder(asked);
+    let shown = match folder {
+        Some(folder) => escaped(&folder.display().to_string()),
+        None => "the literature".to_owned(),
+    };
+    let mut known = folder.map_or_else(built_in, of_folder)?;
+    known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
     if known.is_empty() {
         terminal::complain(&format!("no problem in {shown} has an [expect] table with best_known_sum_sq"));
         return None;
     }
     let names: Vec<String> = known.iter().map(|(_, problem)| problem.name.clone()).collect();
     let filter = asked.filter.as_deref().unwrap_or_default();
-    let stem = |path: &Path| path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    known.retain(|(path, problem)| problem.name.contains(filter) || stem(path).contains(filter));
+    known.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
     if known.is_empty() {
         let names = names.join(", ");
         terminal::complain(&format!("no problem in {shown} has {filter:?} in its name; there are {names}"));
@@ -176,25 +210,33 @@ fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 struct Place {
     folder: PathBuf,
     made: bool,
+    replace: Replace<'static>,
 }
 
 impl Place {
-    fn take(folder: &Path) -> Result<Self, String> {
+    fn take(folder: &Path, force: bool) -> Result<Self, String> {
         let made = !folder.exists();
         let shown = folder.display();
         std::fs::create_dir_all(folder).map_err(|e| format!("{shown}: {e}"))?;
-        let place = Place { folder: folder.into(), made };
+        let replace = if force { Replace::Anything } else { Replace::Ours(&[]) };
+        let place = Place { folder: folder.into(), made, replace };
+        let [data, page] = [DATA, PAGE].map(|name| folder.join(name));
+        check_files(&outputs((&data, ""), (&page, "")), replace).map_err(|e| e.to_string())?;
         tempfile::tempfile_in(folder).map_err(|e| format!("{shown} cannot be written to: {e}"))?;
         Ok(place)
     }
 
     fn write(&self, suite: &Suite, json: &str) -> Result<(), String> {
         let page = suite_markdown(suite);
-        for (name, text) in [(DATA, json), (PAGE, page.as_str())] {
-            replace_file(&self.folder, name, text.as_bytes()).map_err(|e| e.to_string())?;
-        }
-        Ok(())
+        let [data_at, page_at] = [DATA, PAGE].map(|name| self.folder.join(name));
+        write_files(&outputs((&data_at, json), (&page_at, &page)), self.replace).map_err(|e| e.to_string())
     }
+}
+
+/// The suite's two files.
+fn outputs<'a>(data: (&'a Path, &'a str), page: (&'a Path, &'a str)) -> [OutputFile<'a>; 2] {
+    let file = |(path, text): (&'a Path, &'a str), kind| OutputFile { path, kind, bytes: text.as_bytes() };
+    [file(data, FileKind::SuiteJson), file(page, FileKind::SuiteMarkdown)]
 }
 
 impl Drop for Place {

@@ -4,6 +4,7 @@ use super::arguments::Synth;
 use super::inputs::{self, Input};
 use super::progress::{BatchShown, Proving, Shown};
 use super::{Ended, interrupt, terminal};
+use crate::generator::FileKind;
 use crate::record::Reason;
 use crate::report::batch_csv::batch_csv;
 use crate::report::certificate::certificate_text;
@@ -12,7 +13,7 @@ use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 pub use crate::result_files::{Timing, files};
-use crate::results_folder::replace_file;
+use crate::results_folder::{FolderError, OutputFile, Replace, check_files, write_files};
 use crate::saved_run::{self, Done, Listener, Options, Ran, Written};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
@@ -47,6 +48,14 @@ pub fn run(options: &Synth) -> Ended {
     let jobs = inputs.iter().filter(|input| input.job.is_ok()).count();
     if jobs == 0 {
         return Ended::Refused;
+    }
+    if several {
+        // A place that is taken is told before the searches, not after them.
+        let check = |file: OutputFile<'_>| check_files(&[file], Replace::Ours(&[]));
+        if let Err(why) = summary(inputs::folder_of_all(options), &batch_csv(&[]), check) {
+            terminal::complain(&why);
+            return Ended::Refused;
+        }
     }
     let threads = options.threads.map_or_else(rayon::current_num_threads, usize::from);
     let side_by_side = threads > 1 && jobs >= JOBS_A_THREAD * threads;
@@ -150,7 +159,7 @@ pub fn run(options: &Synth) -> Ended {
     });
     shown_batch.finish();
     let outcomes = printed.into_inner().unwrap_or_else(PoisonError::into_inner).outcomes();
-    let mut ended = outcomes.iter().map(ended_of).max_by_key(|ended| severity(*ended)).unwrap_or(Ended::Good);
+    let mut ended = outcomes.iter().map(ended_of).max().unwrap_or(Ended::Good);
     if options.json {
         let records = outcomes.iter().filter_map(|outcome| match outcome {
             Outcome::Done(done) => Some(&done.record),
@@ -171,7 +180,7 @@ pub fn run(options: &Synth) -> Ended {
         }
         if let Err(why) = write_summary(inputs::folder_of_all(options), &batch_csv(&rows)) {
             terminal::complain(&why);
-            ended = if severity(ended) < severity(Ended::Refused) { Ended::Refused } else { ended };
+            ended = ended.max(Ended::Refused);
         }
     }
     ended
@@ -214,17 +223,6 @@ fn ended_of(outcome: &Outcome) -> Ended {
     }
 }
 
-/// Of several ends the gravest is that of the batch.
-fn severity(ended: Ended) -> u8 {
-    match ended {
-        Ended::Good => 0,
-        Ended::Bad => 1,
-        Ended::Refused => 2,
-        Ended::Bug => 3,
-        Ended::Interrupted => 4,
-    }
-}
-
 fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
     let name = input.job.as_ref().map_or(input.file.as_str(), |(job, _)| &job.name);
     let outcome = match outcome {
@@ -238,7 +236,22 @@ fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
 
 fn write_summary(folder: &Path, csv: &str) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    replace_file(folder, SUMMARY, csv.as_bytes()).map_err(|e| e.to_string())
+    summary(folder, csv, |file| write_files(&[file], Replace::Ours(&[])))
+}
+
+/// Does something with the summary's file. One that is a user's stays, and there is no `--force` for it.
+fn summary(
+    folder: &Path,
+    csv: &str,
+    act: impl FnOnce(OutputFile<'_>) -> Result<(), FolderError>,
+) -> Result<(), String> {
+    let path = folder.join(SUMMARY);
+    act(OutputFile { path: &path, kind: FileKind::Csv, bytes: csv.as_bytes() }).map_err(|e| match e {
+        FolderError::NotOurs { path, .. } => {
+            format!("{path} is no summary of a batch of this version: move it away, or give another folder with --out")
+        }
+        e => e.to_string(),
+    })
 }
 
 /// What is printed for one problem.

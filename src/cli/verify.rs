@@ -14,7 +14,8 @@ use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Runs the command.
+/// Runs the command: every record is looked at, whatever is wrong with those before it, and the gravest end is that of
+/// all. Ctrl-C ends it.
 pub fn run(options: &Verify) -> Ended {
     let mut ended = Ended::Good;
     for path in &options.results {
@@ -26,15 +27,20 @@ pub fn run(options: &Verify) -> Ended {
                     "{shown}: a record is verified as a whole; give {} alone",
                     run.named
                 ));
-                return Ended::Refused;
+                ended = ended.max(Ended::Refused);
+                continue;
             }
-            Err(ended) => return ended,
+            Err(refused) => {
+                ended = ended.max(refused);
+                continue;
+            }
         };
         let mut verified = crate::verify::verify(&record);
         if let (Ok(mismatches), true) = (&mut verified, options.certificate) {
             if record.certificate.is_none() {
                 terminal::complain(&format!("{shown}: the record has no certificate; run certify first"));
-                return Ended::Refused;
+                ended = ended.max(Ended::Refused);
+                continue;
             }
             let mut proving = Proving::new(&record.problem.name, false);
             let cancel = interrupt::watch("ending the check");
@@ -44,7 +50,8 @@ pub fn run(options: &Verify) -> Ended {
                 Ok(None) => return Ended::Interrupted,
                 Err(e) => {
                     terminal::complain(&format!("{shown}: {e}"));
-                    return Ended::Refused;
+                    ended = ended.max(Ended::Refused);
+                    continue;
                 }
             }
         }
@@ -52,7 +59,11 @@ pub fn run(options: &Verify) -> Ended {
         if let (Ok(_), true) = (&verified, options.leaves) {
             leaves = match check_leaves(path, &record) {
                 Ok(checked) => Ok(Some(checked)),
-                Err(Wrong::Told(ended)) => return ended,
+                Err(Wrong::Told(Ended::Interrupted)) => return Ended::Interrupted,
+                Err(Wrong::Told(told)) => {
+                    ended = ended.max(told);
+                    continue;
+                }
                 Err(Wrong::Not(why)) => Err(why),
             };
         }
@@ -76,7 +87,7 @@ pub fn run(options: &Verify) -> Ended {
                 }
             }
             Ok(mismatches) => {
-                ended = Ended::Bad;
+                ended = ended.max(Ended::Bad);
                 let untrue = !mismatches.is_empty() || leaves.as_ref().is_err_and(CheckError::is_refuted);
                 terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
                 for mismatch in mismatches {
@@ -89,7 +100,7 @@ pub fn run(options: &Verify) -> Ended {
             }
             Err(e) => {
                 terminal::complain(&format!("{shown}: the recorded problem is none: {e}"));
-                return Ended::Refused;
+                ended = ended.max(Ended::Refused);
             }
         }
     }

@@ -61,7 +61,7 @@ fn pins(model: &Model<'_>) -> (usize, bool) {
 
 /// The list as text.
 pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
-    let mut out = format!("Cut list: {}\n\n", model.heading());
+    let mut out = format!("Cut list: {}\n{}\n\n", model.heading(), crate::generator::mark());
     let thickness = number(model.thickness);
     out.push_str(&format!(
         "material {thickness} mm thick, holes {} mm in diameter, {} mm from a hole's edge to the plate's\n\n",

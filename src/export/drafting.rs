@@ -2,6 +2,7 @@
 
 use super::dxf::Drawing;
 use super::model::Model;
+use crate::generator::mark;
 use crate::linkage::{Complex, Joints};
 use crate::plates::{Link, Placement, Plate};
 use crate::report::text::exact;
@@ -29,7 +30,7 @@ pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
     if model.target.len() > 1 {
         drawing.polyline("TARGET", &straight(&model.target), model.subject.closed);
     }
-    drawing.document(&[model.heading()])
+    drawing.document(&[mark(), model.heading()])
 }
 
 fn straight(points: &[Complex]) -> Vec<(Complex, f64)> {
@@ -62,6 +63,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         }
     }
     drawing.document(&[
+        mark(),
         model.heading(),
         format!(
             "holes {} mm, margin {} mm, paths moved outward by half a kerf of {} mm",

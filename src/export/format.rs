@@ -1,5 +1,7 @@
 //! The formats, and which settings each takes.
 
+use crate::generator::FileKind;
+
 /// A format of an exported file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
@@ -91,6 +93,24 @@ impl Format {
             #[cfg(feature = "images")]
             Format::Png | Format::Gif => false,
             _ => true,
+        }
+    }
+
+    /// The kind of its files.
+    pub fn kind(self) -> FileKind {
+        match self {
+            Format::Svg | Format::SvgPlates => FileKind::Svg,
+            Format::Dxf | Format::DxfPlates => FileKind::Dxf,
+            Format::Stl => FileKind::Stl,
+            Format::Scad => FileKind::Scad,
+            Format::Csv | Format::CutListCsv => FileKind::Csv,
+            Format::Toml => FileKind::Linkage,
+            Format::Json => FileKind::LinkageJson,
+            Format::CutList => FileKind::CutList,
+            #[cfg(feature = "images")]
+            Format::Png => FileKind::Png,
+            #[cfg(feature = "images")]
+            Format::Gif => FileKind::Gif,
         }
     }
 

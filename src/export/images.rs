@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::settings::{Refusal, Settings};
+use crate::generator;
 use crate::linkage::{Complex, CouplerCurve, Joints};
 use std::f64::consts::TAU;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
@@ -32,7 +33,35 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     let sheet = Sheet::around(model, &[joints], settings.size_px.unwrap_or(STILL_PX));
     let mut picture = sheet.background(model)?;
     sheet.linkage(&mut picture, model, &joints);
-    picture.encode_png().map_err(|e| failed(&e.to_string()))
+    let bytes = picture.encode_png().map_err(|e| failed(&e.to_string()))?;
+    Ok(with_software(bytes))
+}
+
+/// A PNG with its generator in a chunk `tEXt`, "Software" (PNG 1.2, 4.2.3), behind the header `IHDR`.
+fn with_software(mut png: Vec<u8>) -> Vec<u8> {
+    /// Signature (8 bytes) and header: length, type, 13 bytes, check sum.
+    const HEADER: usize = 8 + 4 + 4 + 13 + 4;
+    let mut typed = b"tEXt".to_vec();
+    typed.extend(format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION")).bytes());
+    // A version is a few bytes long.
+    let length = (typed.len() - 4) as u32;
+    let mut chunk = length.to_be_bytes().to_vec();
+    chunk.extend(&typed);
+    chunk.extend(crc32(&typed).to_be_bytes());
+    if png.len() >= HEADER {
+        png.splice(HEADER..HEADER, chunk);
+    }
+    png
+}
+
+/// The check sum of ISO 3309, as PNG has it (annex D of its specification).
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(
+            crc ^ u32::from(*byte),
+            |crc, _| if crc & 1 == 1 { 0xedb8_8320 ^ (crc >> 1) } else { crc >> 1 },
+        )
+    })
 }
 
 /// A turn of the motion, endlessly.
@@ -58,6 +87,9 @@ pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     let mut encoder =
         gif::Encoder::new(&mut bytes, width, height, &flat).map_err(|e| failed(&e.to_string()))?;
     encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e.to_string()))?;
+    let comment: gif::AnyExtension = gif::Extension::Comment.into();
+    let marked = encoder.write_raw_extension(comment, &[generator::mark().as_bytes()]);
+    marked.map_err(|e| failed(&e.to_string()))?;
     let mut nearest = Nearest::new(palette);
     for joints in &poses {
         let mut picture = background.clone();
@@ -222,5 +254,17 @@ impl Nearest {
             let best = palette.iter().enumerate().min_by_key(|(_, other)| distance(other));
             best.map_or(0, |(i, _)| i as u8)
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::crc32;
+
+    #[test]
+    fn the_check_sum_is_that_of_the_standard() {
+        assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+        // The end of every PNG.
+        assert_eq!(crc32(b"IEND"), 0xae42_6082);
     }
 }

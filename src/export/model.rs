@@ -143,7 +143,15 @@ impl<'a> Model<'a> {
                     settings,
                     "crank_deg",
                     format!("the links cannot be joined at a crank angle of {} degrees", exact(angle)),
-                    "choose another crank_deg, or leave it out",
+                    match self.start() {
+                        Ok(((other, _), _)) => {
+                            let other = brief(other.to_degrees(), 4);
+                            format!("choose another crank_deg, such as {other}, or leave it out")
+                        }
+                        Err(_) => {
+                            "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned()
+                        }
+                    },
                 )
             });
         }

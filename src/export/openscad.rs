@@ -2,6 +2,7 @@
 
 use super::model::Model;
 use super::settings::{Refusal, Settings};
+use crate::generator::mark;
 use crate::report::text::exact;
 
 /// The script. Foreign text stands in a comment on one line, cleaned of everything that would end it.
@@ -35,8 +36,7 @@ pub(super) fn script(model: &Model<'_>, settings: &Settings) -> Result<String, R
         ("Py", offset.im, "P across C -> D, left positive"),
         ("chord", model.chord, "how far an arc may lie from its polygon"),
     ];
-    let mut out =
-        format!("// {}\n// written by linkwright; every number is a parameter\n\n", model.heading());
+    let mut out = format!("// {}\n// {}; every number is a parameter\n\n", model.heading(), mark());
     out.push_str("view = \"plates\"; // [plates, assembly]\n");
     for (name, value, about) in numbers {
         let about = if about.is_empty() { String::new() } else { format!(" // {about}") };

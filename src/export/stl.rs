@@ -1,8 +1,10 @@
-//! STL as text: one solid a plate, laid out side by side on z = 0, in millimetres.
+//! STL as text: one solid a plate, laid out side by side on z = 0, in millimetres. A text STL has no comments: the mark
+//! of the generator stands behind the first solid's name.
 
 use super::mesh::Mesh;
 use super::model::Model;
 use super::settings::Refusal;
+use crate::generator::mark;
 use crate::plates::{Placement, Plate};
 use std::fmt::Write;
 
@@ -17,7 +19,8 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
                 "choose a smaller hole_mm, or a larger margin_mm or chord_mm",
             )
         })?;
-        let _ = writeln!(out, "solid {name}");
+        let mark = if out.is_empty() { format!(" {}", mark()) } else { String::new() };
+        let _ = writeln!(out, "solid {name}{mark}");
         for triangle in &mesh.triangles {
             let _ = writeln!(out, "facet normal {}", numbers(mesh.normal(*triangle).map(|x| x as f32)));
             out.push_str("outer loop\n");
@@ -26,7 +29,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
             }
             out.push_str("endloop\nendfacet\n");
         }
-        let _ = writeln!(out, "endsolid {name}");
+        let _ = writeln!(out, "endsolid {name}{mark}");
     }
     Ok(out)
 }

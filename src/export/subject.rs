@@ -65,9 +65,6 @@ impl Subject {
 
     /// The name as a linkage file may have it.
     pub fn legal_name(&self) -> String {
-        match name::check(&self.name) {
-            Ok(()) => self.name.clone(),
-            Err(_) => name::from_file(&self.name, "linkage"),
-        }
+        name::legal(&self.name, "linkage")
     }
 }

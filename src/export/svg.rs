@@ -93,10 +93,11 @@ impl Page {
             concat!(
                 r#"<svg xmlns="http://www.w3.org/2000/svg" version="1.1" "#,
                 r#"width="{w}mm" height="{h}mm" viewBox="0 0 {w} {h}">"#,
-                "\n<title>{t}</title>\n<desc>{d}</desc>\n{b}</svg>\n"
+                "\n<!-- {m} -->\n<title>{t}</title>\n<desc>{d}</desc>\n{b}</svg>\n"
             ),
             w = width,
             h = height,
+            m = crate::generator::mark(),
             t = xml(title),
             d = xml(description),
             b = self.body

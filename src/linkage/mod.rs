@@ -78,8 +78,11 @@ pub fn turned(z: Complex) -> Complex {
 macro_rules! sign_type {
     ($(#[$doc:meta])* $name:ident, $plus:literal, $minus:literal) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+        )]
         #[serde(try_from = "i64", into = "i64")]
+        #[schemars(extend("enum" = [1, -1]))]
         pub enum $name {
             #[doc = $plus]
             Plus,
@@ -207,7 +210,7 @@ pub const FLAT_TOLERANCE: f64 = 1e-12;
 /// assert!(((joints.follower_pin - joints.crank_pin).norm() - 5.0).abs() < 1e-14);
 /// # Ok::<(), linkwright::linkage::LinkageError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "NaturalCoordinates", into = "NaturalCoordinates")]
 pub struct FourBar {
     parameters: NaturalCoordinates,

@@ -28,7 +28,7 @@ impl Limits {
 }
 
 /// A problem with every default filled in.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ProblemSpec {
     /// What is wanted.
     pub task: TaskSpec,
@@ -62,14 +62,14 @@ impl ProblemSpec {
 }
 
 /// The task; a path is the only kind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TaskSpec {
     /// A path to trace.
     pub path: PathSpec,
 }
 
 /// A path: points and what stands beside them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathSpec {
     /// The target points.
     pub points: Vec<[f64; 2]>,
@@ -148,7 +148,7 @@ impl PathSpec {
 }
 
 /// Where the parameters may lie. A key that is absent does not bind.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DesignSpec {
     /// The crank's pivot.
     #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
@@ -272,7 +272,7 @@ pub enum DirectionPolicy {
 }
 
 /// What an acceptable linkage satisfies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireSpec {
     /// The types allowed; empty: any.
     #[serde(rename = "type")]
@@ -398,7 +398,7 @@ fn is_advised(advice: &bool) -> bool {
 }
 
 /// How to search and when to stop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolveSpec {
     /// The method.
     pub method: Method,
@@ -455,7 +455,7 @@ impl Default for SolveSpec {
 }
 
 /// How a certificate is worked out ([`crate::certificate`]).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CertifySpec {
     /// The gap between the best candidate and the proved bound at which it ends, relative, in (0, 1).
     pub gap: f64,

@@ -15,6 +15,8 @@ pub(super) struct Whereabouts<'a> {
     pub folder: Option<&'a Path>,
     /// Whether the file was named on the command line, so that it may lie anywhere.
     pub anywhere: bool,
+    /// Points files that are not on the disk, by the names under which a problem asks for them.
+    pub beside: &'a [(&'a str, &'a str)],
 }
 
 /// What gave the points.
@@ -80,7 +82,10 @@ impl Target {
             }
             (points.iter().map(|p| p.numbers()).collect(), Source::File)
         } else if let Some(file) = &path.file {
-            let mut csv = points_file::load(&whereabouts.find(toml, "file", file)?)?;
+            let mut csv = match whereabouts.beside.iter().find(|(name, _)| name == file) {
+                Some((name, text)) => points_file::parse(name, text)?,
+                None => points_file::load(&whereabouts.find(toml, "file", file)?)?,
+            };
             (std::mem::take(&mut csv.points), Source::Csv(csv))
         } else if let Some(file) = &path.svg {
             let options = SvgOptions {

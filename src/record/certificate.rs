@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// A lower bound of the sum of squares with what it covers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certificate {
     /// What is proved, in one sentence.
     pub statement: String,
@@ -65,7 +65,7 @@ impl Certificate {
 }
 
 /// One class in one direction of the crank.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct CertificatePart {
     /// crank-rocker or double-crank.
     #[serde(rename = "type")]

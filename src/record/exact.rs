@@ -12,7 +12,7 @@ pub const GENERIC_CLASSES: usize = 1442;
 /// A class is one coupler curve through the points: three cognates with two labels of their links. That each linkage
 /// marked as certified exists is proved; that no others do is not: that rests on the published count of
 /// [`GENERIC_CLASSES`] for points in general position.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactRecord {
     /// How the solutions are counted.
     pub census: Census,
@@ -25,7 +25,7 @@ pub struct ExactRecord {
 }
 
 /// What may be said of the list of classes as a whole. None of it is proved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Completeness {
     /// As many as points in general position have: all, by the published count.
@@ -43,7 +43,7 @@ pub enum Completeness {
 /// - tracked = finite + singular + failed, finite = classes + duplicate,
 /// - classes = real + real_curve + complex = certified + not_certified,
 /// - real = degenerate + how many linkages are listed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Census {
     /// Solution paths that were followed.
     pub tracked: usize,
@@ -82,7 +82,7 @@ pub struct Census {
 }
 
 /// A real class.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactLinkage {
     /// Its rank among the candidates, 0 where it is none of them.
     pub rank: usize,
@@ -122,7 +122,7 @@ pub struct ExactLinkage {
 }
 
 /// Another mechanism of a class.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExactForm {
     /// The linkage, assembled as at the first point.
     pub linkage: FourBar,
@@ -134,7 +134,7 @@ pub struct ExactForm {
 }
 
 /// A proof that a linkage through the points exists.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Certified {
     /// One, and only one, real linkage whose coupler point passes exactly through all nine points has its fixed pivots
     /// and, at the first point, its pins within this distance of those recorded. In the file's unit.

@@ -4,7 +4,9 @@ use crate::linkage::{AssemblyMode, FourBar, LinkageType};
 use serde::{Deserialize, Serialize};
 
 /// Why a linkage that meets every requirement may still be a poor one to build.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, schemars::JsonSchema,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum WarningKind {
     /// The worst transmission angle is below 10 degrees.
@@ -33,7 +35,7 @@ impl WarningKind {
 pub const ON_BOUND_TEXT: &str = " is on its limit: the problem's bounds decide it";
 
 /// One reason to look twice before building a candidate.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Warning {
     /// Which.
     pub kind: WarningKind,
@@ -48,7 +50,7 @@ pub struct Warning {
 }
 
 /// A Roberts cognate of a candidate: another linkage whose coupler point draws the same curve.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Alternative {
     /// The linkage.
     pub linkage: FourBar,
@@ -73,7 +75,7 @@ pub struct Alternative {
 }
 
 /// The best answer is one of a whole family of exact answers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Family {
     /// How many parameters can be chosen with all points still met: the free unknowns less the rank of the
     /// points' derivatives at the best answer. Limits that are not equations are not counted.

@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 const MISSED: f64 = 0.05;
 
 /// How often the best answer came back from independent starts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Repeats {
     /// Independent starts.
     pub starts: u64,

@@ -245,12 +245,13 @@ impl Canvas {
             concat!(
                 r#"<svg xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" viewBox="0 0 {w} {h}" "#,
                 r#"role="img" font-family="Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif">"#,
-                "\n<title>{title}</title>\n<desc>{description}</desc>\n",
+                "\n<!-- {mark} -->\n<title>{title}</title>\n<desc>{description}</desc>\n",
                 r#"<rect width="{w}" height="{h}" fill="{paper}"/>"#,
                 "\n{body}</svg>\n"
             ),
             w = px(width),
             h = px(height),
+            mark = crate::generator::mark(),
             title = xml(title),
             description = xml(description),
             paper = palette::PAPER,

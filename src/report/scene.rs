@@ -2,7 +2,7 @@
 
 use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
 use crate::record::{Candidate, Record};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Samples of a circuit for a drawing: half a degree of the crank, far below a pixel.
 pub(super) const SAMPLES: usize = 720;
@@ -111,10 +111,17 @@ pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
     first.unwrap_or_else(|| middle_position(&candidate.linkage))
 }
 
-/// A position in the middle of what the input of a linkage can reach.
+/// A position in the middle of what the input of a linkage can reach; where the loop does not determine the follower
+/// there (C on B, as a rhombus has it at one crank angle), the nearest of others at which it can be joined.
 pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
+    /// Parts of a half turn, or of half the arc, away from the middle.
+    const ASIDE: [f64; 9] = [0.0, 1.0 / 3.0, -1.0 / 3.0, 0.5, -0.5, 2.0 / 3.0, -2.0 / 3.0, 0.1, -0.1];
     let arc = linkage.mobility().arc(crate::linkage::Circuit { index: 0 });
-    (arc.map_or(0.0, |arc| arc.middle), linkage.assembly())
+    let (middle, half) = arc.map_or((0.0, PI), |arc| (arc.middle, arc.half_width));
+    let assembly = linkage.assembly();
+    let angles = ASIDE.map(|part| middle + part * half);
+    let joined = angles.into_iter().find(|angle| linkage.position_with(*angle, assembly).joints().is_some());
+    (joined.unwrap_or(middle), assembly)
 }
 
 /// The joints along every circuit on which a point is reached, `samples` positions each.

@@ -82,8 +82,10 @@ pub(super) fn put(folder: &Path, kept: &[&str], names: Wait) -> Result<(), Failu
 
 /// Throws away what was written and is not whole.
 fn forget(folder: &Path) {
-    // What cannot be taken away here is taken away by the next run.
-    let _ = disk::remove_folder(&folder.join(NEW));
+    if not_of_ours(folder, NEW).is_none() {
+        // What cannot be taken away here is taken away by the next run.
+        let _ = disk::remove_folder(&folder.join(NEW));
+    }
 }
 
 /// Brings a replacement that was broken off to its end and throws temporary files away.
@@ -98,6 +100,12 @@ pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
 /// Brings a replacement that is whole to its end.
 fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
     let (whole, moving) = (folder.join(WHOLE), folder.join(MOVING));
+    for name in [WHOLE, MOVING] {
+        if let Some(foreign) = not_of_ours(folder, name) {
+            let why = format!("{foreign} is not of linkwright's");
+            return Err((folder.join(name), io::Error::new(io::ErrorKind::AlreadyExists, why)));
+        }
+    }
     if is_folder(&whole) {
         let new = names(&whole)?;
         let stays =
@@ -135,6 +143,34 @@ fn is_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
+/// Whether a name is that of a folder of a replacement.
+pub(super) fn is_staging(name: &str) -> bool {
+    [NEW, WHOLE, MOVING].contains(&name)
+}
+
+/// The part of a folder's entry `name` that no run writes under this name, if there is one: a run writes files, no
+/// folders and no links, and its staging folders hold such files alone.
+pub(super) fn not_of_ours(folder: &Path, name: &str) -> Option<String> {
+    let path = folder.join(name);
+    // An entry that has vanished since is a neighbour's.
+    let Ok(found) = fs::symlink_metadata(&path) else { return None };
+    if is_staging(name) && found.is_dir() {
+        let inside = names(&path).unwrap_or_default();
+        let foreign = inside.iter().find(|inner| !is_ours(inner) || !is_file(&path.join(inner)));
+        return foreign.map(|inner| format!("{name}/{inner}"));
+    }
+    // A link in the place of a staging folder is taken away and not followed.
+    if found.is_file() || (is_staging(name) && found.is_symlink()) {
+        return None;
+    }
+    Some(if found.is_dir() { format!("a folder {name}") } else { format!("{name}, which is no file") })
+}
+
+/// Whether there is a file of this name; a link to one is none.
+fn is_file(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
+}
+
 /// The names in a folder, sorted.
 pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     let listed = fs::read_dir(folder).and_then(|entries| {
@@ -149,6 +185,10 @@ pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
 fn take_away(folder: &Path, stays: impl Fn(&str) -> bool) -> Result<(), Failure> {
     for name in names(folder)?.iter().filter(|name| is_ours(name) && !stays(name)) {
         let path = folder.join(name);
+        // Put there after the folder was looked at: it stays, and where it is in the way of a new file that is told.
+        if not_of_ours(folder, name).is_some() {
+            continue;
+        }
         let removed = if is_folder(&path) { disk::remove_folder(&path) } else { disk::remove_file(&path) };
         removed.map_err(about(&path))?;
     }

@@ -2,6 +2,7 @@
 
 use super::disk::faults;
 use super::*;
+use crate::generator::FileKind;
 use std::collections::BTreeMap;
 
 type Files = Vec<(String, Vec<u8>)>;
@@ -15,8 +16,16 @@ fn record(name: &str) -> Vec<u8> {
     serde_json::to_vec_pretty(&record).expect("it is data")
 }
 
+/// A file as a run writes it, with `text` somewhere in it.
 fn file(name: &str, text: &str) -> (String, Vec<u8>) {
-    (name.into(), text.as_bytes().to_vec())
+    let mark = crate::generator::mark();
+    let content = match name.rsplit_once('.').map(|(_, ending)| ending) {
+        Some("json") => format!("{{\"total_s\": 1, \"text\": \"{text}\"}}"),
+        Some("toml") => format!("# A four-bar linkage, {mark}.\n# {text}\n[linkage]\n"),
+        Some("svg") => format!("<svg>\n<!-- {mark} -->\n{text}</svg>\n"),
+        _ => format!("rank,accepted,text\n1,true,{text}\n"),
+    };
+    (name.into(), content.into_bytes())
 }
 
 fn old() -> Files {
@@ -307,6 +316,16 @@ fn a_folder_that_vanished_is_made_anew() {
     assert!(hidden(&path).is_empty());
 }
 
+/// Writes a table over whatever is there.
+fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
+    write_files(&[OutputFile { path, kind: FileKind::Csv, bytes }], Replace::Anything)
+}
+
+/// Writes a table that is not there yet.
+fn create_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
+    write_files(&[OutputFile { path, kind: FileKind::Csv, bytes }], Replace::Nothing)
+}
+
 #[test]
 fn a_file_is_written_as_a_whole_or_stays_what_it_was() {
     let place = tempfile::tempdir().expect("a folder");
@@ -325,12 +344,18 @@ fn a_file_is_written_as_a_whole_or_stays_what_it_was() {
     write_file(&path, b"second").expect_err("a step failed");
     faults::fail(0..0);
     assert_eq!(fs::read(&path).expect("it is there"), b"first");
-    let FolderError::Io { source, .. } = create_file(&path, b"second").expect_err("it is there") else {
-        panic!("of the disk")
-    };
-    assert_eq!(source.kind(), io::ErrorKind::AlreadyExists);
+    let error = create_file(&path, b"second").expect_err("it is there");
+    assert!(matches!(error, FolderError::Exists { .. }), "{error}");
+    assert_eq!(fs::read(&path).expect("it is there"), b"first");
     write_file(&path, b"second").expect("there is room");
     assert_eq!(fs::read(&path).expect("it is there"), b"second");
+    // Of several files all are written or none.
+    let [one, other] = ["one.csv", "other.csv"].map(|name| place.path().join(name));
+    let both = [&one, &other].map(|path| OutputFile { path, kind: FileKind::Csv, bytes: b"new" });
+    faults::fail(1..2);
+    write_files(&both, Replace::Nothing).expect_err("the second cannot be written");
+    faults::fail(0..0);
+    assert!(!one.exists() && !other.exists());
     let rescued = rescue(&new()).expect("there is room");
     assert_eq!(shown(&rescued), as_shown(&new()));
     fs::remove_dir_all(rescued).expect("it is ours");
@@ -354,4 +379,103 @@ fn links_are_followed_by_files_that_a_person_named_and_by_no_replacement() {
     write_file(&link, b"after").expect("there is room");
     assert_eq!(fs::read(elsewhere.join("real.csv")).expect("it is there"), b"after");
     assert!(fs::symlink_metadata(&link).expect("it is there").is_symlink());
+}
+
+#[test]
+fn entries_that_no_run_writes_under_a_name_are_refused_and_stay() {
+    let folders = [
+        "candidate-9.svg",
+        "curve-3.csv",
+        "linkage-buildable.toml",
+        "record.json",
+        "report.html",
+        "checkpoint.json",
+        "certificate.leaves",
+        "certificate.checkpoint",
+        ".lock",
+        ".linkwright-mine",
+        ".linkwright-ab12cd",
+        ".linkwright-new",
+        ".linkwright-whole",
+        ".linkwright-moving",
+    ];
+    for name in folders {
+        for holds_old in [false, true] {
+            let place = place(holds_old);
+            let path = place.path().join("r");
+            let kept = path.join(name).join("kept.txt");
+            let _ = fs::remove_file(path.join(name));
+            fs::create_dir_all(kept.parent().expect("it has one")).expect("there is room");
+            fs::write(&kept, "a user's").expect("there is room");
+            let error = run(&path).expect_err("it is not ours");
+            let FolderError::Foreign { foreign, .. } = &error else { panic!("{name}: {error}") };
+            assert!(foreign.contains(name), "{foreign}");
+            assert_eq!(fs::read(&kept).expect("it is there"), b"a user's", "{name}");
+        }
+    }
+    for name in
+        ["candidate-09.svg", "curve-0.csv", "linkage-99999999999.toml", ".linkwright-notes", "candidate-.svg"]
+    {
+        let place = place(true);
+        let path = place.path().join("r");
+        fs::write(path.join(name), "a user's").expect("there is room");
+        assert!(matches!(run(&path), Err(FolderError::Foreign { .. })), "{name}");
+    }
+}
+
+#[test]
+fn a_folder_that_comes_while_a_search_runs_stays_whatever_its_name() {
+    for name in ["candidate-9.svg", "candidates.csv", ".linkwright-new", ".linkwright-whole"] {
+        let place = place(true);
+        let path = place.path().join("r");
+        let mut folder = ResultsFolder::take(&path).expect("it is free");
+        let kept = path.join(name).join("kept.txt");
+        let _ = fs::remove_file(path.join(name));
+        fs::create_dir(path.join(name)).expect("there is room");
+        fs::write(&kept, "a user's").expect("there is room");
+        let replaced = folder.replace(&new());
+        assert_eq!(replaced.is_ok(), name == "candidate-9.svg", "{name}: {replaced:?}");
+        assert_eq!(fs::read(&kept).expect("it is there"), b"a user's", "{name}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_link_among_the_files_of_a_result_is_foreign() {
+    let place = place(true);
+    let path = place.path().join("r");
+    fs::write(place.path().join("mine.svg"), "a user's").expect("there is room");
+    std::os::unix::fs::symlink("../mine.svg", path.join("candidate-3.svg")).expect("a link");
+    let error = run(&path).expect_err("a run writes no links");
+    assert!(error.to_string().contains("candidate-3.svg"), "{error}");
+    assert!(fs::symlink_metadata(path.join("candidate-3.svg")).is_ok());
+}
+
+#[test]
+fn a_file_of_a_user_under_the_name_of_a_results_file_is_refused_and_stays() {
+    let names = [
+        "candidates.csv",
+        "timing.json",
+        "report.html",
+        "contact-sheet.svg",
+        "exact.svg",
+        "candidate-7.svg",
+        "linkage-7.toml",
+        "curve-buildable.csv",
+    ];
+    for name in names {
+        let place = place(true);
+        let path = place.path().join("r");
+        for text in
+            ["my notes\n", "<svg><!-- drawn by hand --></svg>", "{\"total\": 3}", "x,y\n1,2\n", "a = 1\n"]
+        {
+            fs::write(path.join(name), text).expect("there is room");
+            let error = run(&path).expect_err("it is a user's");
+            assert!(error.to_string().contains(name), "{error}");
+            assert_eq!(fs::read_to_string(path.join(name)).expect("it is there"), text);
+        }
+        // An empty one holds nothing that could be lost.
+        fs::write(path.join(name), "").expect("there is room");
+        run(&path).expect("it is free");
+    }
 }

@@ -7,6 +7,53 @@ use std::fmt::Write;
 /// The order of the tables at the top of a problem file; others follow by name.
 const ORDER: [&str; 6] = ["task", "design", "require", "solve", "certify", "expect"];
 
+/// The beginning of the page of linkage files: a whole file of each kind.
+const LINKAGE_EXAMPLES: &str = r#"
+`linkwright check FILE` reads such a file and says what is wrong with it; `analyze`, `cognates`, `build`, `snap`,
+`export` and `compare --target PROBLEM` take it as their LINKAGE or RESULT, and every result holds its candidates as
+such files (`linkage-1.toml`, ..). A file holds exactly one of `[linkage]`, `[vector_loop]` and `[chain]`.
+
+A four-bar: crank A-C, coupler C-D with the coupler point P, follower B-D.
+
+```toml
+format = 1
+name = "four-bar"
+unit = "mm"
+
+[linkage]
+A = [0.0, 0.0]
+B = [4.0, 1.0]
+a = 2.0
+b = 5.0
+c = 5.0
+d = 5.0
+e = 5.0
+t1 = 1
+t2 = -1
+```
+
+The same kind of linkage as textbooks write it, a vector loop with a polar coupler point:
+
+```toml
+format = 1
+name = "vector-loop"
+
+[vector_loop]
+O1 = [0.0, 0.0]
+O2 = [-350.0, 0.0]
+L2 = 700.0
+L3 = 300.0
+L4 = 500.0
+Z1 = 200.0
+beta_deg = 30.0
+t1 = 1
+```
+
+A file that linkwright wrote says so in its first line, "written by linkwright", whatever is edited below it: such a
+file may be replaced by a command that writes a linkage file under the same name. Without that line, and where it is the
+command's own input, it is replaced with `--force` alone.
+"#;
+
 /// The reference of a kind of file as a page of Markdown: every table with its keys, what each may be, its default and
 /// its meaning.
 ///
@@ -18,13 +65,21 @@ pub fn reference(kind: SchemaKind) -> String {
     let schema = schema(kind);
     let mut page = Page { schema: &schema, text: String::new() };
     let name = kind.name();
+    let read = "Unknown keys are refused. All numbers are finite and below 1e12 in magnitude.";
+    let (title, rules) = match kind {
+        SchemaKind::Problem => ("problem file", read),
+        SchemaKind::Linkage => ("linkage file", read),
+        SchemaKind::Record => {
+            ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
+        }
+    };
     // A string takes whatever is written to it: the results of `write!` below cannot be errors.
     let _ = write!(
         page.text,
-        "# The {name} file\n\n\
-         This page is made from the program's own schema: `linkwright schema {name} --markdown` prints it. Unknown keys \
-         are refused. All numbers are finite and below 1e12 in magnitude; angles are in degrees, lengths in the file's \
-         unit.\n"
+        "# The {title}\n\n\
+         This page is made from the program's own schema: `linkwright schema {name} --markdown` prints it. {rules} \
+         Angles are in degrees, lengths in the file's unit.\n{examples}",
+        examples = if kind == SchemaKind::Linkage { LINKAGE_EXAMPLES } else { "" },
     );
     page.table("", &schema);
     page.text

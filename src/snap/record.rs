@@ -52,7 +52,7 @@ pub fn record(
             asked: spec.solve.method,
             used: vec![format!("snap {} to {}", keys.join(", "), request.stock.words())],
         },
-        termination: Termination { reason: Reason::Snapped, reproducible: Reason::Snapped.is_repeatable() },
+        termination: Termination { reason: snapped.reason, reproducible: snapped.reason.is_repeatable() },
         evaluations: snapped.evaluations,
         family: candidates.first().and_then(|best| family(problem, best)),
         buildable: None,

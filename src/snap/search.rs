@@ -6,7 +6,7 @@ use crate::practicality::crank_of;
 use crate::practicality::sensitivity::{At, sensitivity};
 use crate::problem::Problem;
 use crate::problem::spec::Limits;
-use crate::record::{Candidate, Evaluations};
+use crate::record::{Candidate, Evaluations, Reason};
 use crate::search::Budget;
 use crate::search::rank::compare;
 use rayon::prelude::*;
@@ -77,6 +77,8 @@ pub struct Snapped {
     pub fits: u64,
     /// What they cost.
     pub evaluations: Evaluations,
+    /// Why it ended: [`Reason::Snapped`] where nothing near is better, else the one that stopped it.
+    pub reason: Reason,
 }
 
 /// Evaluations of a fit while choices are compared, and of the last ones, at most.
@@ -101,7 +103,8 @@ struct Search<'a> {
 
 /// Brings lengths of a candidate to stock sizes and fits the rest again.
 ///
-/// The candidate is one of the problem, judged by it. The same input gives the same answer on any number of threads.
+/// The candidate is one of the problem, judged by it. A budget that stops it brings the best complete choice so far: at
+/// least every length at its nearest stock size, where that can be assembled. Unstopped, the same input gives the same answer on any number of threads.
 ///
 /// # Errors
 /// [`SnapError`].
@@ -134,6 +137,11 @@ pub fn snap(
     let at_once = search.fitted(vec![(plain, candidate)], THOROUGH);
     let mut beam = vec![root];
     for &length in &lengths {
+        if budget.stopped() {
+            // Choices of some of the lengths are no answer; every length at its nearest stock size is one.
+            beam.clear();
+            break;
+        }
         let choices = beam
             .iter()
             .flat_map(|choice| {
@@ -144,9 +152,6 @@ pub fn snap(
         let mut next = search.fitted(choices, QUICK);
         next.truncate(BEAM);
         beam = next;
-    }
-    if budget.stopped() {
-        return Err(SnapError::Interrupted);
     }
     let nearest = at_once.first().map(|choice| choice.candidate.clone());
     let mut tried: BTreeSet<Vec<u64>> = beam.iter().chain(&at_once).map(|c| bits(&c.fixed)).collect();
@@ -173,7 +178,8 @@ pub fn snap(
         search.sort(&mut all);
     }
     // The best once more from where they are, with all the patience that a result deserves.
-    let leaders: Vec<Choice> = all.iter().take(request.wanted.max(1) + SPARE).cloned().collect();
+    let leaders = if budget.stopped() { 0 } else { request.wanted.max(1) + SPARE };
+    let leaders: Vec<Choice> = all.iter().take(leaders).cloned().collect();
     let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
     all.extend(search.fitted(again, THOROUGH));
     search.sort(&mut all);
@@ -191,6 +197,7 @@ pub fn snap(
     if candidates.is_empty() {
         return Err(if budget.stopped() { SnapError::Interrupted } else { SnapError::NoneFits });
     }
+    let reason = budget.stop_reason().unwrap_or(Reason::Snapped);
     let positions = search.evaluations * problem.task().len() as u64;
     Ok(Snapped {
         lengths,
@@ -198,6 +205,7 @@ pub fn snap(
         nearest,
         fits: search.fits,
         evaluations: Evaluations { objective: search.evaluations, positions },
+        reason,
     })
 }
 

@@ -26,7 +26,7 @@ pub const ORDER_TOLERANCE: f64 = 1e-9;
 const CLOSURE_SAMPLES: usize = 24;
 
 /// What can be wrong with a motion through the points, and at which points (counted from 0).
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Defect {
     /// The points are not passed in their order.

@@ -330,10 +330,15 @@ fn the_page_and_its_data_are_written_together_and_nothing_else() {
     }
     let e5 = page.find("\n| e5 |").expect("a row");
     assert!(e5 < page.find("\n| e5-free |").expect("a row"), "by name");
-    fs::write(results.join("literature.md"), "old").expect("written");
+    fs::write(results.join("literature.md"), format!("{page}old")).expect("written");
     fs::write(results.join("mine.txt"), "kept").expect("written");
     assert_eq!(run().0, Some(0));
-    assert!(read("literature.md").starts_with("# "), "replaced");
+    assert!(!read("literature.md").ends_with("old"), "replaced");
+    fs::write(results.join("literature.md"), "my own notes").expect("written");
+    let (code, _, stderr) = run();
+    assert_eq!(code, Some(2));
+    assert!(stderr.contains("literature.md") && stderr.contains("--force"), "{stderr}");
+    assert_eq!(read("literature.md"), "my own notes");
     assert_eq!(names(), ["literature.json", "literature.md", "mine.txt"]);
 }
 

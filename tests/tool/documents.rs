@@ -303,16 +303,32 @@ fn every_link_between_the_pages_leads_somewhere() {
             assert!(target.exists(), "{}: {link}", place.display());
             if !anchor.is_empty() {
                 let page = fs::read_to_string(&target).expect("a page");
-                let heading = |line: &str| -> String {
-                    let words = line.trim_start_matches('#').trim().to_lowercase();
-                    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
-                    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
-                };
-                let there = page.lines().any(|line| line.starts_with('#') && heading(line) == anchor);
+                let there = page.lines().any(|line| line.starts_with('#') && anchor_of(line) == anchor);
                 assert!(there, "{}: no heading for {link}", place.display());
             }
         }
     }
+}
+
+#[test]
+fn no_two_headings_of_a_page_have_one_anchor() {
+    for place in documents() {
+        let text = fs::read_to_string(&place).expect("it can be read");
+        let (mut seen, mut in_code) = (BTreeSet::new(), false);
+        for line in text.lines() {
+            in_code ^= line.starts_with("```");
+            if !in_code && line.starts_with('#') {
+                assert!(seen.insert(anchor_of(line)), "{}: {line} is there twice", place.display());
+            }
+        }
+    }
+}
+
+/// The anchor of a heading, as the usual sites of repositories make it.
+fn anchor_of(line: &str) -> String {
+    let words = line.trim_start_matches('#').trim().to_lowercase();
+    let kept = words.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
 #[test]

@@ -322,7 +322,7 @@ fn solids(stl: &str) -> Vec<Solid> {
     for line in stl.lines() {
         let words: Vec<&str> = line.split_whitespace().collect();
         match words[..] {
-            ["solid", name] => found.push((name.to_owned(), Vec::new())),
+            ["solid", name, ..] => found.push((name.to_owned(), Vec::new())),
             ["vertex", x, y, z] => corners.push([x.to_owned(), y.to_owned(), z.to_owned()]),
             ["endfacet"] => {
                 let triangle: [[String; 3]; 3] =
@@ -602,6 +602,8 @@ fn a_record_alone_is_enough() {
     for format in Format::ALL {
         let name = format.name();
         let export = |of: &str, to: &str| {
+            // A file of another format stays.
+            let to = &format!("{to}.{name}");
             let (code, _, err) = program(folder.path(), &["export", of, "--format", name, "--out", to]);
             assert_eq!(code, 0, "{name} {err}");
             std::fs::read(folder.path().join(to)).expect("a file")

@@ -8,6 +8,7 @@ mod batches;
 mod building;
 mod certifying;
 mod command_line;
+mod command_line_faults;
 #[path = "../common/mod.rs"]
 mod common;
 mod compare;
@@ -18,11 +19,13 @@ mod exports;
 mod faults;
 mod long_runs;
 mod numbers_document;
+mod overwriting;
 mod player_golden;
 mod problem_file_document;
 mod proving;
 #[path = "../common/random.rs"]
 mod random;
+mod record_schema;
 #[path = "../reference/mod.rs"]
 mod reference;
 mod remedies;

@@ -1,4 +1,5 @@
-//! `docs/problem-file.md` is what `linkwright schema problem --markdown` prints. To write it after a change of the keys:
+//! `docs/problem-file.md` and `docs/linkage-file.md` are what `linkwright schema problem --markdown` and `linkwright schema
+//! linkage --markdown` print. To write them after a change of the keys:
 //! `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool problem_file_document`.
 
 use crate::common::root;
@@ -6,17 +7,32 @@ use linkwright::schema::{SchemaKind, reference, schema};
 use std::fs;
 
 #[test]
-fn the_reference_of_the_problem_file_is_made_from_the_schema() {
-    let place = root().join("docs/problem-file.md");
-    let page = reference(SchemaKind::Problem);
-    if std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some() {
-        fs::write(&place, &page).expect("it can be written");
+fn the_references_of_the_files_are_made_from_their_schemas() {
+    for (kind, page_of) in
+        [(SchemaKind::Problem, "docs/problem-file.md"), (SchemaKind::Linkage, "docs/linkage-file.md")]
+    {
+        let place = root().join(page_of);
+        let page = reference(kind);
+        if std::env::var_os("LINKWRIGHT_WRITE_DOCS").is_some() {
+            fs::write(&place, &page).expect("it can be written");
+        }
+        let kept = fs::read_to_string(&place).unwrap_or_default();
+        assert!(
+            kept == page,
+            "write {page_of} anew: LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool problem_file_document"
+        );
     }
-    let kept = fs::read_to_string(&place).expect("it is there");
-    assert!(
-        kept == page,
-        "write it anew: LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool problem_file_document"
-    );
+}
+
+#[test]
+fn the_examples_of_the_linkage_file_are_linkage_files() {
+    let page = reference(SchemaKind::Linkage);
+    let blocks: Vec<&str> =
+        page.split("```toml\n").skip(1).filter_map(|part| part.split("```").next()).collect();
+    assert!(blocks.len() >= 2);
+    for block in blocks {
+        linkwright::linkage_file::parse("example.toml", block).expect("it is a linkage file");
+    }
 }
 
 #[test]

@@ -2,11 +2,12 @@
 
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
+use linkwright::generator::FileKind;
 use linkwright::linkage::AssemblyMode;
 use linkwright::practicality::{Build, Practicality, millimetre};
 use linkwright::problem::Problem;
 use linkwright::record::*;
-use linkwright::report::html::{Extent, is_report, report_html, report_with_drawings};
+use linkwright::report::html::{Extent, report_html, report_with_drawings};
 use linkwright::task::Defect;
 use std::fs;
 use std::path::Path;
@@ -286,6 +287,7 @@ fn the_same_record_gives_the_same_bytes() {
     let page = report_html(&record, 0);
     let text = serde_json::to_string(&record).expect("JSON");
     assert_eq!(page, report_html(&serde_json::from_str(&text).expect("a record"), 0));
+    let is_report = |bytes: &[u8]| FileKind::Html.is_written_by_us(bytes, b"");
     assert!(is_report(page.as_bytes()) && !is_report(b"<!doctype html>\n<html><head>"));
 }
 
@@ -483,8 +485,12 @@ fn a_record_that_is_not_true_gets_no_report_and_foreign_pages_stay() {
     fs::copy(&place, folder.path().join("mine.json")).expect("it can be copied");
     let said = linkwright(folder.path(), &["report", "mine.json"]);
     assert_eq!(said.code, 2);
-    assert!(said.stderr.contains("mine.html is there and is no report of linkwright"), "{}", said.stderr);
-    assert!(said.stderr.contains("--out"), "{}", said.stderr);
+    assert!(
+        said.stderr.contains("mine.html is there and is not an HTML page that linkwright wrote"),
+        "{}",
+        said.stderr
+    );
+    assert!(said.stderr.contains("--force"), "{}", said.stderr);
     record.candidates[0].error.rms *= 0.5;
     fs::write(folder.path().join("false.json"), serde_json::to_vec(&record).expect("JSON")).expect("written");
     let said = linkwright(folder.path(), &["report", "false.json"]);
@@ -528,7 +534,7 @@ fn pages_for_the_test_in_a_browser_are_written() {
     ];
     for (name, record) in records {
         let page = report_html(&record, 0);
-        assert!(is_report(page.as_bytes()));
+        assert!(FileKind::Html.is_written_by_us(page.as_bytes(), b""));
         fs::write(place.join(name).with_extension("html"), page).expect("it can be written");
     }
 }

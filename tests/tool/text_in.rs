@@ -400,7 +400,7 @@ fn the_schema_names_every_table_and_refuses_other_keys() {
         }
     }
     assert_eq!(schema["required"], serde_json::json!(["format", "task"]));
-    assert!("record".parse::<SchemaKind>().is_err());
+    assert!("leaves".parse::<SchemaKind>().is_err());
 }
 
 #[test]

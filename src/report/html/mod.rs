@@ -93,11 +93,6 @@ pub fn candidate_markup(record: &Record, index: usize) -> Option<String> {
     record.candidates.get(index).map(|_| candidate::one(record, index))
 }
 
-/// Whether a file begins as a report of ours does.
-pub fn is_report(bytes: &[u8]) -> bool {
-    bytes.starts_with(page::BEGINNING.as_bytes())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -20,8 +20,8 @@ pub(in crate::report) struct Page<'a> {
     pub(in crate::report) modules: &'a [&'a str],
 }
 
-/// How every page begins.
-pub(in crate::report) const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+/// The beginning of every page, with the mark of its generator: [`crate::generator`] looks for it.
+const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
                                                <meta name=\"generator\" content=\"linkwright ";
 
 impl Page<'_> {
