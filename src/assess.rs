@@ -6,9 +6,11 @@
 use crate::linkage::{AssemblyMode, Complex, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Limits, Objective, OnePolicy, OrderPolicy, TransmissionOver};
-use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
+use crate::record::{
+    Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TO_AND_FRO, TransmissionRecord,
+};
 use crate::task::error::{distances_to_curve, rms};
-use crate::task::referee::{Verdict, judge};
+use crate::task::referee::{Defect, Verdict, judge};
 
 /// A requirement is met within this part of max(1, |limit|).
 pub const MET_TOLERANCE: f64 = 1e-7;
@@ -200,11 +202,16 @@ fn requirements(problem: &Problem, candidate: &Candidate, verdict: &Verdict) -> 
             let wants = if defect == "order" { "required" } else { "one" };
             let has = match (found, defect) {
                 (false, _) => wants,
+                (true, "order") if candidate.defects.iter().any(Defect::is_to_and_fro) => TO_AND_FRO,
                 (true, "order") => "broken",
                 (true, _) => "several",
             };
             push(defect, Figure::Word(has.into()), Figure::Word(wants.into()), !found);
         }
+    }
+    if !require.closing.is_one_way() && problem.task().returns() {
+        let has = if verdict.to_and_fro { TO_AND_FRO } else { "one-way" };
+        push("closing", Figure::Word(has.into()), Figure::Word("any".into()), true);
     }
     rows.extend(design_rows(problem, &candidate.linkage));
     rows

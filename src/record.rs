@@ -209,6 +209,17 @@ pub struct Candidate {
     pub costs: Vec<Cost>,
 }
 
+/// The word of a requirement's value for a motion that returns to its first point by reversing.
+pub const TO_AND_FRO: &str = "to-and-fro";
+
+impl Candidate {
+    /// Whether the motion returns to the first point of a closed path by reversing, and the problem allows that.
+    pub fn goes_to_and_fro(&self) -> bool {
+        let is_word = |figure: &Figure| *figure == Figure::Word(TO_AND_FRO.to_owned());
+        self.requirements.iter().any(|r| r.name == "closing" && is_word(&r.value))
+    }
+}
+
 /// The errors of a candidate, in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorRecord {

@@ -247,6 +247,24 @@ pub enum OrderPolicy {
     Any,
 }
 
+/// How the motion comes back to the first point of a target that ends where it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClosingPolicy {
+    /// Without reversing: the crank turns fully or, where branch = "any", the circuit is run through its toggles.
+    #[default]
+    OneWay,
+    /// Also back through all points: a crank that rocks to and fro will do.
+    Any,
+}
+
+impl ClosingPolicy {
+    /// Whether it is the default.
+    pub fn is_one_way(&self) -> bool {
+        *self == ClosingPolicy::OneWay
+    }
+}
+
 /// Whether the motion must stay on one circuit or branch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -299,6 +317,10 @@ pub struct RequireSpec {
     pub circuit: OnePolicy,
     /// Whether the motion must stay on one branch.
     pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
+    /// there was a choice keep their digest.
+    #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
+    pub closing: ClosingPolicy,
 }
 
 impl RequireSpec {
@@ -325,6 +347,7 @@ impl Default for RequireSpec {
             direction: DirectionPolicy::default(),
             circuit: OnePolicy::default(),
             branch: OnePolicy::default(),
+            closing: ClosingPolicy::default(),
         }
     }
 }

@@ -7,6 +7,7 @@ use super::{price, words};
 use crate::linkage::FourBar;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Record, Unit};
+use crate::task::Defect;
 
 /// The candidates whose distances from the given points are told.
 const RAW_NAMED: usize = 3;
@@ -185,13 +186,16 @@ fn best(record: &Record) -> String {
     out
 }
 
-/// `crank from 31.102° to 371.1°, counter-clockwise`, or `crank between 11.459° and 51.566°, to and fro`.
+/// `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°, clockwise, and back the same way`, or
+/// `crank between 11.459° and 51.566°, to and fro`.
 pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     let angles = &candidate.crank_deg;
     let (first, last) = (*angles.first()?, *angles.last()?);
     if !angles.iter().all(|angle| angle.is_finite()) {
         return None;
     }
+    let reverses = candidate.goes_to_and_fro() || candidate.defects.iter().any(Defect::is_to_and_fro);
+    let way_back = if reverses { ", and back the same way" } else { "" };
     let way = match (angles.is_sorted(), angles.iter().rev().is_sorted()) {
         (true, true) => return Some(format!("crank at {}°", brief(first, 5))),
         (true, false) => "counter-clockwise",
@@ -206,7 +210,7 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
             ));
         }
     };
-    Some(format!("crank from {}° to {}°, {way}", brief(first, 5), brief(last, 5)))
+    Some(format!("crank from {}° to {}°, {way}{way_back}", brief(first, 5), brief(last, 5)))
 }
 
 /// The linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.

@@ -42,6 +42,9 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
 /// A defect as a sentence part.
 pub(super) fn of_defect(defect: &Defect) -> String {
     match defect {
+        Defect::Order { .. } if defect.is_to_and_fro() => {
+            "runs to and fro: back to point 0 only through all other points in reverse".to_owned()
+        }
         Defect::Order { at } => format!("out of order at {}", points(at)),
         Defect::Branch { at } => format!("passes a toggle: {} on another branch than point 0", points(at)),
         Defect::Circuit { at } => {
@@ -212,6 +215,7 @@ fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
 pub(super) fn verdict(record: &Record, candidate: &Candidate) -> String {
     let objections = objections(record, candidate);
     match objections.as_slice() {
+        [] if candidate.goes_to_and_fro() => "accepted (to and fro)".to_owned(),
         [] if candidate.defects.is_empty() => "accepted".to_owned(),
         [] => format!("accepted ({})", defect_names(candidate)),
         [only] => format!("no: {}", only.key),

@@ -82,6 +82,7 @@ pub(super) fn plain(key: &str) -> String {
         "require.direction" => "the direction of the crank",
         "require.circuit" => "staying on one circuit",
         "require.branch" => "passing no toggle",
+        "require.closing" => "returning to the first point without reversing",
         "task.path.tolerance" => "the largest error",
         _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
     };
