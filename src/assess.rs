@@ -12,8 +12,7 @@ use crate::record::{
 use crate::task::error::{distances_to_curve, rms};
 use crate::task::referee::{Defect, Verdict, judge};
 
-/// A requirement is met within this part of max(1, |limit|).
-pub const MET_TOLERANCE: f64 = 1e-7;
+pub use crate::record::MET_TOLERANCE;
 
 /// Whether `value` reaches at least `limit`, within the tolerance.
 fn at_least(value: f64, limit: f64) -> bool {
@@ -109,6 +108,7 @@ pub fn assess_on_curve(
         requirements: Vec::new(),
         accepted: false,
         certified: None,
+        mirror_serves: false,
         defects: verdict.defects.clone(),
         costs: Vec::new(),
     };
@@ -132,11 +132,14 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
 }
 
 fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {
-    // The point that exceeds its tolerance most, or comes nearest to it.
+    // The point whose error is the largest part of its own tolerance: what the largest deviation minimises and what
+    // ranks. A point that is missed goes before one that is met by the margin of a very small tolerance.
+    let error = |k: usize| structural[k].norm();
+    let missed = |k: usize| !at_most(error(k), tolerances[k]);
+    let part = |k: usize| if error(k) == 0.0 { 0.0 } else { error(k) / tolerances[k] };
     let worst = (0..structural.len())
         .max_by(|&i, &j| {
-            let excess = |k: usize| structural[k].norm() - tolerances[k];
-            excess(i).total_cmp(&excess(j)).then(j.cmp(&i))
+            missed(i).cmp(&missed(j)).then(part(i).total_cmp(&part(j))).then(j.cmp(&i))
         })
         .unwrap_or(0);
     let (value, limit) = (structural[worst].norm(), tolerances[worst]);

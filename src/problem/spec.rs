@@ -394,6 +394,20 @@ pub enum Objective {
     MaxDeviation,
 }
 
+/// What candidates are ranked by, as a reader meets it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// The sum of squared errors: no point has another weight than 1.
+    #[default]
+    Sum,
+    /// The weighted sum of squared errors.
+    WeightedSum,
+    /// The largest error.
+    Largest,
+    /// The largest error in parts of its point's tolerance.
+    LargestPart,
+}
+
 /// In which variables the population searches move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -438,6 +452,19 @@ pub struct SolveSpec {
     pub genetic: GeneticParameters,
     /// Differential evolution's parameters.
     pub differential_evolution: DifferentialEvolutionParameters,
+}
+
+impl ProblemSpec {
+    /// What its candidates are ranked by.
+    pub fn measure(&self) -> Measure {
+        let path = &self.task.path;
+        match self.solve.objective {
+            Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => Measure::WeightedSum,
+            Objective::SumOfSquares => Measure::Sum,
+            Objective::MaxDeviation if path.tolerance.is_some() => Measure::LargestPart,
+            Objective::MaxDeviation => Measure::Largest,
+        }
+    }
 }
 
 impl SolveSpec {
