@@ -138,9 +138,7 @@ fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> 
     let missed = |k: usize| !at_most(error(k), tolerances[k]);
     let part = |k: usize| if error(k) == 0.0 { 0.0 } else { error(k) / tolerances[k] };
     let worst = (0..structural.len())
-        .max_by(|&i, &j| {
-            missed(i).cmp(&missed(j)).then(part(i).total_cmp(&part(j))).then(j.cmp(&i))
-        })
+        .max_by(|&i, &j| missed(i).cmp(&missed(j)).then(part(i).total_cmp(&part(j))).then(j.cmp(&i)))
         .unwrap_or(0);
     let (value, limit) = (structural[worst].norm(), tolerances[worst]);
     Requirement {

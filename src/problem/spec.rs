@@ -459,7 +459,9 @@ impl ProblemSpec {
     pub fn measure(&self) -> Measure {
         let path = &self.task.path;
         match self.solve.objective {
-            Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => Measure::WeightedSum,
+            Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => {
+                Measure::WeightedSum
+            }
             Objective::SumOfSquares => Measure::Sum,
             Objective::MaxDeviation if path.tolerance.is_some() => Measure::LargestPart,
             Objective::MaxDeviation => Measure::Largest,

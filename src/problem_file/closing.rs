@@ -18,7 +18,8 @@ pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnos
         && let Some(angles) = path.timing.as_ref().map(|timing| &timing.crank_deg)
         && let Some(turn) = reversal(angles)
     {
-        let message = format!("closed = true, and crank_deg turns back at point {turn}: nothing can be accepted");
+        let message =
+            format!("closed = true, and crank_deg turns back at point {turn}: nothing can be accepted");
         return Some(toml.at(&format!("task.path.timing.crank_deg.{turn}"), message).with_help(
             "a closed path is run one way: give angles that only rise or only fall, or closed = false, or \
              closing = \"any\" in [require]",
@@ -30,7 +31,8 @@ pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnos
     if !problem.has_to_turn_on() || require.types.is_empty() || problem.types().iter().any(turns) {
         return None;
     }
-    let message = "the path ends where it begins, and no crank of these types turns fully: nothing can be accepted";
+    let message =
+        "the path ends where it begins, and no crank of these types turns fully: nothing can be accepted";
     Some(toml.at("require.type", message).with_help(
         "allow crank-rocker or double-crank; or write branch = \"any\" for a motion through the toggles, or \
          closing = \"any\" for one that goes to and fro",
@@ -41,5 +43,9 @@ pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnos
 fn reversal(angles: &[f64]) -> Option<usize> {
     let (first, last) = (angles.first()?, angles.last()?);
     let way = if last < first { -1.0 } else { 1.0 };
-    angles.windows(2).zip(1..).find(|(w, _)| way * (w[1] - w[0]) < -ORDER_TOLERANCE.to_degrees()).map(|(_, j)| j)
+    angles
+        .windows(2)
+        .zip(1..)
+        .find(|(w, _)| way * (w[1] - w[0]) < -ORDER_TOLERANCE.to_degrees())
+        .map(|(_, j)| j)
 }

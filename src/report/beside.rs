@@ -37,7 +37,9 @@ pub(super) fn mirrored(record: &Record) -> Option<String> {
     let (which, images) = match ranks.len() {
         0 => return None,
         1 => (ranks[0].clone(), "its mirror image, which is not listed, serves"),
-        n if n == record.candidates.len() => ("all".to_owned(), "their mirror images, which are not listed, serve"),
+        n if n == record.candidates.len() => {
+            ("all".to_owned(), "their mirror images, which are not listed, serve")
+        }
         _ => (ranks.join(", "), "their mirror images, which are not listed, serve"),
     };
     Some(format!("{which}: the target is symmetric, and {images} as well."))

@@ -187,7 +187,11 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     match (x, y) {
         (Some(x), Some(y)) => {
-            if key.greatest_first() { y.total_cmp(&x) } else { x.total_cmp(&y) }
+            if key.greatest_first() {
+                y.total_cmp(&x)
+            } else {
+                x.total_cmp(&y)
+            }
         }
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
@@ -266,7 +270,8 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
     for (row, rank) in rows.iter_mut().zip(ranks) {
         row.rank = rank;
         let level = row.level_of(keys[0]);
-        row.behind_percent = level.zip(best).and_then(|(level, best)| percent_above(level, best)).map(f64::abs);
+        row.behind_percent =
+            level.zip(best).and_then(|(level, best)| percent_above(level, best)).map(f64::abs);
         if let Some(from) = from {
             let above = |(x, from): (&Option<f64>, &Option<f64>)| percent_above((*x)?, (*from)?);
             row.difference_percent = row.figures.iter().zip(&from).map(above).collect();

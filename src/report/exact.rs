@@ -72,7 +72,9 @@ fn on_one_line(points: &[[f64; 2]]) -> bool {
     const ROUNDING: f64 = 1e-9;
     let from = |p: &[f64; 2]| [p[0] - points[0][0], p[1] - points[0][1]];
     let length = |v: &[f64; 2]| v[0].hypot(v[1]);
-    let Some(far) = points.iter().map(from).max_by(|v, w| length(v).total_cmp(&length(w))) else { return false };
+    let Some(far) = points.iter().map(from).max_by(|v, w| length(v).total_cmp(&length(w))) else {
+        return false;
+    };
     let extent = length(&far);
     points.iter().map(from).all(|v| (v[0] * far[1] - v[1] * far[0]).abs() <= ROUNDING * extent * extent)
 }

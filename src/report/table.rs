@@ -93,10 +93,8 @@ fn rows(record: &Record, colour: Colour) -> String {
         let transmission = &candidate.transmission_deg;
         let ink = if candidate.accepted { Ink::Good } else { Ink::Bad };
         let plain = |text: String| (text, Ink::Plain);
-        let mut errors = vec![
-            plain(significant(candidate.error.rms, 4)),
-            plain(significant(candidate.error.max, 4)),
-        ];
+        let mut errors =
+            vec![plain(significant(candidate.error.rms, 4)), plain(significant(candidate.error.max, 4))];
         let at = worst_at(record, candidate);
         errors.insert(if parts { 0 } else { 2 }, plain(at.to_string()));
         let mut cells = vec![

@@ -230,7 +230,9 @@ pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)
             "weighted sq: the sum of squared errors, each times its point's weight, which was minimised and ranks; rms and \
              max are without weights.",
         )),
-        Measure::Largest => Some(("deviation", "deviation: the largest error, which was minimised and ranks.")),
+        Measure::Largest => {
+            Some(("deviation", "deviation: the largest error, which was minimised and ranks."))
+        }
         Measure::LargestPart => Some((
             "deviation",
             "deviation: the largest error in parts of its point's tolerance, which was minimised and ranks; 1 is just met.",
@@ -261,8 +263,12 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
         (false, false) => "whatever else the search judged draws one of these curves again.",
     });
     match record.termination.reason {
-        Reason::EvaluationLimit => text.push_str(" More evaluations may find others: the budget ended the search."),
-        Reason::TimeLimit | Reason::Cancelled => text.push_str(" It was cut short: a longer search may find others."),
+        Reason::EvaluationLimit => {
+            text.push_str(" More evaluations may find others: the budget ended the search.")
+        }
+        Reason::TimeLimit | Reason::Cancelled => {
+            text.push_str(" It was cut short: a longer search may find others.")
+        }
         Reason::Converged | Reason::TargetReached | Reason::Stalled => {}
     }
     Some(text)

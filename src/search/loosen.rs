@@ -3,7 +3,8 @@
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::{
-    ClosingPolicy, DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec,
+    ClosingPolicy, DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy,
+    OrderPolicy, ProblemSpec,
 };
 use crate::record::{Candidate, Change, Figure, TypedValue};
 

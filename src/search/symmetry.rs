@@ -177,7 +177,9 @@ fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64
             AngleOffset::Ground => linkage.ground_angle().to_degrees(),
         };
         let asked: Vec<f64> = written.iter().map(|deg| base + direction * deg).collect();
-        let off = |(has, asked): (&f64, &f64)| ((has - asked) / 360.0 - ((has - asked) / 360.0).round()).abs() * 360.0;
+        let off = |(has, asked): (&f64, &f64)| {
+            ((has - asked) / 360.0 - ((has - asked) / 360.0).round()).abs() * 360.0
+        };
         has.iter().zip(&asked).all(|pair| off(pair) <= ANGLE_DEG).then_some(asked)
     })
 }

@@ -5,7 +5,8 @@ use crate::assess::assess;
 use crate::linkage::{LinkageType, NaturalCoordinates};
 use crate::problem::Problem;
 use crate::problem::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec, TransmissionOver,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec,
+    TransmissionOver,
 };
 use crate::problem_file::Expect;
 use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation, Unit};

@@ -110,6 +110,12 @@ fn in_the_way(record: &Record) -> String {
 
 /// All linkages through nine points, counted in words; proofs where there are any.
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
+    if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
+        return vec![
+            "No linkage was found that passes all nine points: they are in special position, such as on one line."
+                .into(),
+        ];
+    }
     let [found, real, paths, proof] = exact::sentences(record);
     let counted = &record.census;
     // What is isolated is known by its proof.

@@ -40,9 +40,11 @@ pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
 pub(super) fn levels(figures: &[Option<f64>], greatest_first: bool, nothing: f64) -> Vec<Option<f64>> {
     let mut order: Vec<usize> = (0..figures.len()).filter(|&i| figures[i].is_some()).collect();
     let value = |i: usize| figures[i].unwrap_or(f64::NAN);
-    order.sort_by(|&i, &j| {
-        if greatest_first { value(j).total_cmp(&value(i)) } else { value(i).total_cmp(&value(j)) }
-    });
+    order.sort_by(
+        |&i, &j| {
+            if greatest_first { value(j).total_cmp(&value(i)) } else { value(i).total_cmp(&value(j)) }
+        },
+    );
     let mut levels = vec![None; figures.len()];
     let mut level = f64::NAN;
     for i in order {
@@ -67,6 +69,9 @@ mod tests {
         // A chain of neighbours is cut where it has left the best.
         let chain: Vec<Option<f64>> = (0..4).map(|i| Some(1.0 + 6e-8 * f64::from(i))).collect();
         assert_eq!(levels(&chain, false, 0.0), [chain[0], chain[0], chain[2], chain[2]]);
-        assert_eq!(levels(&[Some(1e-30), Some(3e-29), Some(1e-9)], false, 1e-24), [Some(1e-30), Some(1e-30), Some(1e-9)]);
+        assert_eq!(
+            levels(&[Some(1e-30), Some(3e-29), Some(1e-9)], false, 1e-24),
+            [Some(1e-30), Some(1e-30), Some(1e-9)]
+        );
     }
 }

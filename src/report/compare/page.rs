@@ -163,7 +163,8 @@ impl Comparison {
     }
 
     fn figure_heads(&self) -> Vec<Head> {
-        let mut heads = plain_heads(&["behind", self.first_head(), "rms", "max", "at", "to curve", "transm."]);
+        let mut heads =
+            plain_heads(&["behind", self.first_head(), "rms", "max", "at", "to curve", "transm."]);
         heads.extend(plain_heads(&["link ratio", "size", "type", "accepted"]));
         for (i, words) in
             [(0, "behind the best, per cent"), (4, "at which point"), (6, "worst transmission angle")]

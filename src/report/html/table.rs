@@ -101,9 +101,7 @@ pub(super) fn candidates(record: &Record) -> String {
         .candidates
         .iter()
         .enumerate()
-        .map(|(i, c)| {
-            row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string()))
-        })
+        .map(|(i, c)| row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string())))
         .collect();
     if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
         // After all others when sorted by rank.

@@ -375,7 +375,11 @@ impl Look<'_> {
         }
         let closed = self.spec.task.path.closed || self.ordered() < joints.len();
         let returns = self.spec.task.path.closed || (!timed && self.ordered() < joints.len());
-        if returns && !turns && require.order == OrderPolicy::Required && require.closing == ClosingPolicy::OneWay {
+        if returns
+            && !turns
+            && require.order == OrderPolicy::Required
+            && require.closing == ClosingPolicy::OneWay
+        {
             self.say("the crank does not turn fully, and the path ends where it begins");
         }
         let high = if turns && closed { high.max(low + 360.0) } else { high.min(low + 360.0) };
