@@ -6,12 +6,13 @@
 use crate::linkage::{AssemblyMode, Complex, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Limits, Objective, OnePolicy, OrderPolicy, TransmissionOver};
-use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
+use crate::record::{
+    Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TO_AND_FRO, TransmissionRecord,
+};
 use crate::task::error::{distances_to_curve, rms};
-use crate::task::referee::{Verdict, judge};
+use crate::task::referee::{Defect, Verdict, judge};
 
-/// A requirement is met within this part of max(1, |limit|).
-pub const MET_TOLERANCE: f64 = 1e-7;
+pub use crate::record::MET_TOLERANCE;
 
 /// Whether `value` reaches at least `limit`, within the tolerance.
 fn at_least(value: f64, limit: f64) -> bool {
@@ -107,6 +108,7 @@ pub fn assess_on_curve(
         requirements: Vec::new(),
         accepted: false,
         certified: None,
+        mirror_serves: false,
         defects: verdict.defects.clone(),
         costs: Vec::new(),
     };
@@ -130,12 +132,13 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
 }
 
 fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {
-    // The point that exceeds its tolerance most, or comes nearest to it.
+    // The point whose error is the largest part of its own tolerance: what the largest deviation minimises and what
+    // ranks. A point that is missed goes before one that is met by the margin of a very small tolerance.
+    let error = |k: usize| structural[k].norm();
+    let missed = |k: usize| !at_most(error(k), tolerances[k]);
+    let part = |k: usize| if error(k) == 0.0 { 0.0 } else { error(k) / tolerances[k] };
     let worst = (0..structural.len())
-        .max_by(|&i, &j| {
-            let excess = |k: usize| structural[k].norm() - tolerances[k];
-            excess(i).total_cmp(&excess(j)).then(j.cmp(&i))
-        })
+        .max_by(|&i, &j| missed(i).cmp(&missed(j)).then(part(i).total_cmp(&part(j))).then(j.cmp(&i)))
         .unwrap_or(0);
     let (value, limit) = (structural[worst].norm(), tolerances[worst]);
     Requirement {
@@ -200,11 +203,16 @@ fn requirements(problem: &Problem, candidate: &Candidate, verdict: &Verdict) -> 
             let wants = if defect == "order" { "required" } else { "one" };
             let has = match (found, defect) {
                 (false, _) => wants,
+                (true, "order") if candidate.defects.iter().any(Defect::is_to_and_fro) => TO_AND_FRO,
                 (true, "order") => "broken",
                 (true, _) => "several",
             };
             push(defect, Figure::Word(has.into()), Figure::Word(wants.into()), !found);
         }
+    }
+    if !require.closing.is_one_way() && problem.task().returns() {
+        let has = if verdict.to_and_fro { TO_AND_FRO } else { "one-way" };
+        push("closing", Figure::Word(has.into()), Figure::Word("any".into()), true);
     }
     rows.extend(design_rows(problem, &candidate.linkage));
     rows

@@ -62,6 +62,7 @@ impl Target {
             target: path.points.clone(),
             closed: path.closed,
             unit: self.unit.or(unit),
+            measure: self.problem.spec().measure(),
             of_run,
             untrue: Vec::new(),
         }

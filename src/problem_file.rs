@@ -4,6 +4,7 @@
 //! points. What stands under `[expect]` is read and checked and never reaches the specification.
 
 mod certify;
+mod closing;
 mod design;
 mod overrides;
 mod path;
@@ -220,6 +221,7 @@ fn parse_at(
     let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
+    warnings.extend(closing::against(&toml, &spec));
     let unit = raw.unit.or(unit);
     Ok(ProblemFile { name, source: raw.source, unit, spec, expect, warnings })
 }
@@ -306,6 +308,7 @@ fn require_of(
         direction: raw.direction,
         circuit: raw.circuit,
         branch: raw.branch,
+        closing: raw.closing,
     })
 }
 

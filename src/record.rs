@@ -20,6 +20,12 @@ pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
 pub use limits::BeyondLimits;
 pub use repeats::Repeats;
 
+/// A requirement is met within this part of max(1, |limit|), and figures this near to each other are equal to a reader.
+pub const MET_TOLERANCE: f64 = 1e-7;
+
+/// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
+pub const EXACT_MEAN_SQ: f64 = 1e-24;
+
 /// The format that this program writes and reads.
 pub const FORMAT: u32 = 1;
 
@@ -215,6 +221,10 @@ pub struct Candidate {
     /// Other linkages of the same curve (its cognates), the better first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Alternative>,
+    /// Whether the target is symmetric and the linkage's mirror image, which is another one, is accepted too and as good:
+    /// it is not listed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mirror_serves: bool,
     /// Each requirement with its value and limit.
     pub requirements: Vec<Requirement>,
     /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.
@@ -225,6 +235,17 @@ pub struct Candidate {
     /// What the limits that it stands on cost.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub costs: Vec<Cost>,
+}
+
+/// The word of a requirement's value for a motion that returns to its first point by reversing.
+pub const TO_AND_FRO: &str = "to-and-fro";
+
+impl Candidate {
+    /// Whether the motion returns to the first point of a closed path by reversing, and the problem allows that.
+    pub fn goes_to_and_fro(&self) -> bool {
+        let is_word = |figure: &Figure| *figure == Figure::Word(TO_AND_FRO.to_owned());
+        self.requirements.iter().any(|r| r.name == "closing" && is_word(&r.value))
+    }
 }
 
 /// The errors of a candidate, in the file's unit.

@@ -149,8 +149,9 @@ pub struct Compare {
     /// Measure everything on the target of this problem [default: runs on their own]
     #[arg(long, value_name = "PROBLEM")]
     pub target: Option<PathBuf>,
-    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size
-    #[arg(long, value_name = "KEY,..", default_value = "sum_sq", value_delimiter = ',', value_parser = sort_key)]
+    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size, objective
+    /// [default: what the problem minimises, sum_sq where there are several]
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = sort_key)]
     pub sort: Vec<SortKey>,
     /// Print by how many per cent each figure is above that of this RESULT
     #[arg(long, value_name = "RESULT")]

@@ -15,11 +15,11 @@ pub mod timed;
 pub mod torus;
 
 use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType};
-use crate::task::{AngleOffset, PathTask, TaskError, Timing};
+use crate::task::{AngleOffset, PathTask, Return, TaskError, Timing};
 use design_space::DesignSpace;
 use requirements::Requirements;
 use serde::{Deserialize, Serialize};
-use spec::{DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec};
+use spec::{ClosingPolicy, DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec, RequireSpec};
 
 /// A problem that has been checked.
 #[derive(Clone, Debug)]
@@ -59,6 +59,27 @@ fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
     task.with_weights(weights)
 }
 
+/// How the motion may come back to the first point, where it has to.
+fn way_back(require: &RequireSpec) -> Return {
+    match (require.closing, require.branch) {
+        (ClosingPolicy::Any, _) => Return::Any,
+        (ClosingPolicy::OneWay, OnePolicy::Any) => Return::AroundTheCircuit,
+        (ClosingPolicy::OneWay, OnePolicy::One) => Return::TurningOn,
+    }
+}
+
+/// Of some types (none: of all) those whose crank turns fully. Where that is none of them they stay as they are:
+/// nothing that they allow can be acceptable then, and the search says so.
+fn turning(types: &[LinkageType]) -> Vec<LinkageType> {
+    let turns = |kind: &LinkageType| kind.input_turns_fully() || *kind == LinkageType::ChangePoint;
+    let left: Vec<LinkageType> = types.iter().copied().filter(turns).collect();
+    match (types, left.as_slice()) {
+        ([], _) => vec![LinkageType::CrankRocker, LinkageType::DoubleCrank],
+        (_, []) => types.to_vec(),
+        _ => left,
+    }
+}
+
 /// No point's weight is less than this part of the largest, so that each stays a weight above zero.
 const LEAST_WEIGHT: f64 = 1e-12;
 
@@ -72,10 +93,15 @@ impl Problem {
         if spec.solve.objective == Objective::MaxDeviation {
             task = measured_by_tolerances(task)?;
         }
+        task = task.coming_back(way_back(&spec.require));
         let mut types = spec.require.types.clone();
         types.sort();
         types.dedup();
-        Ok(Problem { spec, task, types })
+        let mut problem = Problem { spec, task, types };
+        if problem.has_to_turn_on() {
+            problem.types = turning(&problem.types);
+        }
+        Ok(problem)
     }
 
     /// The data it was made from.
@@ -88,7 +114,14 @@ impl Problem {
         &self.task
     }
 
-    /// The types allowed; empty: any.
+    /// Whether only a crank that turns fully can be acceptable: the motion has to come back to its first point, in
+    /// order, without reversing and without passing a toggle.
+    pub fn has_to_turn_on(&self) -> bool {
+        self.task.returns() && self.order_required() && self.task.comes_back() == Return::TurningOn
+    }
+
+    /// The types that are searched for, sorted; empty: any. Those that are required, and of them, where the crank
+    /// has to turn fully, those whose crank does.
     pub fn types(&self) -> &[LinkageType] {
         &self.types
     }

@@ -247,6 +247,24 @@ pub enum OrderPolicy {
     Any,
 }
 
+/// How the motion comes back to the first point of a target that ends where it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClosingPolicy {
+    /// Without reversing: the crank turns fully or, where branch = "any", the circuit is run through its toggles.
+    #[default]
+    OneWay,
+    /// Also back through all points: a crank that rocks to and fro will do.
+    Any,
+}
+
+impl ClosingPolicy {
+    /// Whether it is the default.
+    pub fn is_one_way(&self) -> bool {
+        *self == ClosingPolicy::OneWay
+    }
+}
+
 /// Whether the motion must stay on one circuit or branch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
@@ -299,6 +317,10 @@ pub struct RequireSpec {
     pub circuit: OnePolicy,
     /// Whether the motion must stay on one branch.
     pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
+    /// there was a choice keep their digest.
+    #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
+    pub closing: ClosingPolicy,
 }
 
 impl RequireSpec {
@@ -325,6 +347,7 @@ impl Default for RequireSpec {
             direction: DirectionPolicy::default(),
             circuit: OnePolicy::default(),
             branch: OnePolicy::default(),
+            closing: ClosingPolicy::default(),
         }
     }
 }
@@ -369,6 +392,20 @@ pub enum Objective {
     /// The largest structural error, each in parts of its point's tolerance where tolerances are given; weights
     /// do not enter.
     MaxDeviation,
+}
+
+/// What candidates are ranked by, as a reader meets it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// The sum of squared errors: no point has another weight than 1.
+    #[default]
+    Sum,
+    /// The weighted sum of squared errors.
+    WeightedSum,
+    /// The largest error.
+    Largest,
+    /// The largest error in parts of its point's tolerance.
+    LargestPart,
 }
 
 /// In which variables the population searches move.
@@ -426,6 +463,21 @@ pub struct SolveSpec {
     pub genetic: GeneticParameters,
     /// Differential evolution's parameters.
     pub differential_evolution: DifferentialEvolutionParameters,
+}
+
+impl ProblemSpec {
+    /// What its candidates are ranked by.
+    pub fn measure(&self) -> Measure {
+        let path = &self.task.path;
+        match self.solve.objective {
+            Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => {
+                Measure::WeightedSum
+            }
+            Objective::SumOfSquares => Measure::Sum,
+            Objective::MaxDeviation if path.tolerance.is_some() => Measure::LargestPart,
+            Objective::MaxDeviation => Measure::Largest,
+        }
+    }
 }
 
 impl SolveSpec {

@@ -2,7 +2,7 @@
 
 use crate::linkage::{AssemblyMode, LinkageType};
 use crate::problem::spec::{
-    DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver, Variables,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver, Variables,
 };
 use crate::record::Unit;
 use crate::solve::differential_evolution::DifferentialEvolutionParameters;
@@ -155,6 +155,9 @@ pub(crate) struct RawRequire {
     /// Whether the motion must stay on one branch.
     #[serde(default)]
     pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed.
+    #[serde(default)]
+    pub closing: ClosingPolicy,
 }
 
 /// How to search and when to stop.

@@ -17,6 +17,8 @@ pub enum WarningKind {
     ChangePoint,
     /// A limit of the problem decides the answer.
     OnBound,
+    /// The motion returns to its first point only by going back through all others.
+    ToAndFro,
 }
 
 impl WarningKind {
@@ -27,6 +29,7 @@ impl WarningKind {
             WarningKind::LinkRatio => "link-ratio",
             WarningKind::ChangePoint => "change-point",
             WarningKind::OnBound => "on-bound",
+            WarningKind::ToAndFro => "to-and-fro",
         }
     }
 }

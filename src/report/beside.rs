@@ -16,6 +16,7 @@ pub(super) fn lines(record: &Record, columns: usize) -> String {
     }
     let said = record.candidates.iter().filter(|c| !c.warnings.is_empty());
     parts.extend(said.take(MOST_LINES).map(|c| format!("#{}: {}", c.rank, warnings(c))));
+    parts.extend(mirrored(record));
     if let Some(candidate) = &record.buildable {
         parts.push(buildable(record, candidate));
     }
@@ -27,6 +28,21 @@ pub(super) fn lines(record: &Record, columns: usize) -> String {
     }
     let text: String = parts.iter().map(|part| wrapped("  ", "      ", part, columns)).collect();
     format!("\n{text}")
+}
+
+/// The candidates whose mirror images serve as well; `None` where there are none.
+pub(super) fn mirrored(record: &Record) -> Option<String> {
+    let ranks: Vec<String> =
+        record.candidates.iter().filter(|c| c.mirror_serves).map(|c| format!("#{}", c.rank)).collect();
+    let (which, images) = match ranks.len() {
+        0 => return None,
+        1 => (ranks[0].clone(), "its mirror image, which is not listed, serves"),
+        n if n == record.candidates.len() => {
+            ("all".to_owned(), "their mirror images, which are not listed, serve")
+        }
+        _ => (ranks.join(", "), "their mirror images, which are not listed, serve"),
+    };
+    Some(format!("{which}: the target is symmetric, and {images} as well."))
 }
 
 /// The warnings of a candidate in one line; empty without any. Several limits are told in one clause.

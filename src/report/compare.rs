@@ -9,12 +9,14 @@
 
 use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
+use crate::problem::spec::Measure;
 use crate::record::{Candidate, Record, Unit};
 use std::cmp::Ordering;
 
 mod data;
 mod front;
 mod key;
+mod level;
 mod overlay;
 mod page;
 mod strokes;
@@ -42,6 +44,8 @@ pub struct Entry {
     pub closed: bool,
     /// The unit of its lengths.
     pub unit: Option<Unit>,
+    /// What the candidates of that problem are ranked by.
+    pub measure: Measure,
     /// Whether it is the answer of a run; else it is a linkage file.
     pub of_run: bool,
     /// What its record said and what is not so: the figures here are those found.
@@ -64,6 +68,7 @@ impl Entry {
             target: path.points.clone(),
             closed: path.closed,
             unit: record.problem.unit,
+            measure: record.problem.resolved.measure(),
             of_run: true,
             untrue: Vec::new(),
         }
@@ -96,6 +101,7 @@ impl Entry {
             SortKey::Transmission => self.candidate.transmission_deg.worst,
             SortKey::LinkRatio => self.candidate.link_ratio,
             SortKey::Size => self.size(),
+            SortKey::Objective => error.objective,
         }
     }
 }
@@ -103,7 +109,8 @@ impl Entry {
 /// A ranked entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
-    /// 1 is the best; figures that are equal to twelve digits share a rank. Of several keys a later one decides between equals.
+    /// 1 is the best; figures that are equal within the margin of limits share a rank. Of several keys a later one
+    /// decides between equals.
     pub rank: usize,
     /// The rank by each key alone, in the order of the keys.
     pub ranks: Vec<usize>,
@@ -116,14 +123,20 @@ pub struct Ranked {
     /// By how much each figure is above the reference's, per cent of the reference's, in the order of
     /// [`SortKey::ALL`]: see [`percent_above`]. Empty without a reference.
     pub difference_percent: Vec<Option<f64>>,
-    /// Whether it is on the front: see [`front()`].
+    /// Whether it is on the front: see [`front()`]. Of rows whose figures are equal only the first is marked.
     pub on_front: bool,
     /// [`Entry::size`].
     pub size: f64,
     figures: [Option<f64>; SortKey::ALL.len()],
+    levels: [Option<f64>; SortKey::ALL.len()],
 }
 
 impl Ranked {
+    /// The best figure among the rows that this one's is equal to, within the margin of limits.
+    fn level_of(&self, key: SortKey) -> Option<f64> {
+        self.levels[key as usize]
+    }
+
     /// A figure; `None` where it isn't finite.
     pub fn figure_of(&self, key: SortKey) -> Option<f64> {
         self.figures[key as usize]
@@ -154,15 +167,10 @@ pub struct Comparison {
     pub remarks: Vec<String>,
 }
 
-/// To twelve significant digits: what differs beyond them differs by rounding, and is equal here.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.11e}").parse().unwrap_or(value)
-}
-
-/// 100 (value - reference)/|reference|; 0 where both are equal to twelve digits, also both 0; `None` where only the
-/// reference is 0.
+/// 100 (value - reference)/|reference|; 0 where the two are equal within the margin of limits, also both 0; `None`
+/// where only the reference is 0.
 pub fn percent_above(value: f64, reference: f64) -> Option<f64> {
-    if value == reference || rounded(value) == rounded(reference) {
+    if level::equal(value, reference, 0.0) {
         return Some(0.0);
     }
     Some(100.0 * (value - reference) / reference.abs()).filter(|p| p.is_finite())
@@ -179,9 +187,11 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     match (x, y) {
         (Some(x), Some(y)) => {
-            // Adding 0 makes one zero of the two.
-            let (x, y) = (rounded(x) + 0.0, rounded(y) + 0.0);
-            if key.greatest_first() { y.total_cmp(&x) } else { x.total_cmp(&y) }
+            if key.greatest_first() {
+                y.total_cmp(&x)
+            } else {
+                x.total_cmp(&y)
+            }
         }
         (Some(_), None) => Ordering::Less,
         (None, Some(_)) => Ordering::Greater,
@@ -199,10 +209,23 @@ fn ranked<T>(sorted: &[T], equal: impl Fn(&T, &T) -> bool) -> Vec<usize> {
     ranks
 }
 
-/// Ranks the entries by the first key, equals by the next ones (`sum_sq` where there is none); `reference` is the
-/// index of the entry that differences are from.
+/// What entries are ranked by where nobody says: by what all of their problems minimise, where that is one thing and
+/// no plain sum; else by the sum of squared errors.
+fn usual_key(entries: &[Entry]) -> SortKey {
+    let one = entries.windows(2).all(|w| {
+        w[0].measure == w[1].measure && w[0].unit == w[1].unit && same_points(&w[0].target, &w[1].target)
+    });
+    match entries.first() {
+        Some(first) if one && first.measure != Measure::Sum => SortKey::Objective,
+        _ => SortKey::default(),
+    }
+}
+
+/// Ranks the entries by the first key, equals by the next ones (where there is none by what their problems minimise);
+/// `reference` is the index of the entry that differences are from. Figures are ordered by their levels
+/// (`level`): equal within the margin of limits is equal.
 pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) -> Comparison {
-    let keys = if keys.is_empty() { vec![SortKey::default()] } else { keys.to_vec() };
+    let keys = if keys.is_empty() { vec![usual_key(entries)] } else { keys.to_vec() };
     let mut rows: Vec<(usize, Ranked)> = entries
         .iter()
         .map(|entry| {
@@ -217,30 +240,38 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
                 on_front: false,
                 size: figures[SortKey::Size as usize].unwrap_or(f64::NAN),
                 figures,
+                levels: figures,
             }
         })
         .enumerate()
         .collect();
+    for key in SortKey::ALL {
+        let figures: Vec<Option<f64>> = rows.iter().map(|row| row.1.figure_of(key)).collect();
+        let nothing = entries.iter().map(|entry| level::nothing(entry, key)).fold(f64::INFINITY, f64::min);
+        let levels = level::levels(&figures, key.greatest_first(), nothing);
+        rows.iter_mut().zip(levels).for_each(|(row, level)| row.1.levels[key as usize] = level);
+    }
     for (k, key) in keys.iter().enumerate() {
-        let by = |x: &Ranked, y: &Ranked| order(x.figure_of(*key), y.figure_of(*key), *key);
+        let by = |x: &Ranked, y: &Ranked| order(x.level_of(*key), y.level_of(*key), *key);
         rows.sort_by(|x, y| by(&x.1, &y.1));
         let ranks = ranked(&rows, |x, y| by(&x.1, &y.1).is_eq());
         rows.iter_mut().zip(ranks).for_each(|(row, rank)| row.1.ranks[k] = rank);
     }
     let by_all = |x: &Ranked, y: &Ranked| {
-        let by = |key: &SortKey| order(x.figure_of(*key), y.figure_of(*key), *key);
+        let by = |key: &SortKey| order(x.level_of(*key), y.level_of(*key), *key);
         keys.iter().map(by).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
     };
     rows.sort_by(|x, y| by_all(&x.1, &y.1).then(x.0.cmp(&y.0)));
     let ranks = ranked(&rows, |x, y| by_all(&x.1, &y.1).is_eq());
     let reference = reference.and_then(|index| rows.iter().position(|row| row.0 == index));
     let mut rows: Vec<Ranked> = rows.into_iter().map(|row| row.1).collect();
-    let best = rows.first().and_then(|row| row.figure);
+    let best = rows.first().and_then(|row| row.level_of(keys[0]));
     let from = reference.map(|row| rows[row].figures);
     for (row, rank) in rows.iter_mut().zip(ranks) {
         row.rank = rank;
+        let level = row.level_of(keys[0]);
         row.behind_percent =
-            row.figure.zip(best).and_then(|(figure, best)| percent_above(figure, best)).map(f64::abs);
+            level.zip(best).and_then(|(level, best)| percent_above(level, best)).map(f64::abs);
         if let Some(from) = from {
             let above = |(x, from): (&Option<f64>, &Option<f64>)| percent_above((*x)?, (*from)?);
             row.difference_percent = row.figures.iter().zip(&from).map(above).collect();
@@ -250,12 +281,15 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
     if comparison.same_target() && comparison.same_unit() {
         let points = comparison.rows.iter().map(|row| front::Point {
             accepted: row.entry.candidate.accepted,
-            error: row.figure_of(SortKey::Rms).map(rounded),
-            angle: row.figure_of(SortKey::Transmission).map(rounded),
-            size: row.figure_of(SortKey::Size).map(rounded),
+            error: row.level_of(SortKey::Rms),
+            angle: row.level_of(SortKey::Transmission),
+            size: row.level_of(SortKey::Size),
         });
-        let marks = front(&points.collect::<Vec<_>>());
-        comparison.rows.iter_mut().zip(marks).for_each(|(row, on_front)| row.on_front = on_front);
+        let points: Vec<Point> = points.collect();
+        let marks = front(&points);
+        for (i, row) in comparison.rows.iter_mut().enumerate() {
+            row.on_front = marks[i] && !points[..i].contains(&points[i]);
+        }
     }
     comparison
 }
@@ -269,6 +303,14 @@ impl Comparison {
     /// Whether all lengths have the same unit.
     pub fn same_unit(&self) -> bool {
         self.rows.windows(2).all(|w| w[0].entry.unit == w[1].entry.unit)
+    }
+
+    /// What was minimised, where all that is shown minimised one thing and that is not the plain sum: the word for its
+    /// column, and a sentence on it.
+    pub(super) fn minimised(&self) -> Option<(&'static str, &'static str)> {
+        let measure = self.rows.first()?.entry.measure;
+        let one = self.rows.iter().all(|row| row.entry.measure == measure);
+        super::words::minimised(measure).filter(|_| one && self.same_target())
     }
 
     /// Whether every record said what is so.
@@ -299,6 +341,7 @@ impl Comparison {
                     .to_owned(),
             );
         }
+        notes.extend(self.minimised().map(|(_, sentence)| sentence.to_owned()));
         notes.extend(self.remarks.iter().cloned());
         notes.extend(
             self.left_out.iter().map(|out| format!("Left out: {}: {}.", clean(&out.label), clean(&out.why))),
@@ -311,7 +354,7 @@ impl Comparison {
         let n = self.rows.iter().filter(|row| row.on_front).count();
         (n > 0).then(|| {
             "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
-             better in one (what is not accepted never beats what is)"
+             better in one (what is not accepted never beats what is; of those that are equal the first is marked)"
                 .to_owned()
         })
     }

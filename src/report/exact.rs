@@ -14,7 +14,8 @@ const FEW: usize = 8;
 pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let Some(exact) = &record.exact else { return String::new() };
     let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
-    for sentence in sentences(exact) {
+    let sentences = none_through(record).map_or_else(|| sentences(exact).to_vec(), |one| vec![one]);
+    for sentence in sentences {
         if !sentence.is_empty() {
             out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
         }
@@ -39,6 +40,43 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     out.push('\n');
     out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
     out
+}
+
+/// One plain sentence in place of a census where the points are in special position and no solution was found.
+pub fn none_through(record: &Record) -> Option<String> {
+    let exact = record.exact.as_ref()?;
+    if exact.completeness != Completeness::NonGeneric || exact.census.classes > 0 {
+        return None;
+    }
+    let nearest = if record.candidates.is_empty() {
+        "method = \"auto\" looks for some that come near"
+    } else {
+        "the candidates come near"
+    };
+    Some(if on_one_line(&record.problem.resolved.task.path.points) {
+        format!(
+            "The nine points lie on one line, and a coupler curve meets a line in at most six points: no linkage passes \
+             through all nine; {nearest}."
+        )
+    } else {
+        format!(
+            "The nine points are in special position, and no linkage through all nine was found (points in general \
+             position have {} solutions): {nearest}.",
+            count(GENERIC_CLASSES)
+        )
+    })
+}
+
+/// Whether points lie on one line, within rounding of their extent.
+fn on_one_line(points: &[[f64; 2]]) -> bool {
+    const ROUNDING: f64 = 1e-9;
+    let from = |p: &[f64; 2]| [p[0] - points[0][0], p[1] - points[0][1]];
+    let length = |v: &[f64; 2]| v[0].hypot(v[1]);
+    let Some(far) = points.iter().map(from).max_by(|v, w| length(v).total_cmp(&length(w))) else {
+        return false;
+    };
+    let extent = length(&far);
+    points.iter().map(from).all(|v| (v[0] * far[1] - v[1] * far[0]).abs() <= ROUNDING * extent * extent)
 }
 
 /// How many solutions there are, of what kind, how they were found, and what is proved.

@@ -5,8 +5,9 @@ use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
 use super::{price, words};
 use crate::linkage::FourBar;
-use crate::problem::spec::Objective;
+use crate::problem::spec::Measure;
 use crate::record::{Candidate, Record, Unit};
+use crate::task::Defect;
 
 /// The candidates whose distances from the given points are told.
 const RAW_NAMED: usize = 3;
@@ -76,13 +77,16 @@ pub(super) fn count(n: usize, noun: &str) -> String {
 
 fn rows(record: &Record, colour: Colour) -> String {
     use Align::{Left, Right};
-    let deviation = record.problem.resolved.solve.objective == Objective::MaxDeviation;
+    let measure = record.problem.resolved.measure();
+    let ranks = words::minimised(measure);
+    // Beside a largest part of the tolerances stands its own point, which need not be that of the largest error.
+    let parts = measure == Measure::LargestPart;
     let mut grid = Grid::new(&[
         ("#", Right),
-        (if deviation { "deviation" } else { "sum of sq" }, Right),
-        ("rms", Right),
-        ("max", Right),
-        ("at", Right),
+        (ranks.map_or("sum of sq", |(head, _)| head), Right),
+        (if parts { "at" } else { "rms" }, Right),
+        (if parts { "rms" } else { "max" }, Right),
+        (if parts { "max" } else { "at" }, Right),
         ("to curve", Right),
         ("type", Left),
         ("transmission", Right),
@@ -93,20 +97,35 @@ fn rows(record: &Record, colour: Colour) -> String {
         let transmission = &candidate.transmission_deg;
         let ink = if candidate.accepted { Ink::Good } else { Ink::Bad };
         let plain = |text: String| (text, Ink::Plain);
-        grid.row(vec![
+        let mut errors =
+            vec![plain(significant(candidate.error.rms, 4)), plain(significant(candidate.error.max, 4))];
+        let at = worst_at(record, candidate);
+        errors.insert(if parts { 0 } else { 2 }, plain(at.to_string()));
+        let mut cells = vec![
             (candidate.rank.to_string(), Ink::Strong),
-            plain(significant(if deviation { candidate.error.objective } else { candidate.error.sum_sq }, 6)),
-            plain(significant(candidate.error.rms, 4)),
-            plain(significant(candidate.error.max, 4)),
-            plain(candidate.error.max_at.to_string()),
+            plain(significant(
+                if ranks.is_some() { candidate.error.objective } else { candidate.error.sum_sq },
+                6,
+            )),
+        ];
+        cells.extend(errors);
+        cells.extend([
             plain(significant(candidate.error.to_curve.rms, 4)),
             plain(candidate.linkage_type.name().to_owned()),
             plain(format!("{}° {:<5}", significant(transmission.worst, 3), words::over(transmission.over))),
             plain(significant(candidate.link_ratio, 3)),
             (shortened(&words::verdict(record, candidate), 24), ink),
         ]);
+        grid.row(cells);
     }
     grid.render(colour)
+}
+
+/// The point that ranks: of the largest error, or of the largest in parts of the tolerances where these are minimised.
+pub(super) fn worst_at(record: &Record, candidate: &Candidate) -> usize {
+    let parts = record.problem.resolved.measure() == Measure::LargestPart;
+    let worst = if parts { words::worst_in_parts(record, candidate) } else { None };
+    worst.unwrap_or(candidate.error.max_at)
 }
 
 /// What the columns mean and why candidates weren't accepted.
@@ -116,16 +135,15 @@ fn notes(record: &Record) -> String {
         format!(" Lengths in {}.", if unit == Unit::In { "inches" } else { unit.label() })
     });
     let mut out = String::from("\n");
-    let solve = &record.problem.resolved.solve;
-    let first = match (solve.objective, &record.problem.resolved.task.path.tolerance) {
-        (Objective::SumOfSquares, _) => "",
-        (Objective::MaxDeviation, None) => "deviation: the largest error, which was minimised. ",
-        (Objective::MaxDeviation, Some(_)) => {
-            "deviation: the largest error in parts of its point's tolerance, which was minimised; 1 is just met. "
-        }
+    let measure = record.problem.resolved.measure();
+    let first = words::minimised(measure).map_or(String::new(), |(_, sentence)| format!("{sentence} "));
+    let max = if measure == Measure::LargestPart {
+        "at: at which point (from 0). max: the largest error."
+    } else {
+        "max: the largest error, at which point (from 0)."
     };
     let key = format!(
-        "{first}max: the largest error, at which point (from 0). to curve: rms distance to the whole coupler curve. \
+        "{first}{max} to curve: rms distance to the whole coupler curve. \
          transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
          (used). ratio: longest to shortest link.{unit}"
     );
@@ -134,9 +152,9 @@ fn notes(record: &Record) -> String {
         out.push('\n');
         out.push_str(&wrapped("  ", "  ", &tolerances, COLUMNS));
     }
-    if let Some(raw) = against_raw(record) {
+    for sentence in against_raw(record).into_iter().chain(words::fewer(record)) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &raw, COLUMNS));
+        out.push_str(&wrapped("  ", "  ", &sentence, COLUMNS));
     }
     // A hundred refusals for the same reason are one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
@@ -189,13 +207,16 @@ fn best(record: &Record) -> String {
     out
 }
 
-/// `crank from 31.102° to 371.1°, counter-clockwise`, or `crank between 11.459° and 51.566°, to and fro`.
+/// `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°, clockwise, and back the same way`, or
+/// `crank between 11.459° and 51.566°, to and fro`.
 pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     let angles = &candidate.crank_deg;
     let (first, last) = (*angles.first()?, *angles.last()?);
     if !angles.iter().all(|angle| angle.is_finite()) {
         return None;
     }
+    let reverses = candidate.goes_to_and_fro() || candidate.defects.iter().any(Defect::is_to_and_fro);
+    let way_back = if reverses { ", and back the same way" } else { "" };
     let way = match (angles.is_sorted(), angles.iter().rev().is_sorted()) {
         (true, true) => return Some(format!("crank at {}°", brief(first, 5))),
         (true, false) => "counter-clockwise",
@@ -210,7 +231,7 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
             ));
         }
     };
-    Some(format!("crank from {}° to {}°, {way}", brief(first, 5), brief(last, 5)))
+    Some(format!("crank from {}° to {}°, {way}{way_back}", brief(first, 5), brief(last, 5)))
 }
 
 /// The linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.

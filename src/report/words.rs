@@ -1,7 +1,7 @@
 //! Verdicts, requirements and endings in plain words.
 
 use super::text::{brief, clean, exact};
-use crate::problem::spec::TransmissionOver;
+use crate::problem::spec::{Measure, TransmissionOver};
 use crate::record::{Candidate, Figure, Reason, Record, Requirement, Unit};
 use crate::task::{AngleOffset, Defect};
 
@@ -42,6 +42,9 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
 /// A defect as a sentence part.
 pub(super) fn of_defect(defect: &Defect) -> String {
     match defect {
+        Defect::Order { .. } if defect.is_to_and_fro() => {
+            "runs to and fro: back to point 0 only through all other points in reverse".to_owned()
+        }
         Defect::Order { at } => format!("out of order at {}", points(at)),
         Defect::Branch { at } => format!("passes a toggle: {} on another branch than point 0", points(at)),
         Defect::Circuit { at } => {
@@ -137,12 +140,23 @@ fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
         .collect()
 }
 
+impl Deviation {
+    /// The error in parts of its tolerance; 0 where there is none.
+    fn part(&self) -> f64 {
+        if self.error == 0.0 { 0.0 } else { self.error / self.tolerance }
+    }
+}
+
+/// The deviation that is the largest part of its tolerance; of equals the first.
+fn worst(list: &[Deviation]) -> Option<&Deviation> {
+    list.iter().max_by(|x, y| x.part().total_cmp(&y.part()).then(y.point.cmp(&x.point)))
+}
+
 /// Whether a candidate keeps to the tolerances, and by how much and where the nearest does not: a sentence or two;
 /// `None` where no tolerance was asked.
 pub(super) fn tolerances(record: &Record) -> Option<String> {
-    let part = |d: &Deviation| if d.error == 0.0 { 0.0 } else { d.error / d.tolerance };
     let band = |candidate: &Candidate| {
-        deviations(record, candidate).iter().map(part).fold(f64::NEG_INFINITY, f64::max)
+        worst(&deviations(record, candidate)).map_or(f64::NEG_INFINITY, Deviation::part)
     };
     // Among the candidates that keep to everything else, if there are any.
     let otherwise_good = |c: &&Candidate| {
@@ -163,8 +177,8 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     let row = best.requirements.iter().find(|r| r.name == "tolerance")?;
     let list = deviations(record, &best);
     let unit = unit_suffix(record);
+    let worst = worst(&list)?;
     if row.met {
-        let worst = list.iter().max_by(|x, y| part(x).total_cmp(&part(y)))?;
         return Some(format!(
             "Tolerances met: #{} comes nearest to one at point {}, with an error of {}{unit} where {}{unit} is \
              allowed.",
@@ -174,7 +188,6 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
             short(worst.tolerance)
         ));
     }
-    let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
     let mut text = format!(
         "Tolerances not met by {}{unit} at point {}: the nearest, #{}, has an error of {}{unit} there and {}{unit} is allowed.",
         short(worst.error - worst.tolerance),
@@ -192,10 +205,10 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     Some(text)
 }
 
-/// The point at which the tolerance is exceeded most, where one was asked.
+/// The point whose error is the largest part of its tolerance, where one was asked and is exceeded.
 fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
     let list = deviations(record, candidate);
-    let worst = list.iter().max_by(|x, y| (x.error - x.tolerance).total_cmp(&(y.error - y.tolerance)))?;
+    let worst = worst(&list)?;
     let (excess, j, error, limit) =
         (worst.error - worst.tolerance, worst.point, worst.error, worst.tolerance);
     let (mut shown, mut allowed) = (short(error), short(limit));
@@ -208,10 +221,64 @@ fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
     })
 }
 
+/// What was minimised where it is not the plain sum of squares: the head of its column and a sentence on it.
+pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)> {
+    match measure {
+        Measure::Sum => None,
+        Measure::WeightedSum => Some((
+            "weighted sq",
+            "weighted sq: the sum of squared errors, each times its point's weight, which was minimised and ranks; rms and \
+             max are without weights.",
+        )),
+        Measure::Largest => {
+            Some(("deviation", "deviation: the largest error, which was minimised and ranks."))
+        }
+        Measure::LargestPart => Some((
+            "deviation",
+            "deviation: the largest error in parts of its point's tolerance, which was minimised and ranks; 1 is just met.",
+        )),
+    }
+}
+
+/// The point whose error is the largest in parts of its tolerance, where tolerances were asked.
+pub(super) fn worst_in_parts(record: &Record, candidate: &Candidate) -> Option<usize> {
+    worst(&deviations(record, candidate)).map(|worst| worst.point)
+}
+
+/// Why fewer candidates are listed than were asked for; `None` where there are as many, or none at all.
+pub(super) fn fewer(record: &Record) -> Option<String> {
+    let (listed, asked) = (record.candidates.len(), record.problem.resolved.solve.candidates);
+    if listed == 0 || listed >= asked {
+        return None;
+    }
+    let accepted = record.candidates.iter().any(|c| c.accepted);
+    let mut text = format!("{listed} of the {asked} candidates that were asked for: ");
+    text.push_str(match (record.method.used == ["continuation"], accepted) {
+        (true, true) => "no other linkage through the nine points is accepted.",
+        (true, false) => "no other linkage passes the nine points.",
+        (false, true) => {
+            "whatever else the search judged draws one of these curves again, mirrored where the target is symmetric, or \
+             is not accepted."
+        }
+        (false, false) => "whatever else the search judged draws one of these curves again.",
+    });
+    match record.termination.reason {
+        Reason::EvaluationLimit => {
+            text.push_str(" More evaluations may find others: the budget ended the search.")
+        }
+        Reason::TimeLimit | Reason::Cancelled => {
+            text.push_str(" It was cut short: a longer search may find others.")
+        }
+        Reason::Converged | Reason::TargetReached | Reason::Stalled => {}
+    }
+    Some(text)
+}
+
 /// `accepted`, or `no: transmission, order`, or `no: transmission +2`.
 pub(super) fn verdict(record: &Record, candidate: &Candidate) -> String {
     let objections = objections(record, candidate);
     match objections.as_slice() {
+        [] if candidate.goes_to_and_fro() => "accepted (to and fro)".to_owned(),
         [] if candidate.defects.is_empty() => "accepted".to_owned(),
         [] => format!("accepted ({})", defect_names(candidate)),
         [only] => format!("no: {}", only.key),

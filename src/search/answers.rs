@@ -2,6 +2,7 @@
 
 use super::buildable::buildable;
 use super::family::family;
+use super::symmetry::mirror_image_serves;
 use super::warnings::warnings;
 use super::{Budget, Observer, SearchOutcome};
 use crate::problem::Problem;
@@ -30,6 +31,7 @@ pub fn beside(
 ) -> Beside {
     for candidate in &mut outcome.candidates {
         candidate.warnings = warnings(problem, candidate);
+        candidate.mirror_serves = mirror_image_serves(problem, candidate);
     }
     let family = outcome.candidates.first().and_then(|best| family(problem, best));
     let solve = &problem.spec().solve;
@@ -41,7 +43,10 @@ pub fn beside(
     }
     let used = outcome.evaluations.objective;
     let allowance = used.min(solve.evaluations.saturating_sub(used));
-    let found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
+    let mut found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
+    if let Some(candidate) = &mut found.candidate {
+        candidate.mirror_serves = mirror_image_serves(problem, candidate);
+    }
     outcome.evaluations.objective += found.evaluations.objective;
     outcome.evaluations.positions += found.evaluations.positions;
     if let Some(reason) = budget.stop_reason().filter(|_| found.searched) {

@@ -22,7 +22,7 @@ use super::warm::start_at;
 use super::{Budget, Observer, Progress, SearchOutcome, plan};
 use crate::assess::assess;
 use crate::problem::Problem;
-use crate::problem::spec::{DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
+use crate::problem::spec::{ClosingPolicy, DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
 use crate::record::{Candidate, Conflict, Relaxation};
 use crate::solve::population::PopulationError;
 use crate::task::error::rms;
@@ -307,6 +307,7 @@ impl Inquiry<'_> {
                     Demand::Direction => base.require.direction = DirectionPolicy::Any,
                     Demand::Circuit => base.require.circuit = OnePolicy::Any,
                     Demand::Branch => base.require.branch = OnePolicy::Any,
+                    Demand::Closing => base.require.closing = ClosingPolicy::Any,
                     _ => {}
                 }
             }
@@ -324,9 +325,7 @@ impl Inquiry<'_> {
         base: &ProblemSpec,
         mut warm: Vec<Candidate>,
     ) -> Result<Option<(f64, Relaxation)>, PopulationError> {
-        let has_measure = |d: &Demand| {
-            !matches!(d, Demand::Type | Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch)
-        };
+        let has_measure = |d: &Demand| !d.is_policy();
         let measured: Vec<Demand> = demands.iter().copied().filter(has_measure).collect();
         let Some(ladder) = Ladder::new(self.problem, &measured) else { return Ok(None) };
         let mut reached: Vec<Vec<f64>> = Vec::new();

@@ -212,6 +212,8 @@ impl At<'_> {
             };
         let length = LimitUnit::Length;
         match kind {
+            // Where no type is asked for, the crank has to turn fully to come back to the first point.
+            RowKind::Type if require.types.is_empty() => label("closing", None, 0.0, length, 1.0, size),
             RowKind::Type => label("type", None, 0.0, length, 1.0, size),
             RowKind::LinkRatio(longer) => {
                 let limit = require.link_ratio_max;

@@ -3,7 +3,8 @@
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::problem::spec::{
-    DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec,
+    ClosingPolicy, DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy,
+    OrderPolicy, ProblemSpec,
 };
 use crate::record::{Candidate, Change, Figure, TypedValue};
 
@@ -30,6 +31,8 @@ pub enum Demand {
     Circuit,
     /// `require.branch`
     Branch,
+    /// `require.closing`
+    Closing,
     /// A key of `[design]`.
     Design(DesignKey),
 }
@@ -110,6 +113,7 @@ impl Demand {
         push(Demand::Direction, require.direction != DirectionPolicy::Any);
         push(Demand::Circuit, require.circuit == OnePolicy::One);
         push(Demand::Branch, require.branch == OnePolicy::One);
+        push(Demand::Closing, problem.has_to_turn_on());
         for key in DESIGN_KEYS {
             push(Demand::Design(key), !key.get(&spec.design).is_empty());
         }
@@ -129,9 +133,16 @@ impl Demand {
             Demand::Direction,
             Demand::Circuit,
             Demand::Branch,
+            Demand::Closing,
         ];
         let designs = DESIGN_KEYS.map(Demand::Design);
         all.into_iter().chain(designs).find(|demand| demand.rows().contains(&name))
+    }
+
+    /// Whether it is a choice among words, with no measure of how far it is loosened.
+    pub fn is_policy(self) -> bool {
+        use Demand::{Branch, Circuit, Closing, Direction, Order, Type};
+        matches!(self, Type | Order | Direction | Circuit | Branch | Closing)
     }
 
     /// The key in the problem file.
@@ -147,6 +158,7 @@ impl Demand {
             Demand::Direction => "require.direction",
             Demand::Circuit => "require.circuit",
             Demand::Branch => "require.branch",
+            Demand::Closing => "require.closing",
             Demand::Design(key) => key.key(),
         }
     }
@@ -164,6 +176,7 @@ impl Demand {
             Demand::Direction => &["direction"],
             Demand::Circuit => &["circuit"],
             Demand::Branch => &["branch"],
+            Demand::Closing => &["closing"],
             Demand::Design(key) => key.rows(),
         }
     }
@@ -182,6 +195,7 @@ impl Demand {
             Demand::Direction => require.direction = DirectionPolicy::Any,
             Demand::Circuit => require.circuit = OnePolicy::Any,
             Demand::Branch => require.branch = OnePolicy::Any,
+            Demand::Closing => require.closing = ClosingPolicy::Any,
             Demand::Design(key) => key.widen(problem, &mut spec.design),
         }
         spec
@@ -212,7 +226,12 @@ impl Demand {
                     |l: Limits| [Limit { value: l.0, outward: -1.0 }, Limit { value: l.1, outward: 1.0 }];
                 (!limits.is_empty()).then(|| limits.into_iter().flat_map(pair).collect())
             }
-            Demand::Type | Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch => None,
+            Demand::Type
+            | Demand::Order
+            | Demand::Direction
+            | Demand::Circuit
+            | Demand::Branch
+            | Demand::Closing => None,
         }
     }
 
@@ -232,7 +251,7 @@ impl Demand {
             Demand::Design(key) => {
                 key.set(&mut spec.design, |i| Limits(limits[2 * i], limits[2 * i + 1]));
             }
-            Demand::Type | Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch => {}
+            _ => {}
         }
         spec
     }
@@ -272,6 +291,7 @@ impl Demand {
             },
             Demand::Circuit => word(require.circuit == OnePolicy::Any, "one"),
             Demand::Branch => word(require.branch == OnePolicy::Any, "one"),
+            Demand::Closing => word(!require.closing.is_one_way(), "one-way"),
             Demand::Design(key) => {
                 let limits = key.get(&spec.design);
                 match limits.as_slice() {

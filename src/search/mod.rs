@@ -16,6 +16,7 @@ pub mod family;
 mod fixture;
 pub mod free;
 pub mod keeper;
+mod look;
 pub mod loosen;
 pub mod multistart;
 pub mod nearest;
@@ -30,6 +31,7 @@ mod repeats;
 pub mod starts;
 #[cfg(test)]
 mod stopping_tests;
+pub mod symmetry;
 pub mod timed;
 pub mod warm;
 pub mod warnings;

@@ -8,18 +8,21 @@
 //!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
 //!   other side do; or
 //! - they draw the same curve: their coupler points at the target points, and their whole curves, lie within
-//!   [`SAME_CURVE`] of the target's size of each other.
+//!   [`SAME_CURVE`] of the target's size of each other; or
+//! - the target is symmetric, and its symmetry makes the one of the other (in the list that is given; a search goes on
+//!   for as long as it did without this rule).
 //!
 //! Of many exact answers (a family of them) the best is taken, and of the others, in their order, those that
 //! look different: first at least half a span apart from all that are taken, and where that gives too few a
 //! quarter, and so on down to [`NEAR`].
 
-use crate::linkage::{Complex, CouplerCurve};
+use super::look::Look;
+use super::symmetry::Symmetries;
 use crate::problem::Problem;
 use crate::problem::spec::Objective;
 use crate::record::{Candidate, Figure};
 use crate::task::Defect;
-use std::cell::OnceCell;
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 /// Curves nearer to each other than this part of the target's size are one answer.
@@ -28,8 +31,7 @@ pub const SAME_CURVE: f64 = 1e-2;
 pub const NEAR: f64 = 0.05;
 /// How far apart members of a family of exact answers should be, in spans: as far as gives enough of them.
 const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
-/// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
-pub const EXACT: f64 = 1e-24;
+pub use crate::record::EXACT_MEAN_SQ as EXACT;
 
 /// The sum of squares below which a fit is exact.
 pub fn exact_sum_sq(problem: &Problem) -> f64 {
@@ -161,129 +163,21 @@ pub fn sort(problem: &Problem, candidates: &mut [Candidate]) {
     candidates.sort_by_cached_key(|candidate| Key::of(candidate, floor));
 }
 
-/// Points of the target at which two candidates are compared, at most.
-const COMPARED: usize = 64;
-/// Samples of a coupler curve, and of them one in this many is held against the other curve.
-const OUTLINE: usize = 240;
-const PROBE_EVERY: usize = 5;
-
-/// A, B, C, D, P.
-type Joints = [Complex; 5];
-
-/// A candidate as it looks.
-struct Look<'a> {
-    candidate: &'a Candidate,
-    /// Its joints at the first point, then those of its cognates there, each also with its sides exchanged.
-    forms: OnceCell<Option<[Joints; 6]>>,
-    at_points: OnceCell<Vec<Complex>>,
-    outline: OnceCell<Vec<Complex>>,
-}
-
-impl<'a> Look<'a> {
-    fn of(candidate: &'a Candidate) -> Look<'a> {
-        let (forms, at_points, outline) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Look { candidate, forms, at_points, outline }
-    }
-
-    /// Joints of the cognates from the table of [`crate::linkage::cognate`].
-    fn forms(&self) -> Option<&[Joints; 6]> {
-        let made = || {
-            let linkage = &self.candidate.linkage;
-            let (angle, t1) = self.candidate.crank_deg.first().zip(self.candidate.t1_at.first())?;
-            let joints = linkage.position_with(angle.to_radians(), *t1).joints()?;
-            let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-            let (c, d, p) = (joints.crank_pin, joints.follower_pin, joints.coupler_point);
-            let z = linkage.coupler_ratio();
-            let g = linkage.cognate_pivot();
-            let rest = 1.0 - z;
-            let (w2, w3, w4) = (c - a, d - c, d - b);
-            Some([
-                [a, b, c, d, p],
-                [b, a, d, c, p],
-                [a, g, a + z * w3, g + z * w4, p],
-                [g, a, g + z * w4, a + z * w3, p],
-                [b, g, b - rest * w3, g + rest * w2, p],
-                [g, b, g + rest * w2, b - rest * w3, p],
-            ])
-        };
-        self.forms.get_or_init(made).as_ref()
-    }
-
-    /// How different this candidate looks from another and its cognates: the largest distance of a joint from
-    /// its counterpart over the larger span. Infinite where there is nothing to look at.
-    fn difference(&self, other: &Look<'_>) -> f64 {
-        let (Some(own), Some(theirs)) = (self.forms(), other.forms()) else { return f64::INFINITY };
-        let own = &own[0];
-        let apart = |form: &Joints| {
-            let moved = own.iter().zip(form).map(|(p, q)| (p - q).norm()).fold(0.0, f64::max);
-            moved / span(own).max(span(form)).max(f64::MIN_POSITIVE)
-        };
-        theirs.iter().map(apart).fold(f64::INFINITY, f64::min)
-    }
-
-    fn at_points(&self) -> &[Complex] {
-        self.at_points.get_or_init(|| {
-            let candidate = self.candidate;
-            let every = candidate.crank_deg.len().div_ceil(COMPARED).max(1);
-            candidate
-                .crank_deg
-                .iter()
-                .zip(&candidate.t1_at)
-                .step_by(every)
-                .filter_map(|(deg, t1)| candidate.linkage.position_with(deg.to_radians(), *t1).joints())
-                .map(|joints| joints.coupler_point)
-                .collect()
-        })
-    }
-
-    fn outline(&self) -> &[Complex] {
-        self.outline.get_or_init(|| {
-            let start = self.candidate.crank_deg.first().zip(self.candidate.t1_at.first());
-            start.map_or(Vec::new(), |(deg, t1)| {
-                let linkage = &self.candidate.linkage;
-                CouplerCurve::through(linkage, deg.to_radians(), *t1, OUTLINE).points().collect()
-            })
-        })
-    }
-
-    fn draws_the_curve_of(&self, other: &Look<'_>, reach: f64) -> bool {
-        let (own, theirs) = (self.at_points(), other.at_points());
-        own.len() == theirs.len()
-            && own.iter().zip(theirs).all(|(p, q)| (p - q).norm() <= reach)
-            && lies_on(self.outline(), other.outline(), reach)
-            && lies_on(other.outline(), self.outline(), reach)
-    }
-}
-
-/// The largest distance between two joints.
-fn span(joints: &Joints) -> f64 {
-    let from = |i: usize| joints[..i].iter().map(move |q| (joints[i] - q).norm());
-    (1..joints.len()).flat_map(from).fold(0.0, f64::max)
-}
-
-/// Whether a curve lies within `reach` of a closed polygon.
-fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
-    let near = |p: &Complex| {
-        (0..polygon.len()).any(|i| {
-            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-            let (along, v) = (to - from, p - from);
-            let length_sq = along.norm_sqr();
-            let part = if length_sq > 0.0 {
-                ((v.re * along.re + v.im * along.im) / length_sq).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            (v - along * part).norm_sqr() <= reach * reach
-        })
-    };
-    curve.iter().step_by(PROBE_EVERY).all(near)
-}
-
 /// The places of the best distinct candidates, at most `wanted`, better first.
 ///
 /// Where at least one is accepted only accepted ones are given. Of one answer that is wanted nothing is drawn
 /// and nothing compared but the ranks.
 pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
+    chosen_but_for(problem, &Symmetries::none(), found, wanted)
+}
+
+/// As [`chosen`]; what a symmetry of the target makes of one answer is that answer too.
+fn chosen_but_for(
+    problem: &Problem,
+    symmetries: &Symmetries,
+    found: &[Candidate],
+    wanted: usize,
+) -> Vec<usize> {
     let floor = exact_objective(problem);
     let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
     // Equals that differ in their last digits are told apart by these, not by who was found first.
@@ -307,9 +201,10 @@ pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usiz
     if accepted > 0 {
         order.truncate(accepted);
     }
-    let looks: Vec<Look<'_>> = found.iter().map(Look::of).collect();
+    let looks: Vec<Look<'_>> = found.iter().map(|c| Look::of(Cow::Borrowed(c))).collect();
     let reach = SAME_CURVE * problem.task().size();
     let mut taken: Vec<usize> = Vec::new();
+    let mut images: Vec<Look<'_>> = Vec::new();
     // Once one answer with a taken one, always so: nothing that is taken is given back.
     let mut dropped = vec![false; found.len()];
     let mut take = |among: &[usize], apart: f64| {
@@ -325,9 +220,11 @@ pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usiz
             if least < apart {
                 continue;
             }
-            dropped[i] = taken.iter().any(|&k| looks[i].draws_the_curve_of(&looks[k], reach));
+            dropped[i] = taken.iter().any(|&k| looks[i].draws_the_curve_of(&looks[k], reach))
+                || images.iter().any(|image| image.is(&looks[i], NEAR, reach));
             if !dropped[i] {
                 taken.push(i);
+                images.extend(symmetries.images(problem, &found[i]).map(|c| Look::of(Cow::Owned(c))));
             }
         }
     };
@@ -347,9 +244,10 @@ pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> 
     chosen(problem, found, wanted).len()
 }
 
-/// The best distinct candidates, at most `wanted`, ranked from 1, and all others as they were found.
+/// The best distinct candidates, at most `wanted`, ranked from 1, and all others as they were found. Of mirror images
+/// that a symmetric target allows one is given.
 pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
-    let places = chosen(problem, &found, wanted);
+    let places = chosen_but_for(problem, &Symmetries::of(problem), &found, wanted);
     let mut rank_of = vec![0; found.len()];
     for (rank, &place) in (1..).zip(&places) {
         rank_of[place] = rank;

@@ -20,7 +20,8 @@ pub const ON_BOUND: f64 = 1e-6;
 /// A figure that misses a limit by rounding does not miss it: the tolerance of requirements.
 const ROUNDING: f64 = 1e-7;
 
-/// The warnings of a candidate: transmission angle, link ratio, change point, then each limit that it lies on.
+/// The warnings of a candidate: transmission angle, link ratio, change point, a closed path that is run to and fro,
+/// then each limit that it lies on.
 pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     let mut list = Vec::new();
     let mut push = |kind, key: &str, value: f64, limit: f64, text: String| {
@@ -44,6 +45,16 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         let text = format!("Grashof margin {}: almost a change point", shown(margin));
         push(WarningKind::ChangePoint, "grashof_margin", margin, least, text);
     }
+    if candidate.goes_to_and_fro() {
+        let least = candidate.crank_deg.iter().copied().fold(f64::INFINITY, f64::min);
+        let greatest = candidate.crank_deg.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let swept = greatest - least;
+        let text = format!(
+            "the crank goes to and fro over {} deg: the motion returns to its first point back through all others",
+            shown(swept)
+        );
+        push(WarningKind::ToAndFro, "require.closing", swept, 360.0, text);
+    }
     for requirement in &candidate.requirements {
         on_bound(problem, requirement, &mut |key, side, value, limit| {
             let text = format!("{key}{side} = {}{ON_BOUND_TEXT}", shown(limit));
@@ -53,9 +64,10 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     list
 }
 
-/// Whether a warning speaks against the linkage itself, and not of the problem's limits alone.
+/// Whether a warning speaks against the linkage itself, and not of the problem's limits or of a motion that the problem
+/// allows.
 pub fn is_serious(warning: &Warning) -> bool {
-    warning.kind != WarningKind::OnBound
+    !matches!(warning.kind, WarningKind::OnBound | WarningKind::ToAndFro)
 }
 
 /// The sides of a box.

@@ -197,6 +197,7 @@ impl Ask {
             ("direction", typed(&self.direction, &Default::default())),
             ("circuit", typed(&self.circuit, &Default::default())),
             ("branch", typed(&self.branch, &Default::default())),
+            ("closing", typed(&self.closing, &Default::default())),
         ];
         for (key, word) in words {
             if let Some(word) = word {
@@ -274,6 +275,7 @@ impl Ask {
             direction: require.direction,
             circuit: require.circuit,
             branch: require.branch,
+            closing: require.closing,
             method: solve.method,
             objective: solve.objective,
             kept,

@@ -301,10 +301,7 @@ impl Sources<'_> {
             return Err(format!("compare 1 to {MOST_COMPARED} linkages"));
         }
         let keys: Result<Vec<SortKey>, _> = ask.sort.iter().map(|key| key.parse()).collect();
-        let mut keys = keys.map_err(|e| e.to_string())?;
-        if keys.is_empty() {
-            keys.push(SortKey::default());
-        }
+        let keys = keys.map_err(|e| e.to_string())?;
         let mut given = Vec::new();
         for (i, source) in ask.of.iter().enumerate() {
             // With costs: they are worked out again where the record is proved.

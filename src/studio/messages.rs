@@ -5,7 +5,8 @@ use crate::assess::assess;
 use crate::linkage::{LinkageType, NaturalCoordinates};
 use crate::problem::Problem;
 use crate::problem::spec::{
-    DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec, TransmissionOver,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec,
+    TransmissionOver,
 };
 use crate::problem_file::Expect;
 use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation, Unit};
@@ -78,6 +79,9 @@ pub struct Ask {
     /// Whether the motion must stay on one branch.
     #[serde(default, skip_serializing_if = "is_default")]
     pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub closing: ClosingPolicy,
     /// How to search; `continuation`: all linkages through exactly nine points.
     #[serde(default, skip_serializing_if = "is_default")]
     pub method: Method,

@@ -88,6 +88,7 @@ pub(super) fn plain(key: &str) -> String {
         "require.direction" => "the direction of the crank",
         "require.circuit" => "staying on one circuit",
         "require.branch" => "passing no toggle",
+        "require.closing" => "returning to the first point without reversing",
         "task.path.tolerance" => "the largest error",
         _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
     };
@@ -115,6 +116,12 @@ fn in_the_way(record: &Record) -> String {
 
 /// All linkages through nine points, counted in words; proofs where there are any.
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
+    if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
+        return vec![
+            "No linkage was found that passes all nine points: they are in special position, such as on one line."
+                .into(),
+        ];
+    }
     let [found, real, paths, proof] = exact::sentences(record);
     let counted = &record.census;
     // What is isolated is known by its proof.

@@ -42,6 +42,18 @@ pub enum Timing {
     },
 }
 
+/// How the motion may come back to the first point of a path that ends where it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Return {
+    /// By turning on: the crank turns fully.
+    #[default]
+    TurningOn,
+    /// By going on around its circuit, where the crank rocks through both of its toggles.
+    AroundTheCircuit,
+    /// Also by going back through all points.
+    Any,
+}
+
 /// Targets of a smaller extent are refused: squares of their errors would be lost below the smallest number.
 pub const SMALLEST_SIZE: f64 = 1e-100;
 
@@ -52,6 +64,7 @@ pub struct PathTask {
     weights: Vec<f64>,
     tolerances: Option<Vec<f64>>,
     closed: bool,
+    comes_back: Return,
     timing: Timing,
     size: f64,
     centre: Complex,
@@ -108,7 +121,7 @@ pub struct PathOptions {
     pub weights: Option<Vec<f64>>,
     /// One tolerance a point: the largest error accepted there.
     pub tolerances: Option<Vec<f64>>,
-    /// Whether the target is a closed curve.
+    /// Whether the target is a closed curve: the last point is followed by the first.
     pub closed: bool,
 }
 
@@ -182,6 +195,7 @@ impl PathTask {
             weights: options.weights.unwrap_or_else(|| vec![1.0; n]),
             tolerances: options.tolerances,
             closed: options.closed,
+            comes_back: Return::default(),
             timing,
             size,
             centre: Complex::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])),
@@ -195,7 +209,13 @@ impl PathTask {
     pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, TaskError> {
         let options =
             PathOptions { weights: Some(weights), tolerances: self.tolerances, closed: self.closed };
-        PathTask::new(self.points.into_iter().map(crate::linkage::xy).collect(), self.timing, options)
+        let points = self.points.into_iter().map(crate::linkage::xy).collect();
+        Ok(PathTask::new(points, self.timing, options)?.coming_back(self.comes_back))
+    }
+
+    /// The same task with another rule for the way back to its first point.
+    pub fn coming_back(self, comes_back: Return) -> Self {
+        PathTask { comes_back, ..self }
     }
 
     /// The target points.
@@ -226,6 +246,17 @@ impl PathTask {
     /// Whether the target is a closed curve.
     pub fn closed(&self) -> bool {
         self.closed
+    }
+
+    /// How the motion may come back to the first point; asked only where [`PathTask::returns`].
+    pub fn comes_back(&self) -> Return {
+        self.comes_back
+    }
+
+    /// Whether the motion has to come back to the first point: the target is closed, or its last point repeats the
+    /// first and the timing is free. (Prescribed angles say themselves how the repeated point is reached.)
+    pub fn returns(&self) -> bool {
+        self.closed || (self.timing == Timing::Free && self.repeats_first())
     }
 
     /// Whether the last point repeats the first.

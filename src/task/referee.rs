@@ -8,8 +8,14 @@
 //! *Order* is judged where the timing is free (prescribed angles are an order by themselves): the parameter
 //! of the circuit (the crank angle, or psi where the input rocks) must run one way through the points and
 //! less than once around.
+//!
+//! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its
+//! first, and that is taken without reversing: a crank that turns fully turns on; one that rocks comes back only by
+//! way of both toggles, around the whole circuit, where the task allows that ([`Return`]). A motion that returns
+//! through all of its points in reverse is out of order at point 0, unless the task allows that too. Prescribed
+//! angles of a closed target have to run one way for the same reason.
 
-use super::{PathTask, Timing};
+use super::{PathTask, Return, Timing};
 use crate::linkage::effort::computed;
 use crate::linkage::{
     AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility,
@@ -31,7 +37,8 @@ const CLOSURE_SAMPLES: usize = 24;
 pub enum Defect {
     /// The points are not passed in their order.
     Order {
-        /// The points at which the motion would have to jump back.
+        /// The points at which the motion would have to jump back; [0] where it returns to its first point only
+        /// through all others in reverse.
         at: Vec<usize>,
     },
     /// The motion passes a toggle.
@@ -47,6 +54,16 @@ pub enum Defect {
 }
 
 impl Defect {
+    /// The defect of a motion that returns to its first point only by reversing.
+    pub fn to_and_fro() -> Defect {
+        Defect::Order { at: vec![0] }
+    }
+
+    /// Whether the motion runs through its points in order, and returns to the first only by reversing.
+    pub fn is_to_and_fro(&self) -> bool {
+        *self == Defect::to_and_fro()
+    }
+
     /// order, branch or circuit.
     pub fn name(&self) -> &'static str {
         match self {
@@ -83,6 +100,8 @@ pub struct Verdict {
     pub defects: Vec<Defect>,
     /// +1 when the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 clockwise.
     pub direction: f64,
+    /// Whether the motion comes back to the first point of a target that ends there only by reversing.
+    pub to_and_fro: bool,
     /// The motion used.
     pub motion: UsedMotion,
 }
@@ -140,31 +159,43 @@ pub fn judge(
     }
     // The closing point is the first one again and says nothing of the order.
     let ordered = if task.repeats_first() { n - 1 } else { n };
+    let one_branch = rocks && off_branch.is_empty();
+    let comes_back = task.comes_back();
+    let mut to_and_fro = false;
     let course = if prescribed && !rocks {
         let direction = if parameter[n - 1] < parameter[0] { -1.0 } else { 1.0 };
         let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
         let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         // A closed target is closed by turning on to its first point.
         let high = if task.closed() { high.max(low + TAU) } else { high };
-        Course { direction, range: [low, high], jumps: Vec::new() }
+        let one_way = task.closed() && comes_back != Return::Any;
+        let jumps = if one_way { Course::within_a_branch(&parameter).jumps } else { Vec::new() };
+        Course { direction, range: [low, high], jumps }
     } else if prescribed || !off_circuit.is_empty() {
         // The hull of what is used; within a branch psi is monotone in the crank angle.
         let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
         let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
+        to_and_fro = task.returns() && rocks && (one_branch || !off_circuit.is_empty());
         Course { direction, range: [low, high], jumps: Vec::new() }
     } else {
-        let one_branch = rocks && off_branch.is_empty();
         let within = one_branch.then(|| Course::within_a_branch(&parameter[..ordered]));
         match within {
             Some(mut course) if course.jumps.is_empty() => {
-                // On the branch t1 = -1 psi falls where the crank angle rises.
-                course.direction *= first.assembly.sign();
-                course
+                to_and_fro = task.returns() && comes_back != Return::AroundTheCircuit;
+                if task.returns() && !to_and_fro {
+                    // On from the last point by way of both toggles.
+                    off_branch.push(0);
+                    Course::through(&parameter[..ordered], true)
+                } else {
+                    // On the branch t1 = -1 psi falls where the crank angle rises.
+                    course.direction *= first.assembly.sign();
+                    course
+                }
             }
             _ => {
                 // Back at the first point, the motion has gone the whole way round.
-                let whole = !one_branch && (task.closed() || task.repeats_first());
+                let whole = task.returns() && !(one_branch && comes_back == Return::Any);
                 let around = Course::through(&parameter[..ordered], whole);
                 if let Some(within) = within.filter(|_| around.jumps.is_empty()) {
                     // The order holds around the circuit alone: by way of the toggles and the other branch.
@@ -194,8 +225,10 @@ pub fn judge(
     }
     if !course.jumps.is_empty() {
         defects.push(Defect::Order { at: course.jumps });
+    } else if to_and_fro && comes_back != Return::Any {
+        defects.push(Defect::to_and_fro());
     }
-    Verdict { defects, direction: course.direction, motion }
+    Verdict { defects, direction: course.direction, to_and_fro, motion }
 }
 
 /// How a cyclic parameter runs through the points.

@@ -7,6 +7,7 @@ use crate::record::{Alternative, Candidate, Record};
 use crate::search::cognates::{SAME_ERROR, first_apart, not_met};
 use crate::search::family::family;
 use crate::search::rank::exact_sum_sq;
+use crate::search::symmetry::mirror_image_serves;
 use crate::search::warnings::{is_serious, warnings};
 
 /// Everything of the record that is no candidate's figure.
@@ -14,6 +15,10 @@ pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mi
     for candidate in record.candidates.iter().chain(&record.buildable) {
         let mut against = Against { rank: candidate.rank, mismatches };
         against.warnings(problem, candidate);
+        let serves = mirror_image_serves(problem, candidate);
+        if candidate.mirror_serves != serves {
+            against.differ("mirror_serves", candidate.mirror_serves.to_string(), serves.to_string());
+        }
         for (i, alternative) in candidate.alternatives.iter().enumerate() {
             against.alternative(problem, candidate, alternative, i + 1);
         }

@@ -15,6 +15,7 @@ export const NAMES: Record<string, [string, string]> = {
   "require.direction": ["direction of the crank", ""],
   "require.circuit": ["circuits", ""],
   "require.branch": ["toggles", ""],
+  "require.closing": ["return to the first point", ""],
   "task.path.tolerance": ["largest error", "unit"],
 };
 

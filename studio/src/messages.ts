@@ -27,6 +27,7 @@ export interface Ask {
   direction?: "any" | "ccw" | "cw";
   circuit?: "one" | "any";
   branch?: "one" | "any";
+  closing?: "one-way" | "any";
   method?: string;
   objective?: "sum-of-squares" | "max-deviation";
   /** Other keys of the problem file, as they are typed there. */

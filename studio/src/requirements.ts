@@ -14,7 +14,7 @@ const BOXES = [
   { key: KINDS[1], box: "space", numbers: "space-numbers", prefix: "space-", around: spaceAround },
 ] as const;
 /** Checked: required, which is the default. */
-const CHECKS = [["order", "required"], ["circuit", "one"], ["branch", "one"]] as const;
+const CHECKS = [["order", "required"], ["circuit", "one"], ["branch", "one"], ["closing", "one-way"]] as const;
 
 /** Listens to the controls; every change makes another task of the one that stands. */
 export function listenToRequirements(now: () => Task, change: (task: Task) => void, shown: () => void) {

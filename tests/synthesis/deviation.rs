@@ -5,7 +5,7 @@ use crate::common::{bytes, literature, parse, run_on};
 use linkwright::problem::Problem;
 use linkwright::problem::fitness::PathFitness;
 use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Candidate, Record};
+use linkwright::record::{Candidate, Figure, Record};
 use linkwright::report::Colour;
 use linkwright::report::table::candidates_table;
 use linkwright::search::Budget;
@@ -121,6 +121,53 @@ fn tolerances_are_the_unit_of_the_deviation() {
     assert_eq!(best.accepted, most <= 1.0 + 1e-7);
     let equal = parts.iter().filter(|p| **p >= most * (1.0 - 1e-6)).count();
     assert!(equal >= 7, "{parts:?}");
+}
+
+#[test]
+fn candidates_are_in_the_order_of_the_largest_part_of_a_tolerance_and_that_is_what_is_shown() {
+    // Six tight points and five loose ones, too tight for any linkage: nothing is accepted, and the deviation ranks.
+    let points: Vec<String> = (0..11)
+        .map(|i| {
+            let x = 10.0 * f64::from(i);
+            format!("[{x}, {}]", if i % 2 == 0 { 0.0 } else { 14.0 } + 0.02 * (x - 50.0).powi(2))
+        })
+        .collect();
+    let tolerances: Vec<f64> = (0..11).map(|i| if i % 2 == 0 { 0.5 } else { 10.0 }).collect();
+    let text = format!(
+        "format = 1\n[task.path]\npoints = [{}]\ntolerance = {tolerances:?}\n[solve]\nobjective = \"max-deviation\"\n\
+         evaluations = 6000\n",
+        points.join(", ")
+    );
+    let record = true_record(parse(&text));
+    let mut before = 0.0_f64;
+    for candidate in &record.candidates {
+        let row = candidate.requirements.iter().find(|r| r.name == "tolerance").expect("it is asked");
+        let (Figure::Number(value), Figure::Number(limit)) = (&row.value, &row.limit) else {
+            panic!("numbers")
+        };
+        let deviation = candidate.error.objective;
+        assert!(
+            (value / limit - deviation).abs() <= 1e-9 * deviation,
+            "{value} / {limit} is not {deviation}"
+        );
+        assert!(
+            deviation >= before || candidate.requirements.iter().any(|r| !r.met && r.name != "tolerance")
+        );
+        before = before.max(deviation);
+    }
+    let page = candidates_table(&record, Colour::Never);
+    assert!(page.contains("deviation  at") && page.contains("parts of its point's tolerance"), "{page}");
+}
+
+#[test]
+fn a_weighted_sum_that_ranks_is_shown() {
+    let mut file = literature("k18", &[("solve.evaluations", "20000")]);
+    file.spec.task.path.weight = Some((0..18).map(|j| 1.0 + f64::from(j)).collect());
+    let record = true_record(file);
+    let page = candidates_table(&record, Colour::Never);
+    assert!(page.contains("weighted sq") && !page.contains("sum of sq"), "{page}");
+    let shown: Vec<f64> = record.candidates.iter().map(|c| c.error.objective).collect();
+    assert!(shown.is_sorted(), "{shown:?}");
 }
 
 #[test]

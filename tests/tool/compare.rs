@@ -4,6 +4,7 @@ use crate::common::root;
 use crate::report::records::{detail, ellipse, k18};
 use assert_cmd::Command;
 use linkwright::linkage_file;
+use linkwright::problem::spec::Measure;
 use linkwright::record::{Record, Unit};
 use linkwright::report::Colour;
 use linkwright::report::compare::{
@@ -94,8 +95,8 @@ fn a_later_key_decides_between_equals_and_every_key_has_ranks_of_its_own() {
         rows.iter().map(|row| row.ranks.clone()).collect::<Vec<_>>(),
         [[1, 2], [1, 2], [3, 1], [3, 4]]
     );
-    // The front: 1 and 3 are equal, 2 has the best angle, 0 is behind all.
-    assert_eq!(rows.iter().map(|row| row.on_front).collect::<Vec<_>>(), [true, true, true, false]);
+    // The front: 1 and 3 are equal and marked once, 2 has the best angle, 0 is behind all.
+    assert_eq!(rows.iter().map(|row| row.on_front).collect::<Vec<_>>(), [true, false, true, false]);
     let text = comparison.table(Colour::Never);
     assert!(text.contains("Ranked by rms, then transmission") && text.contains("1*"), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
@@ -109,10 +110,51 @@ fn what_differs_by_rounding_is_equal() {
     two[1].candidate.error.rms *= 1.0 - f64::EPSILON;
     assert_ne!(two[0].candidate.error.rms, two[1].candidate.error.rms);
     let rows = compare(&two, &[SortKey::Rms], Some(0)).rows;
-    assert!(rows.iter().all(|row| row.rank == 1 && row.on_front && row.behind_percent == Some(0.0)));
+    assert!(rows.iter().all(|row| row.rank == 1 && row.behind_percent == Some(0.0)));
+    assert_eq!(rows.iter().map(|row| row.on_front).collect::<Vec<_>>(), [true, false]);
+    // Nor does the margin within which a limit is met tell two figures apart; what is beyond it does.
     two[1].candidate.error.rms *= 1.0 - 1e-9;
+    let comparison = compare(&two, &[SortKey::Rms], None);
+    let marks: Vec<_> = comparison.rows.iter().map(|row| (row.rank, row.on_front)).collect();
+    assert_eq!(marks, [(1, true), (1, false)]);
+    assert!(!comparison.table(Colour::Never).contains("e-"), "{}", comparison.table(Colour::Never));
+    two[1].candidate.error.rms *= 1.0 - 1e-6;
     let rows = compare(&two, &[SortKey::Rms], None).rows;
     assert_eq!(rows.iter().map(|row| (row.rank, row.on_front)).collect::<Vec<_>>(), [(1, true), (2, false)]);
+}
+
+#[test]
+fn angles_that_print_alike_share_a_rank_and_one_of_them_is_on_the_front() {
+    let mut many: Vec<Entry> = (0..9).map(|_| entries(&k18()).remove(0)).collect();
+    for (i, entry) in many.iter_mut().enumerate() {
+        entry.candidate.transmission_deg.worst = 35.0 + 3e-10 * i as f64;
+        entry.candidate.error.rms *= 1.0 + 7e-13 * i as f64;
+    }
+    many[4].candidate.transmission_deg.worst = 34.0;
+    let rows = compare(&many, &[SortKey::Transmission, SortKey::Rms], None).rows;
+    assert_eq!(rows.iter().map(|row| row.rank).collect::<Vec<_>>(), [1, 1, 1, 1, 1, 1, 1, 1, 9]);
+    assert_eq!(rows.iter().filter(|row| row.on_front).count(), 1);
+    assert!(rows[..8].iter().all(|row| row.behind_percent == Some(0.0)));
+}
+
+#[test]
+fn what_was_minimised_ranks_where_it_is_no_plain_sum() {
+    let mut two = entries(&k18());
+    two.truncate(2);
+    for (entry, (objective, sum_sq)) in two.iter_mut().zip([(3.0, 1.0), (2.0, 4.0)]) {
+        entry.measure = Measure::WeightedSum;
+        (entry.candidate.error.objective, entry.candidate.error.sum_sq) = (objective, sum_sq);
+    }
+    let comparison = compare(&two, &[], None);
+    assert_eq!(comparison.keys, [SortKey::Objective]);
+    assert_eq!(comparison.rows[0].entry.candidate.error.sum_sq, 4.0);
+    let text = comparison.table(Colour::Never);
+    assert!(text.contains("weighted sq") && !text.contains("sum of sq"), "{text}");
+    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(comparison.html().contains("weighted sq"));
+    // Of several measures none is taken for all.
+    two[1].measure = Measure::Sum;
+    assert_eq!(compare(&two, &[], None).keys, [SortKey::SumSq]);
 }
 
 #[test]
@@ -250,7 +292,10 @@ fn the_keys_of_the_json_are_these() {
         "accepted behind_percent crank_deg defects figures label linkage max_at of_run on_front \
          percent_above_reference rank ranks recorded_differently target transmission_over type unit unmet"
     );
-    assert_eq!(keys(&json["rows"][0]["figures"]), "link_ratio max rms size sum_sq to_curve transmission");
+    assert_eq!(
+        keys(&json["rows"][0]["figures"]),
+        "link_ratio max objective rms size sum_sq to_curve transmission"
+    );
     assert_eq!(keys(&json["rows"][0]["ranks"]), "rms size");
     assert_eq!(json["reference"], "eighteen-point:2");
 }

@@ -455,3 +455,12 @@ proptest! {
         let _ = problem_file::parse("f", PLAIN, None, &key).map_err(|d| d.to_string());
     }
 }
+
+#[test]
+fn how_a_closed_path_is_closed_is_one_way_or_any() {
+    use linkwright::problem::spec::ClosingPolicy;
+    let with = |tables: &str| parsed(&format!("{PLAIN}{tables}"));
+    assert_eq!(with("").spec.require.closing, ClosingPolicy::OneWay);
+    assert_eq!(with("[require]\nclosing = \"any\"\n").spec.require.closing, ClosingPolicy::Any);
+    assert_eq!(with("[require]\nclosing = \"one-way\"\n").spec.require.closing, ClosingPolicy::OneWay);
+}

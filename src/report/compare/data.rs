@@ -13,13 +13,14 @@ pub const JSON_FORMAT: u32 = 1;
 
 /// The first columns of [`Comparison::csv`]. With several keys a column `rank_KEY` for each follows, with a
 /// reference a column `KEY_percent_above` for each figure.
-pub const COLUMN_NAMES: [&str; 28] = [
+pub const COLUMN_NAMES: [&str; 29] = [
     "rank",
     "label",
     "accepted",
     "on_front",
     "behind_percent",
     "sum_sq",
+    "objective",
     "rms",
     "max",
     "max_at",
@@ -171,6 +172,7 @@ impl Comparison {
                 row.on_front.to_string(),
                 number(row.behind_percent),
                 exact(candidate.error.sum_sq),
+                exact(candidate.error.objective),
                 exact(candidate.error.rms),
                 exact(candidate.error.max),
                 candidate.error.max_at.to_string(),

@@ -21,11 +21,14 @@ pub enum SortKey {
     LinkRatio,
     /// The diagonal of the box that the joints sweep over the circuit, least first.
     Size,
+    /// What the candidate's problem minimises, least first: the sum of squared errors with its weights, or the largest
+    /// error, where tolerances are given in parts of them.
+    Objective,
 }
 
 impl SortKey {
     /// Every key.
-    pub const ALL: [SortKey; 7] = [
+    pub const ALL: [SortKey; 8] = [
         SortKey::SumSq,
         SortKey::Rms,
         SortKey::Max,
@@ -33,6 +36,7 @@ impl SortKey {
         SortKey::Transmission,
         SortKey::LinkRatio,
         SortKey::Size,
+        SortKey::Objective,
     ];
 
     /// Its name on the command line: `to_curve`.
@@ -45,6 +49,7 @@ impl SortKey {
             SortKey::Transmission => "transmission",
             SortKey::LinkRatio => "link_ratio",
             SortKey::Size => "size",
+            SortKey::Objective => "objective",
         }
     }
 
@@ -63,6 +68,7 @@ impl SortKey {
             SortKey::Transmission => "worst transmission angle",
             SortKey::LinkRatio => "link ratio",
             SortKey::Size => "size",
+            SortKey::Objective => "what was minimised",
         }
     }
 }

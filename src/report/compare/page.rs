@@ -117,17 +117,17 @@ impl Comparison {
                 text(reference)
             );
             let heads =
-                plain_heads(&["sum of squares", "rms", "max", "to curve", "transm.", "link ratio", "size"]);
+                plain_heads(&[self.first_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"]);
             let rows = self.rows.iter().enumerate().map(|(i, row)| {
-                let cells = row.difference_percent.iter().map(|percent| Cell {
-                    shown: match self.reference == Some(i) {
+                let cells = self.shown_figures().map(|key| {
+                    let percent = row.difference_percent.get(key as usize).copied().flatten();
+                    let shown = match self.reference == Some(i) {
                         true => "reference".to_owned(),
-                        false => tables::signed_percent(*percent),
-                    },
-                    value: *percent,
-                    word: false,
+                        false => tables::signed_percent(percent),
+                    };
+                    Cell { shown, value: percent, word: false }
                 });
-                (row, i, cells.collect())
+                (row, i, cells.into())
             });
             table(body, "Differences", &heads, rows);
             body.push_str(
@@ -158,8 +158,13 @@ impl Comparison {
         );
     }
 
+    fn first_head(&self) -> &'static str {
+        self.minimised().map_or("sum of squares", |(head, _)| head)
+    }
+
     fn figure_heads(&self) -> Vec<Head> {
-        let mut heads = plain_heads(&["behind", "sum of squares", "rms", "max", "at", "to curve", "transm."]);
+        let mut heads =
+            plain_heads(&["behind", self.first_head(), "rms", "max", "at", "to curve", "transm."]);
         heads.extend(plain_heads(&["link ratio", "size", "type", "accepted"]));
         for (i, words) in
             [(0, "behind the best, per cent"), (4, "at which point"), (6, "worst transmission angle")]
@@ -204,7 +209,7 @@ impl Comparison {
         };
         let mut cells = vec![
             Cell { shown: behind, value: row.behind_percent, word: false },
-            number(SortKey::SumSq, 4),
+            number(self.first_figure(), 4),
             number(SortKey::Rms, 4),
             number(SortKey::Max, 4),
             Cell {

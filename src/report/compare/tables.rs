@@ -57,13 +57,24 @@ impl Comparison {
         out
     }
 
+    /// The figure in the first column: what was minimised, else the sum of squares.
+    pub(super) fn first_figure(&self) -> SortKey {
+        if self.minimised().is_some() { SortKey::Objective } else { SortKey::SumSq }
+    }
+
+    /// The figures of the tables, in the order of their columns.
+    pub(super) fn shown_figures(&self) -> [SortKey; 7] {
+        use SortKey::{LinkRatio, Max, Rms, Size, ToCurve, Transmission};
+        [self.first_figure(), Rms, Max, ToCurve, Transmission, LinkRatio, Size]
+    }
+
     fn figures(&self, colour: Colour, label: usize) -> String {
         use Align::{Left, Right};
         let mut grid = Grid::new(&[
             ("#", Left),
             ("linkage", Left),
             ("behind", Right),
-            ("sum of sq", Right),
+            (self.minimised().map_or("sum of sq", |(head, _)| head), Right),
             ("rms", Right),
             ("max", Right),
             ("to curve", Right),
@@ -84,7 +95,7 @@ impl Comparison {
                 (format!("{}{}{untrue}", row.rank, if row.on_front { "*" } else { "" }), Ink::Strong),
                 plain(named(row, label)),
                 plain(behind),
-                plain(figure(SortKey::SumSq, 4)),
+                plain(figure(self.first_figure(), 4)),
                 plain(figure(SortKey::Rms, 3)),
                 plain(figure(SortKey::Max, 3)),
                 plain(figure(SortKey::ToCurve, 3)),
@@ -119,7 +130,7 @@ impl Comparison {
         let mut grid = Grid::new(&[
             ("#", Left),
             ("linkage", Left),
-            ("sum of sq", Right),
+            (self.minimised().map_or("sum of sq", |(head, _)| head), Right),
             ("rms", Right),
             ("max", Right),
             ("to curve", Right),
@@ -129,8 +140,9 @@ impl Comparison {
         ]);
         for (i, row) in self.rows.iter().enumerate() {
             let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, label))];
-            cells.extend(row.difference_percent.iter().map(|percent| {
-                plain(if self.reference == Some(i) { "ref".to_owned() } else { signed_percent(*percent) })
+            cells.extend(self.shown_figures().map(|key| {
+                let percent = row.difference_percent.get(key as usize).copied().flatten();
+                plain(if self.reference == Some(i) { "ref".to_owned() } else { signed_percent(percent) })
             }));
             grid.row(cells);
         }

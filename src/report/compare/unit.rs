@@ -2,6 +2,7 @@
 
 use super::Entry;
 use crate::linkage::{FourBar, LinkageError};
+use crate::problem::spec::Measure;
 use crate::record::Unit;
 use crate::report::text::clean;
 
@@ -53,6 +54,11 @@ impl Entry {
         candidate.grashof_margin *= factor;
         let error = &mut candidate.error;
         error.sum_sq *= factor * factor;
+        error.objective *= match self.measure {
+            Measure::Sum | Measure::WeightedSum => factor * factor,
+            Measure::Largest => factor,
+            Measure::LargestPart => 1.0,
+        };
         for length in [&mut error.rms, &mut error.max] {
             *length *= factor;
         }
@@ -67,7 +73,7 @@ impl Entry {
 
 /// The entries with all lengths in one unit: those without one are taken to be in it; as they are without a unit.
 ///
-/// The objective, the requirements and the costs of a candidate stay as its own problem has them.
+/// The requirements and the costs of a candidate stay as its own problem has them.
 ///
 /// # Errors
 /// As [`FourBar::new`], where a length leaves the allowed range.

@@ -4,7 +4,7 @@ use super::body::{paragraph, section};
 use super::data::MOST_EXACT;
 use super::table::{Cell, head, scrolling};
 use crate::record::{ExactLinkage, Record};
-use crate::report::exact::{ability, sentences};
+use crate::report::exact::{ability, none_through, sentences};
 use crate::report::text::{clean, grouped, significant};
 use crate::report::words;
 use crate::task::Defect;
@@ -12,8 +12,8 @@ use crate::task::Defect;
 /// The section; empty for a record without exact answers.
 pub(super) fn exact(record: &Record) -> String {
     let Some(exact) = &record.exact else { return String::new() };
-    let mut inside: String =
-        sentences(exact).iter().filter(|s| !s.is_empty()).map(|s| paragraph("", s)).collect();
+    let said = none_through(record).map_or_else(|| sentences(exact).to_vec(), |one| vec![one]);
+    let mut inside: String = said.iter().filter(|s| !s.is_empty()).map(|s| paragraph("", s)).collect();
     if !exact.linkages.is_empty() {
         let unit = words::unit_suffix(record);
         let columns = [

@@ -107,6 +107,7 @@ fn label(name: &str) -> String {
         "pivots_in" => "fixed pivots inside".to_owned(),
         "footprint_in" => "motion inside".to_owned(),
         "order" => "order of the points".to_owned(),
+        "closing" => "return to the first point".to_owned(),
         "branch" => "branch".to_owned(),
         "circuit" => "circuit".to_owned(),
         "direction" => "direction".to_owned(),

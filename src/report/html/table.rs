@@ -3,7 +3,7 @@
 use super::body::section;
 use super::data::{BUILDABLE_KEY, candidate_key};
 use super::page::escaped;
-use crate::problem::spec::{Objective, TransmissionOver};
+use crate::problem::spec::{Measure, TransmissionOver};
 use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
@@ -79,14 +79,15 @@ pub(super) fn candidates(record: &Record) -> String {
         );
         return section("candidates", "Candidates", &inside);
     }
-    let deviation = record.problem.resolved.solve.objective == Objective::MaxDeviation;
+    let measure = record.problem.resolved.measure();
+    let ranks = words::minimised(measure);
     let unit = words::unit_suffix(record);
     let columns = [
         ("#", true),
         ("rms error", true),
         ("largest", true),
-        ("at point", true),
-        (if deviation { "deviation" } else { "sum of squares" }, true),
+        (if measure == Measure::LargestPart { "deviation at point" } else { "at point" }, true),
+        (ranks.map_or("sum of squares", |(head, _)| head), true),
         ("to curve", true),
         ("type", false),
         ("transmission", true),
@@ -100,15 +101,13 @@ pub(super) fn candidates(record: &Record) -> String {
         .candidates
         .iter()
         .enumerate()
-        .map(|(i, c)| {
-            row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string()), deviation)
-        })
+        .map(|(i, c)| row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string())))
         .collect();
     if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
         // After all others when sorted by rank.
         let name =
             Cell { text: "buildable".into(), value: Some(record.candidates.len() as f64 + 1.0), class: "n" };
-        rows.push(row(record, c, BUILDABLE_KEY, &name, deviation));
+        rows.push(row(record, c, BUILDABLE_KEY, &name));
     }
     let table = format!("{}<tbody>\n{}</tbody>\n", head(&columns), rows.concat());
     let lengths = if unit.is_empty() {
@@ -116,18 +115,26 @@ pub(super) fn candidates(record: &Record) -> String {
     } else {
         format!("Lengths in {}. ", if unit == " in" { "inches" } else { unit.trim() })
     };
+    let first = ranks.map_or(String::new(), |(_, sentence)| format!("{sentence} "));
     let notes = "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
                  90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
+    let said: String = words::fewer(record)
+        .into_iter()
+        .chain(crate::report::beside::mirrored(record))
+        .map(|sentence| super::body::paragraph("notes", &sentence))
+        .collect();
     let inside = format!(
-        "{}{}",
+        "{}{}{said}",
         scrolling("Candidates", "candidates wide tight", &table),
-        super::body::paragraph("notes", &format!("{lengths}{notes}"))
+        super::body::paragraph("notes", &format!("{lengths}{first}{notes}"))
     );
     section("candidates", "Candidates side by side", &inside)
 }
 
-fn row(record: &Record, c: &Candidate, key: &str, name: &Cell, deviation: bool) -> String {
-    let objective = if deviation { c.error.objective } else { c.error.sum_sq };
+fn row(record: &Record, c: &Candidate, key: &str, name: &Cell) -> String {
+    let plain = record.problem.resolved.measure() == Measure::Sum;
+    let objective = if plain { c.error.sum_sq } else { c.error.objective };
+    let worst_at = crate::report::table::worst_at(record, c);
     let over = match c.transmission_deg.over {
         TransmissionOver::Cycle => "full turn",
         TransmissionOver::Used => "part used",
@@ -138,7 +145,7 @@ fn row(record: &Record, c: &Candidate, key: &str, name: &Cell, deviation: bool) 
     let cells = [
         Cell::figure(c.error.rms, 4),
         Cell::figure(c.error.max, 4),
-        Cell::number(c.error.max_at as f64, c.error.max_at.to_string()),
+        Cell::number(worst_at as f64, worst_at.to_string()),
         Cell::figure(objective, 5),
         Cell::figure(c.error.to_curve.rms, 4),
         Cell::words(c.linkage_type.name()),

@@ -4,7 +4,7 @@
 
 use linkwright::linkage::{AssemblyMode, Complex, FourBar, Joints, LinkageType};
 use linkwright::problem::spec::{
-    DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,
+    ClosingPolicy, DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,
 };
 use linkwright::record::Candidate;
 use linkwright::task::AngleOffset;
@@ -374,6 +374,14 @@ impl Look<'_> {
             }
         }
         let closed = self.spec.task.path.closed || self.ordered() < joints.len();
+        let returns = self.spec.task.path.closed || (!timed && self.ordered() < joints.len());
+        if returns
+            && !turns
+            && require.order == OrderPolicy::Required
+            && require.closing == ClosingPolicy::OneWay
+        {
+            self.say("the crank does not turn fully, and the path ends where it begins");
+        }
         let high = if turns && closed { high.max(low + 360.0) } else { high.min(low + 360.0) };
         for i in 0..=400 {
             let angle = low + (high - low) * f64::from(i) / 400.0;

@@ -119,6 +119,7 @@ pub fn candidate(
         }],
         accepted,
         certified: None,
+        mirror_serves: false,
         costs: Vec::new(),
     }
 }

@@ -1,0 +1,77 @@
+//! Figures that are equal within the margin of limits, brought to one level before they are ordered.
+//!
+//! "Within a margin of each other" is no order: x may be near y and y near z without x being near z. So figures are
+//! sorted as they are, better first; the best is the first level, and with it all that lie within [`MET_TOLERANCE`] of
+//! it; the best of the rest is the next level, and so on. What is ranked, put on the front or said to be behind are
+//! levels.
+
+use super::{Entry, SortKey};
+use crate::problem::spec::Measure;
+use crate::record::{EXACT_MEAN_SQ, MET_TOLERANCE};
+
+/// Whether two figures of one kind are equal to a reader; `nothing` is what counts as 0 there.
+pub(super) fn equal(x: f64, y: f64, nothing: f64) -> bool {
+    x == y || (x - y).abs() <= (MET_TOLERANCE * x.abs().max(y.abs())).max(nothing)
+}
+
+/// Below this an error of an entry is nothing but rounding; the other figures have no such floor.
+pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for p in &entry.target {
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis].min(p[axis]), high[axis].max(p[axis]));
+        }
+    }
+    let size_sq = (high[0] - low[0]).powi(2) + (high[1] - low[1]).powi(2);
+    let mean_sq = Some(EXACT_MEAN_SQ * size_sq).filter(|floor| floor.is_finite()).unwrap_or(0.0);
+    match key {
+        SortKey::SumSq => mean_sq * entry.target.len() as f64,
+        SortKey::Rms | SortKey::Max | SortKey::ToCurve => mean_sq.sqrt(),
+        SortKey::Objective => match entry.measure {
+            Measure::Sum | Measure::WeightedSum => mean_sq * entry.target.len() as f64,
+            Measure::Largest => mean_sq.sqrt(),
+            Measure::LargestPart => EXACT_MEAN_SQ.sqrt(),
+        },
+        SortKey::Transmission | SortKey::LinkRatio | SortKey::Size => 0.0,
+    }
+}
+
+/// The level of each figure: the best figure that it is equal to.
+pub(super) fn levels(figures: &[Option<f64>], greatest_first: bool, nothing: f64) -> Vec<Option<f64>> {
+    let mut order: Vec<usize> = (0..figures.len()).filter(|&i| figures[i].is_some()).collect();
+    let value = |i: usize| figures[i].unwrap_or(f64::NAN);
+    order.sort_by(
+        |&i, &j| {
+            if greatest_first { value(j).total_cmp(&value(i)) } else { value(i).total_cmp(&value(j)) }
+        },
+    );
+    let mut levels = vec![None; figures.len()];
+    let mut level = f64::NAN;
+    for i in order {
+        if !equal(level, value(i), nothing) {
+            level = value(i);
+        }
+        // Adding 0 makes one zero of the two.
+        levels[i] = Some(level + 0.0);
+    }
+    levels
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_within_the_margin_of_the_best_of_them_are_one_level() {
+        let all = [Some(35.0 + 3e-6), None, Some(35.0), Some(34.9), Some(35.0 + 1e-6), Some(-0.0), Some(0.0)];
+        let best = Some(35.0 + 3e-6);
+        assert_eq!(levels(&all, true, 0.0), [best, None, best, Some(34.9), best, Some(0.0), Some(0.0)]);
+        // A chain of neighbours is cut where it has left the best.
+        let chain: Vec<Option<f64>> = (0..4).map(|i| Some(1.0 + 6e-8 * f64::from(i))).collect();
+        assert_eq!(levels(&chain, false, 0.0), [chain[0], chain[0], chain[2], chain[2]]);
+        assert_eq!(
+            levels(&[Some(1e-30), Some(3e-29), Some(1e-9)], false, 1e-24),
+            [Some(1e-30), Some(1e-30), Some(1e-9)]
+        );
+    }
+}
