@@ -2,6 +2,7 @@
 
 use crate::assess::{assess, to_raw};
 use crate::linkage::mobility::wrapped;
+use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Objective};
 use crate::record::{Candidate, Cost, FORMAT, Figure, Record};
@@ -262,13 +263,18 @@ impl Against<'_> {
             };
             self.differ("defects", names(recorded), names(&found));
         }
-        if recorded.t1_at[0] != recorded.linkage.assembly() {
-            let sign = |t: crate::linkage::AssemblyMode| format!("{:+}", t.sign());
-            self.differ("linkage.t1", sign(recorded.linkage.assembly()), sign(recorded.t1_at[0]));
-        }
+        self.assembly("linkage.t1", &recorded.linkage, &recorded.t1_at);
         self.costs(problem, recorded, &found);
         self.timing(problem, recorded);
         self.requirements(problem, recorded, &found);
+    }
+
+    /// A linkage is recorded as it is assembled at the first point.
+    fn assembly(&mut self, what: &str, linkage: &FourBar, t1_at: &[AssemblyMode]) {
+        let sign = |t: AssemblyMode| format!("{:+}", t.sign());
+        if let Some(&first) = t1_at.first().filter(|first| **first != linkage.assembly()) {
+            self.differ(what, sign(linkage.assembly()), sign(first));
+        }
     }
 
     fn requirements(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {

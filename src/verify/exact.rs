@@ -2,6 +2,7 @@
 //! proved again. (That the census is complete is a search of its own: run it.)
 
 use super::{Against, Mismatch, verdict};
+use crate::linkage::AssemblyMode;
 use crate::problem::Problem;
 use crate::record::{
     Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, Reason, Record,
@@ -51,6 +52,9 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
                 whole("certified.radius", recorded, found);
             }
         }
+        let sign = |t: AssemblyMode| format!("{:+}", t.sign());
+        let first = listed.t1_at.first().copied().map_or("none".into(), sign);
+        whole("linkage.t1", sign(listed.linkage.assembly()), first);
         let all = [listed.one_circuit, listed.in_order, listed.free_of_defects];
         // What is in doubt is as it is recorded.
         let pairs = || all.into_iter().zip(class.abilities);
@@ -73,6 +77,8 @@ fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn Fn
             whole(&what("the linkage"), "a mechanism of the class".into(), "none of them".into());
             continue;
         };
+        let t1 = |form: &ExactForm| format!("{:+}", form.linkage.assembly().sign());
+        whole(&what("linkage.t1"), t1(other), t1(found));
         whole(&what("type"), other.linkage_type.to_string(), found.linkage_type.to_string());
         if *certain {
             whole(&what("defects"), format!("{:?}", other.defects), format!("{:?}", found.defects));

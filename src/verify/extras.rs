@@ -116,6 +116,7 @@ impl Against<'_> {
                 format!("elsewhere at point {i}"),
             );
         }
+        self.assembly(&what("linkage.t1"), &recorded.linkage, &recorded.t1_at);
         found.rank = candidate.rank;
         self.timing(problem, &found);
     }

@@ -4,7 +4,6 @@ use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Reason, Record};
 use crate::search::rank::exact_sum_sq;
-use crate::task::Timing;
 
 /// Entries of `method.used` that no search writes: a linkage that was snapped, or followed by hand.
 const SNAPPED: &str = "snap ";
@@ -75,7 +74,7 @@ fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
                 [local @ .., last] if combines && *last == evolution => local,
                 all => all,
             };
-            let timed = !matches!(problem.task().timing(), Timing::Free);
+            let timed = problem.spec().task.path.timing.is_some();
             local == [LEAST_SQUARES] || timed && (local == [REDUCED] || local == [REDUCED, LEAST_SQUARES])
         }
     }

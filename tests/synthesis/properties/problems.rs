@@ -1,5 +1,7 @@
 //! Random problems: any target, any timing, any requirements, small budgets.
 
+#![allow(dead_code, reason = "every user takes its own part of it")]
+
 use crate::random::{TYPES, bounding_box, chance, linkage, log_uniform, noisy, one_of, trace};
 use linkwright::linkage::Complex;
 use linkwright::problem_file::{self, ProblemFile};
