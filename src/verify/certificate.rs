@@ -63,7 +63,8 @@ fn parts(subject: &Subject, recorded: &Certificate, whole: &mut dyn FnMut(&str, 
     let names = |(class, way): (String, i8)| format!("{class} {way:+}");
     let own = recorded.parts.iter().map(|part| names((part.linkage_type.clone(), part.direction)));
     let asked = subject.parts();
-    let asked = asked.iter().map(|(class, way)| names((class.name().to_owned(), if *way > 0.0 { 1 } else { -1 })));
+    let asked =
+        asked.iter().map(|(class, way)| names((class.name().to_owned(), if *way > 0.0 { 1 } else { -1 })));
     whole("certificate.parts", own.collect::<Vec<_>>().join(", "), asked.collect::<Vec<_>>().join(", "));
     let most = subject.wanted();
     for (i, part) in recorded.parts.iter().enumerate() {

@@ -78,6 +78,8 @@ fn holds(value: &serde_json::Value, key: &str) -> bool {
     let below = |value: &serde_json::Value| rest.is_none_or(|rest| holds(value, rest));
     match first.strip_suffix("[]") {
         None => value.get(first).is_some_and(below),
-        Some(name) => value.get(name).and_then(|list| list.as_array()).is_some_and(|list| list.iter().any(below)),
+        Some(name) => {
+            value.get(name).and_then(|list| list.as_array()).is_some_and(|list| list.iter().any(below))
+        }
     }
 }

@@ -73,7 +73,8 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
 fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn FnMut(&str, String, String)) {
     for (i, other) in listed.others.iter().enumerate() {
         let what = |figure: &str| format!("others {}: {figure}", i + 1);
-        let Some((found, certain)) = forms.iter().find(|(form, _)| same(&form.linkage, &other.linkage)) else {
+        let Some((found, certain)) = forms.iter().find(|(form, _)| same(&form.linkage, &other.linkage))
+        else {
             whole(&what("the linkage"), "a mechanism of the class".into(), "none of them".into());
             continue;
         };
@@ -95,9 +96,8 @@ fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn Fn
 /// Both in words where the recorded proof is not the one that is found.
 fn proof(recorded: Certified, found: Option<Certified>) -> Option<(String, String)> {
     let near = |one: f64, other: f64| one <= WIDER * other;
-    let holds = found.is_some_and(|found| {
-        near(found.radius, recorded.radius) && near(recorded.radius, found.radius)
-    });
+    let holds =
+        found.is_some_and(|found| near(found.radius, recorded.radius) && near(recorded.radius, found.radius));
     let words = |c: Certified| format!("{:e}", c.radius);
     (!holds).then(|| (words(recorded), found.map_or("no proof".into(), words)))
 }

@@ -112,7 +112,8 @@ fn table() -> BTreeMap<String, Said> {
 fn row<'a>(table: &'a BTreeMap<String, Said>, key: &str) -> Option<(&'a str, Said)> {
     let own = table.get_key_value(key);
     let wide = || {
-        let covers = |row: &&(&String, &Said)| row.0.strip_suffix('*').is_some_and(|start| key.starts_with(start));
+        let covers =
+            |row: &&(&String, &Said)| row.0.strip_suffix('*').is_some_and(|start| key.starts_with(start));
         table.iter().filter(|entry| covers(&entry)).max_by_key(|(row, _)| row.len())
     };
     own.or_else(wide).map(|(row, said)| (row.as_str(), *said))
@@ -268,7 +269,9 @@ fn a_changed_leaf_is_found_out_as_far_as_the_table_says() {
             };
             match (said, caught) {
                 (Said::Recomputed, false) => wrong.insert(format!("{}: not found out", at())),
-                (Said::Not, true) => wrong.insert(format!("{}: found out, though `{row}` is not checked", at())),
+                (Said::Not, true) => {
+                    wrong.insert(format!("{}: found out, though `{row}` is not checked", at()))
+                }
                 _ => false,
             };
         }
@@ -297,7 +300,8 @@ fn the_program_and_the_table_name_the_same_keys() {
             Said::Not => Some((key, Checked::Not)),
         })
         .collect();
-    let named: BTreeSet<(String, Checked)> = UNCHECKED.iter().map(|(key, how)| ((*key).to_owned(), *how)).collect();
+    let named: BTreeSet<(String, Checked)> =
+        UNCHECKED.iter().map(|(key, how)| ((*key).to_owned(), *how)).collect();
     assert_eq!(said, named);
     assert_eq!(checked("evaluations.positions"), Some(Checked::Bounded));
     assert_eq!(checked("candidates[].error.rms"), None);
@@ -311,5 +315,10 @@ fn the_keys_that_a_record_lacks_are_not_named() {
     let keys = unchecked(&record, Checked::Not);
     assert!(keys.contains(&"tool.version") && !keys.contains(&"problem.source"), "{keys:?}");
     assert!(!unchecked(&record, Checked::Bounded).contains(&"repeats.near"));
-    assert!(serde_json::to_value(&record).expect("JSON").as_object().is_some_and(|table: &Map<_, _>| !table.is_empty()));
+    assert!(
+        serde_json::to_value(&record)
+            .expect("JSON")
+            .as_object()
+            .is_some_and(|table: &Map<_, _>| !table.is_empty())
+    );
 }
