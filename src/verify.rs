@@ -1,21 +1,27 @@
 //! Is a record true? Every figure and verdict recomputed from its problem and its linkages.
 
-use crate::assess::{MET_TOLERANCE, assess, to_raw};
+use crate::assess::{assess, to_raw};
 use crate::linkage::mobility::wrapped;
+use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::problem::spec::{DirectionPolicy, Objective};
-use crate::record::{Candidate, Cost, FORMAT, Figure, Reason, Record, Requirement};
+use crate::record::{Candidate, Cost, FORMAT, Figure, Record};
 use crate::run::{RunError, digest};
 use crate::search::costs::{marginal, weighted_rms};
 use crate::search::loosen::Demand;
-use crate::search::rank::{compare, exact_objective, exact_sum_sq};
+use crate::search::rank::{compare, exact_objective};
 use crate::task::{AngleOffset, Timing};
 
 mod certificate;
+mod coverage;
 mod exact;
 mod extras;
+mod searched;
+mod verdict;
 
 pub use certificate::verify_certificate;
+pub use coverage::{Checked, UNCHECKED, checked, unchecked};
+use verdict::{is_doubtful, scale, verdict};
 
 /// Figures may differ by this part of themselves ..
 pub const RELATIVE: f64 = 1e-9;
@@ -66,9 +72,8 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     whole("format", record.format.to_string(), FORMAT.to_string());
     whole("problem.digest", record.problem.digest.clone(), digest(spec)?);
     whole("seed", record.seed.to_string(), spec.solve.seed.to_string());
+    whole("tool.name", record.tool.name.clone(), env!("CARGO_PKG_NAME").to_string());
     whole("method.asked", record.method.asked.name().into(), spec.solve.method.name().into());
-    let repeatable = record.termination.reason.is_repeatable();
-    whole("termination.reproducible", record.termination.reproducible.to_string(), repeatable.to_string());
     for (i, candidate) in record.candidates.iter().enumerate() {
         whole("rank", candidate.rank.to_string(), (i + 1).to_string());
     }
@@ -78,14 +83,7 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
             whole("the order of ranks", names(pair[0].rank, pair[1].rank), names(pair[1].rank, pair[0].rank));
         }
     }
-    let best_known = record.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact_sum_sq(&problem));
-    if record.termination.reason == Reason::TargetReached && !best_known {
-        whole(
-            "termination.reason",
-            "target-reached".into(),
-            "not that: no accepted candidate is exact".into(),
-        );
-    }
+    searched::searched(&problem, record, &mut whole);
     explanation(record, &problem, &mut whole);
     digitised(&problem, &mut whole);
     for candidate in &record.candidates {
@@ -94,6 +92,7 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     }
     extras::extras(&problem, record, &mut mismatches);
     exact::exact(&problem, record, &mut mismatches);
+    certificate::stated(record, &mut mismatches);
     Ok(mismatches)
 }
 
@@ -131,9 +130,16 @@ fn explanation(record: &Record, problem: &Problem, differ: &mut dyn FnMut(&str, 
         differ("conflict", recorded, "nothing: there is an accepted candidate".into());
     }
     let of = |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key() == key);
-    for key in record.conflict.iter().flat_map(|conflict| &conflict.among) {
-        if of(key).is_none() {
-            differ("conflict.among", key.clone(), "no demand of the problem".into());
+    if let Some(conflict) = &record.conflict {
+        for (i, key) in conflict.among.iter().enumerate() {
+            if of(key).is_none() {
+                differ("conflict.among", key.clone(), "no demand of the problem".into());
+            } else if conflict.among[..i].contains(key) {
+                differ("conflict.among", format!("{key} twice"), "each demand once".into());
+            }
+        }
+        if conflict.among.is_empty() {
+            differ("conflict.among", "nothing".into(), "one demand at least".into());
         }
     }
     for relaxation in &record.relaxations {
@@ -141,11 +147,19 @@ fn explanation(record: &Record, problem: &Problem, differ: &mut dyn FnMut(&str, 
         if (relaxation.rms - found).abs() > RELATIVE * found {
             differ("relaxations.rms", format!("{:e}", relaxation.rms), format!("{found:e}"));
         }
+        if relaxation.set.is_empty() {
+            differ("relaxations.set", "nothing".into(), "one change at least".into());
+        }
         for change in &relaxation.set {
             let from = of(&change.key).and_then(|demand| demand.typed(problem.spec()));
             if from.as_ref() != Some(&change.from) {
                 let found = from.map_or("no demand of the problem".into(), |from| from.to_string());
                 differ(&format!("relaxations.{}.from", change.key), change.from.to_string(), found);
+            } else if let Some(demand) = of(&change.key)
+                && !demand.is_no_tighter(problem.spec(), &change.to)
+            {
+                let found = format!("not a value that leaves more room than {}", change.from);
+                differ(&format!("relaxations.{}.to", change.key), change.to.to_string(), found);
             }
         }
     }
@@ -249,46 +263,40 @@ impl Against<'_> {
             };
             self.differ("defects", names(recorded), names(&found));
         }
-        if recorded.t1_at[0] != recorded.linkage.assembly() {
-            let sign = |t: crate::linkage::AssemblyMode| format!("{:+}", t.sign());
-            self.differ("linkage.t1", sign(recorded.linkage.assembly()), sign(recorded.t1_at[0]));
-        }
+        self.assembly("linkage.t1", &recorded.linkage, &recorded.t1_at);
         self.costs(problem, recorded, &found);
         self.timing(problem, recorded);
-        self.requirements(recorded, &found, size);
+        self.requirements(problem, recorded, &found);
     }
 
-    fn requirements(&mut self, recorded: &Candidate, found: &Candidate, size: f64) {
+    /// A linkage is recorded as it is assembled at the first point.
+    fn assembly(&mut self, what: &str, linkage: &FourBar, t1_at: &[AssemblyMode]) {
+        let sign = |t: AssemblyMode| format!("{:+}", t.sign());
+        if let Some(&first) = t1_at.first().filter(|first| **first != linkage.assembly()) {
+            self.differ(what, sign(linkage.assembly()), sign(first));
+        }
+    }
+
+    fn requirements(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {
+        let size = problem.task().size();
         let names = |c: &Candidate| c.requirements.iter().map(|r| r.name.clone()).collect::<Vec<_>>();
         if names(recorded) != names(found) {
             self.differ("the list of requirements", names(recorded).join(", "), names(found).join(", "));
             return;
         }
-        let mut doubtful = false;
         for (r, f) in recorded.requirements.iter().zip(&found.requirements) {
             if r.limit != f.limit {
                 self.differ(&format!("{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
             }
             match (&r.value, &f.value) {
                 (Figure::Number(r_value), Figure::Number(f_value)) => {
-                    let scale = match r.name.as_str() {
-                        "link_ratio_max" => 1.0,
-                        "transmission_deg_min" => {
-                            180.0 / f_value.min(180.0 - f_value).max(1e-5).to_radians().sin()
-                        }
-                        "design.ground_angle_deg" => 180.0,
-                        // d, e and the coupler's offset come from each other by roots of small differences.
-                        "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e" => 1e4 * size,
-                        _ => size,
-                    };
-                    self.number(&format!("{}.value", r.name), *r_value, *f_value, scale);
+                    self.number(&format!("{}.value", r.name), *r_value, *f_value, scale(f, size));
                 }
                 (Figure::Numbers(r_values), Figure::Numbers(f_values))
                     if r_values.len() == f_values.len() =>
                 {
                     for (r_value, f_value) in r_values.iter().zip(f_values) {
-                        // Extremes of a motion are found by search, to the root of rounding.
-                        self.number(&format!("{}.value", r.name), *r_value, *f_value, 1e4 * size);
+                        self.number(&format!("{}.value", r.name), *r_value, *f_value, scale(f, size));
                     }
                 }
                 (r_value, f_value) if r_value == f_value => {}
@@ -296,23 +304,16 @@ impl Against<'_> {
                     self.differ(&format!("{}.value", r.name), r_value.to_string(), f_value.to_string());
                 }
             }
-            if r.met != f.met {
-                if within_margin(f) {
-                    doubtful = true;
-                } else {
-                    let word = |met| if met { "met" } else { "not met" };
-                    self.differ(&r.name, word(r.met).into(), word(f.met).into());
-                }
+            if r.met != f.met && !is_doubtful(f, size) {
+                let word = |met| if met { "met" } else { "not met" };
+                self.differ(&r.name, word(r.met).into(), word(f.met).into());
             }
         }
         // Where a verdict is rounding's, the record has to agree with itself.
-        let expected = if doubtful {
-            recorded.requirements.iter().all(|r| r.met) && found.defects == recorded.defects
-        } else {
-            found.accepted
-        };
-        if recorded.accepted != expected {
-            self.differ("accepted", recorded.accepted.to_string(), found.accepted.to_string());
+        let not_met = |name: &str| recorded.requirements.iter().any(|r| r.name == name && !r.met);
+        let (_, accepted) = verdict(problem, found, &not_met);
+        if recorded.accepted != accepted {
+            self.differ("accepted", recorded.accepted.to_string(), accepted.to_string());
         }
     }
 
@@ -333,6 +334,11 @@ impl Against<'_> {
         for (r, f) in recorded.costs.iter().zip(&costs) {
             if r.limit != f.limit {
                 self.differ(&format!("costs.{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
+            }
+            if r.unit_of_limit != f.unit_of_limit {
+                let words = [r, f].map(|cost| format!("{:?}", cost.unit_of_limit).to_lowercase());
+                let [r_unit, f_unit] = words;
+                self.differ(&format!("costs.{}.unit_of_limit", r.name), r_unit, f_unit);
             }
             let rates = (r.rms_per_unit, f.rms_per_unit);
             let near = match rates {
@@ -384,18 +390,5 @@ impl Against<'_> {
             self.differ("crank_deg", "the prescribed angles".into(), format!("off by {worst:e} degrees"));
         }
         debug_assert!(either || problem.spec().require.direction == DirectionPolicy::Any);
-    }
-}
-
-/// Whether a requirement's value lies so near its limit that the verdict is rounding's.
-fn within_margin(found: &Requirement) -> bool {
-    let near = |value: f64, limit: f64| (value - limit).abs() <= 2.0 * MET_TOLERANCE * limit.abs().max(1.0);
-    match (&found.value, &found.limit) {
-        (Figure::Number(value), Figure::Number(limit)) => near(*value, *limit),
-        (Figure::Number(value), Figure::Numbers(limits)) => limits.iter().any(|l| near(*value, *l)),
-        (Figure::Numbers(values), Figure::Numbers(limits)) => {
-            values.iter().zip(limits).any(|(value, limit)| near(*value, *limit))
-        }
-        _ => false,
     }
 }

@@ -198,6 +198,12 @@ impl Subject {
                 leaves_sha256: hex(&part.nodes.sha256()),
             })
             .collect();
+        self.stated(parts, hex(&leaves.sha256()))
+    }
+
+    /// What a certificate says whose parts have these bounds: everything in it but the parts themselves and the digest of
+    /// its leaves follows from them and the problem.
+    pub fn stated(&self, parts: Vec<CertificatePart>, leaves_sha256: String) -> Certificate {
         let bound = parts.iter().map(|part| part.lower_bound).fold(f64::INFINITY, f64::min);
         let (points, best) = (self.points.len(), self.best);
         let limit = self.limit;
@@ -215,10 +221,10 @@ impl Subject {
             lower_bound: bound,
             gap,
             closed: parts.iter().all(|part| part.closed) && gap <= self.gap,
-            boxes: parts.iter().map(|part| part.boxes).sum(),
+            boxes: parts.iter().fold(0, |sum: u64, part| sum.saturating_add(part.boxes)),
             covered: words.covered,
             not_covered: words.not_covered,
-            leaves_sha256: hex(&leaves.sha256()),
+            leaves_sha256,
             wanted_gap: self.gap,
             parts,
         }

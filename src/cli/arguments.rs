@@ -36,7 +36,7 @@ pub enum Command {
     New(New),
     /// Put results or linkages side by side
     Compare(Compare),
-    /// Recompute every figure and verdict of a result
+    /// Recompute the figures and verdicts of a result, and name what cannot be
     Verify(Verify),
     /// Prove that no linkage whose input turns fully is better than a result by more than a gap (prescribed timing)
     Certify(Certify),

@@ -5,10 +5,12 @@ use super::progress::{LINE_EVERY, Proving};
 use super::result::{self, Which};
 use super::{Ended, interrupt, terminal};
 use crate::certificate::leaves::{LeavesError, MAX_BYTES};
-use crate::certificate::{CheckError, Checked, check};
+use crate::certificate::{CheckError, Checked as CheckedLeaves, check};
 use crate::diagnostic::escaped;
 use crate::record::Record;
+use crate::report::{table::COLUMNS, text::wrapped};
 use crate::results_folder::LEAVES;
+use crate::verify::{Checked, unchecked};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -72,14 +74,15 @@ pub fn run(options: &Verify) -> Ended {
                 let n = record.candidates.len();
                 let word = if n == 1 { "candidate" } else { "candidates" };
                 terminal::answer(&format!(
-                    "{shown}: true. Every figure and verdict of {n} {word} was recomputed and agrees.\n"
+                    "{shown}: true. The figures and verdicts of {n} {word} were recomputed and agree.\n"
                 ));
+                terminal::answer(&limits_of(&record, options));
                 if options.certificate {
                     terminal::answer(
                         "  The certificate was worked out again: the same boxes, the same bound.\n",
                     );
                 }
-                if let Ok(Some(Checked { leaves, boxes })) = leaves {
+                if let Ok(Some(CheckedLeaves { leaves, boxes })) = leaves {
                     terminal::answer(&format!(
                         "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, \
                          {boxes} boxes.\n"
@@ -107,6 +110,33 @@ pub fn run(options: &Verify) -> Ended {
     ended
 }
 
+/// The keys of a record that were not recomputed, in words.
+fn limits_of(record: &Record, options: &Verify) -> String {
+    let proved = options.certificate || options.leaves;
+    let listed = |how: Checked| {
+        let keys = unchecked(record, how).into_iter();
+        // What the other answers speak of is told below.
+        keys.filter(|key| !(proved && key.starts_with("certificate."))).collect::<Vec<_>>().join(", ")
+    };
+    let mut text = String::new();
+    for (head, how) in [("Held to limits only: ", Checked::Bounded), ("Not checked: ", Checked::Not)] {
+        let keys = listed(how);
+        if !keys.is_empty() {
+            text.push_str(&wrapped("  ", "    ", &format!("{head}{keys}."), COLUMNS));
+        }
+    }
+    if record.certificate.is_some() && !proved {
+        text.push_str(&wrapped(
+            "  ",
+            "    ",
+            "Of the certificate its words, gap and verdict follow from its bounds; the bounds themselves are checked with \
+             --certificate, or with --leaves.",
+            COLUMNS,
+        ));
+    }
+    text
+}
+
 /// Why leaves prove nothing.
 enum Wrong {
     /// It has been told.
@@ -121,7 +151,7 @@ fn leaves_of(path: &Path) -> PathBuf {
 }
 
 /// Checks the leaves of a record's certificate, which lie beside it.
-fn check_leaves(path: &Path, record: &Record) -> Result<Checked, Wrong> {
+fn check_leaves(path: &Path, record: &Record) -> Result<CheckedLeaves, Wrong> {
     let refuse = |file: &Path, text: &str| {
         terminal::complain(&format!("{}: {text}", escaped(&file.display().to_string())));
         Wrong::Told(Ended::Refused)
@@ -143,7 +173,7 @@ fn check_leaves(path: &Path, record: &Record) -> Result<Checked, Wrong> {
     let cancel = interrupt::watch("ending the check");
     let begun = Instant::now();
     let mut last = begun;
-    let mut tell = |checked: &Checked| {
+    let mut tell = |checked: &CheckedLeaves| {
         if last.elapsed() >= LINE_EVERY {
             last = Instant::now();
             let seconds = begun.elapsed().as_secs_f64();

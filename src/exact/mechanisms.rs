@@ -22,6 +22,9 @@ pub const POINTS: usize = STEPS + 1;
 /// the sine of the transmission angle there: the loop's closure magnifies rounding by that much.
 pub const PASSES: f64 = 1e-10;
 
+/// .. and this part of its coordinates more: they are rounded, and the points' own are.
+const ROUNDED: f64 = 16.0 * f64::EPSILON;
+
 /// A link shorter than this part of the span is none: what is left of it is rounding.
 pub const NO_LENGTH: f64 = 1e-9;
 
@@ -49,6 +52,8 @@ pub struct Mechanism {
     pub assemblies: [AssemblyMode; POINTS],
     /// The largest distance of the coupler point from its point at these positions, in the file's units.
     pub miss: f64,
+    /// The largest of these distances in parts of what a passing mechanism may have there.
+    pub miss_over_limit: f64,
     /// Whether it passes every point, within [`PASSES`].
     pub passes: bool,
     /// What the referee finds.
@@ -127,20 +132,34 @@ impl Real {
         if linkage.links().iter().any(|link| *link <= NO_LENGTH * span) {
             return None;
         }
-        let (mut miss, mut passes) = (0.0_f64, true);
+        let far = pivots.iter().chain(&target.points).map(|z| z.norm()).fold(0.0, f64::max);
+        let (mut miss, mut miss_over_limit) = (0.0_f64, 0.0_f64);
         for j in 0..POINTS {
             let Some(joints) = linkage.position_with(crank_angles[j], assemblies[j]).joints() else {
-                (miss, passes) = (f64::INFINITY, false);
+                (miss, miss_over_limit) = (f64::INFINITY, f64::INFINITY);
                 break;
             };
             let apart = (joints.coupler_point - target.points[j]).norm();
             let diagonal = linkage.diagonal(crank_angles[j]);
             let closure = angle_opposite(diagonal, linkage.coupler(), linkage.follower()).sin();
             miss = miss.max(apart);
-            passes &= apart <= PASSES * span / closure.max(f64::EPSILON.sqrt());
+            let limit = (PASSES * span + ROUNDED * far) / closure.max(f64::EPSILON.sqrt());
+            miss_over_limit = miss_over_limit.max(apart / limit);
         }
         let defects = judge(task, &linkage, &crank_angles, &assemblies).defects;
-        Some(Mechanism { cognate, driven, linkage, crank_angles, assemblies, miss, passes, defects })
+        let passes = miss_over_limit <= 1.0;
+        let mechanism = Mechanism {
+            cognate,
+            driven,
+            linkage,
+            crank_angles,
+            assemblies,
+            miss,
+            miss_over_limit,
+            passes,
+            defects,
+        };
+        Some(mechanism)
     }
 }
 

@@ -248,7 +248,9 @@ pub(super) fn worst_in_parts(record: &Record, candidate: &Candidate) -> Option<u
 /// Why fewer candidates are listed than were asked for; `None` where there are as many, or none at all.
 pub(super) fn fewer(record: &Record) -> Option<String> {
     let (listed, asked) = (record.candidates.len(), record.problem.resolved.solve.candidates);
-    if listed == 0 || listed >= asked {
+    // Snapped and hand-made linkages come from no search.
+    let searched = !matches!(record.termination.reason, Reason::Snapped | Reason::ByHand);
+    if listed == 0 || listed >= asked || !searched {
         return None;
     }
     let accepted = record.candidates.iter().any(|c| c.accepted);
@@ -269,7 +271,7 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
         Reason::TimeLimit | Reason::Cancelled => {
             text.push_str(" It was cut short: a longer search may find others.")
         }
-        Reason::Converged | Reason::TargetReached | Reason::Stalled => {}
+        Reason::Converged | Reason::TargetReached | Reason::Stalled | Reason::Snapped | Reason::ByHand => {}
     }
     Some(text)
 }

@@ -5,14 +5,14 @@
 //! from the answers found so far, then in rounds of fresh starts, until the best has come back [`HITS`] times,
 //! nothing better has come of [`QUIET`] rounds, or as much has been spent as the caller allows.
 
+use super::costs::marginal;
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, RoundOutcome, judged, polish, round};
-use super::plan::FAR;
+use super::plan::{FAR, moved_back};
 use super::rank::{chosen, compare};
 use super::starts::Starts;
 use super::warm::{start_at, start_beside};
 use super::warnings::{GREATEST_LINK_RATIO, LEAST_TRANSMISSION_DEG, is_serious, warnings};
 use super::{Budget, Observer, Progress};
-use crate::assess::assess;
 use crate::linkage::{Complex, LinkageType};
 use crate::problem::Problem;
 use crate::problem::spec::ProblemSpec;
@@ -111,7 +111,7 @@ pub fn buildable(
         let known: Vec<Candidate> = ranked.iter().chain(others).filter_map(near).collect();
         let (found, evaluations) = second_search(&tight, &known, allowance, budget, observer);
         outcome.evaluations = evaluations;
-        let back = |c: &Candidate| assess(problem, &c.linkage.shifted(away).ok()?, &c.crank_deg, &c.t1_at);
+        let back = |c: &Candidate| moved_back(problem, c, away);
         found.iter().filter_map(back).for_each(|candidate| offer(&candidate));
     }
     if let Some(best) = &mut best {
@@ -119,6 +119,10 @@ pub fn buildable(
             (c.linkage, &c.crank_deg, &c.t1_at) == (best.linkage, &best.crank_deg, &best.t1_at)
         };
         best.rank = ranked.iter().find(equal).map_or(0, |c| c.rank);
+        if best.rank == 0 {
+            // A ranked one has them already.
+            best.costs = marginal(problem, best);
+        }
     }
     outcome.candidate = best;
     outcome

@@ -50,11 +50,14 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget
                 None => return,
             }
         }
-        // Near a change point far from the origin a cognate's own rounding can move its curve: none is offered.
+        // Near a change point far from the origin a cognate's own rounding can move its curve: none is offered. And what
+        // was the candidate's error before the two changed places need not be the other's.
         let size = problem.task().size();
         forms.retain(|form| {
             let one: At<'_> = (&candidate.linkage, &candidate.crank_deg, &candidate.t1_at);
-            first_apart(size, one, (&form.linkage, &form.crank_deg, &form.t1_at)).is_none()
+            let other: At<'_> = (&form.linkage, &form.crank_deg, &form.t1_at);
+            first_apart(size, one, other).is_none()
+                && has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0)
         });
         candidate.alternatives = forms.iter().map(alternative).collect();
     });
@@ -81,6 +84,33 @@ pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
     (0..one.1.len().min(other.1.len())).find(|&i| {
         !point(one, i).zip(point(other, i)).is_some_and(|(p, q)| (p - q).norm() <= SAME_POINT * span)
     })
+}
+
+/// A coupler point is rounded by less than this part of the largest number that it is computed from, where no toggle is
+/// near: two roots, two divisions and a dozen sums and products.
+const ROUNDED: f64 = 32.0 * f64::EPSILON;
+
+/// Whether the sum of squares of a linkage is that of the candidate whose curve it draws: to [`SAME_ERROR`], to what
+/// counts as exact, or to what rounding makes of it. The margins are taken `times` over: who checks what was computed
+/// elsewhere takes them twice.
+///
+/// Each error vector is the difference of a point and a coupler point, off by at most r, [`ROUNDED`] of the largest
+/// coordinate or length of the two linkages and the points; so that |sqrt(s_1) - sqrt(s_2)| <= 2 r sqrt(n).
+pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&FourBar, f64), times: f64) -> bool {
+    let (linkage, sum_sq) = form;
+    let task = problem.task();
+    let of_points = task.points().iter().fold(0.0, |reach: f64, p| reach.max(p.norm()));
+    let reach = [linkage, &candidate.linkage].into_iter().map(magnitude).fold(of_points, f64::max);
+    let rounded = 2.0 * ROUNDED * reach * (task.len() as f64).sqrt();
+    let own = candidate.error.sum_sq;
+    let same = own * (1.0 + times * SAME_ERROR);
+    sum_sq <= same.max(times * exact_sum_sq(problem)).max((own.sqrt() + times * rounded).powi(2))
+}
+
+/// The largest number that a coupler point of a linkage is computed from.
+fn magnitude(linkage: &FourBar) -> f64 {
+    let pivots = linkage.crank_pivot().norm().max(linkage.follower_pivot().norm());
+    pivots.max(linkage.longest_link()).max(linkage.crank_side())
 }
 
 /// A linkage with its crank angle (degrees) and assembly at each point.
@@ -141,11 +171,9 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
             Timing::Free => placed(problem, candidate, &cognate)?,
             Timing::Prescribed { offset, .. } => in_step(problem, candidate, &cognate, *offset)?,
         };
-        let same = candidate.error.sum_sq * (1.0 + SAME_ERROR);
-        let bar = same.max(exact_sum_sq(problem));
         let to_curve = Some(candidate.error.to_curve);
         assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
-            .filter(|form| form.error.sum_sq <= bar)
+            .filter(|form| has_error_of(problem, candidate, (&form.linkage, form.error.sum_sq), 1.0))
     };
     found.into_iter().flatten().filter_map(judged).collect()
 }

@@ -155,7 +155,7 @@ impl Exact {
 pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
     let Some(exact) = &mut outcome.exact else { return };
     let Some(target) = target(problem) else { return };
-    let bar = 1e6 * exact_sum_sq(problem);
+    let bar = nearly_exact(problem);
     for candidate in outcome.candidates.iter_mut().filter(|c| c.error.sum_sq <= bar) {
         candidate.certified = certified(&target, candidate);
         for class in &mut exact.linkages {
@@ -167,8 +167,17 @@ pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
     }
 }
 
+/// The sum of squares up to which a candidate passes for one of the exact linkages, and a proof is tried.
+pub fn nearly_exact(problem: &Problem) -> f64 {
+    1e6 * exact_sum_sq(problem)
+}
+
 /// Linkages that differ by less than this part of their longest link are the same.
 const SAME: f64 = 1e-7;
+
+/// .. and this part of their coordinates: what is computed from those of one, far from the origin, is the other to a
+/// thousand roundings.
+const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
 /// Whether two linkages are the same but for rounding.
 pub fn same(one: &FourBar, other: &FourBar) -> bool {
@@ -176,7 +185,8 @@ pub fn same(one: &FourBar, other: &FourBar) -> bool {
         let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
         [a.re, a.im, b.re, b.im, l.crank(), l.coupler(), l.follower(), offset.re, offset.im]
     };
-    let reach = SAME * one.longest_link().max(one.crank_side());
+    let far = one.crank_pivot().norm().max(one.follower_pivot().norm());
+    let reach = SAME * one.longest_link().max(one.crank_side()) + ROUNDED * far;
     numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
 }
 

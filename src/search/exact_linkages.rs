@@ -13,6 +13,7 @@ use crate::linkage::{AssemblyMode, FourBar};
 use crate::problem::Problem;
 use crate::record::{Candidate, Certified, CurveErrorRecord, ExactForm, ExactLinkage};
 use crate::task::error::rms;
+use crate::task::referee::judge;
 use rayon::prelude::*;
 
 /// A real class with its mechanisms judged.
@@ -129,16 +130,30 @@ impl Class {
     }
 }
 
+/// Whether a class can do something, as far as that is known from one linkage of it with its rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ability {
+    /// A mechanism that passes the points beyond doubt can.
+    pub certain: bool,
+    /// A mechanism that may pass them can.
+    pub possible: bool,
+}
+
 /// What is found again of a listed class.
 #[derive(Clone, Debug)]
 pub struct Recomputed {
     /// The listed linkage, judged; `None` where it cannot be.
     pub judged: Option<Candidate>,
     /// On one circuit, in order, free of defects, by one of the six.
-    pub abilities: [bool; 3],
-    /// All mechanisms of the class.
-    pub forms: Vec<FourBar>,
+    pub abilities: [Ability; 3],
+    /// All mechanisms of the class, each with whether it passes the points beyond doubt.
+    pub forms: Vec<(ExactForm, bool)>,
 }
+
+/// A mechanism that misses the points by at most this part of what it may passes them whatever rounding does; beyond the
+/// other it does not. (A class is found again from a rounded linkage, which may be worse conditioned than the others.)
+const BEYOND_DOUBT: f64 = 0.1;
+const IN_DOUBT: f64 = 100.0;
 
 /// The class of a linkage at its positions, found from these alone; `None` where it does not pass the points.
 pub fn class_at(
@@ -148,18 +163,38 @@ pub fn class_at(
 ) -> Option<Recomputed> {
     let angles: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let given = solution_of(target, linkage, &angles, t1_at)?;
-    let list = mechanisms(problem.task(), target, &given);
-    let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
-    if !any(|m| m.passes) {
+    let mut list = mechanisms(problem.task(), target, &given);
+    list.retain(|m| m.miss_over_limit <= IN_DOUBT);
+    if list.is_empty() {
         return None;
     }
+    let certain = |m: &&Mechanism| m.miss_over_limit <= BEYOND_DOUBT;
+    let ability = |defects: &[&str]| {
+        let can = |m: &Mechanism| !m.defects.iter().any(|defect| defects.contains(&defect.name()));
+        Ability { certain: list.iter().filter(certain).any(can), possible: list.iter().any(can) }
+    };
     Some(Recomputed {
         judged: assess(problem, linkage, crank_deg, t1_at),
         abilities: [
-            any(Mechanism::on_one_circuit),
-            any(Mechanism::in_order),
-            any(Mechanism::is_free_of_defects),
+            ability(&["circuit"]),
+            ability(&["circuit", "order"]),
+            ability(&["circuit", "order", "branch"]),
         ],
-        forms: list.iter().map(|m| m.linkage).collect(),
+        forms: list
+            .iter()
+            .filter_map(|m| Some((form(problem, m)?, m.miss_over_limit <= BEYOND_DOUBT)))
+            .collect(),
+    })
+}
+
+/// A mechanism with its type and its defects; `None` where its links are those of no type.
+fn form(problem: &Problem, mechanism: &Mechanism) -> Option<ExactForm> {
+    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
+    let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+    let radians: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    Some(ExactForm {
+        linkage: mechanism.linkage,
+        linkage_type: mechanism.linkage.linkage_type()?,
+        defects: judge(problem.task(), &mechanism.linkage, &radians, &t1_at).defects,
     })
 }

@@ -256,6 +256,41 @@ impl Demand {
         spec
     }
 
+    /// Whether a value to type leaves everything allowed that the problem allows: each limit where it is or farther out, a
+    /// policy that allows any, the types with others.
+    pub fn is_no_tighter(self, spec: &ProblemSpec, to: &TypedValue) -> bool {
+        match (self, to) {
+            (Demand::Type, TypedValue::Words(names)) => {
+                spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
+            }
+            (
+                Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch,
+                TypedValue::Word(word),
+            ) => word == "any",
+            (Demand::Design(_), to) => {
+                let values = match to {
+                    TypedValue::Number(value) => vec![*value; 2],
+                    TypedValue::Numbers(values) => values.clone(),
+                    TypedValue::Pairs(pairs) => pairs.concat(),
+                    TypedValue::Word(_) | TypedValue::Words(_) => return false,
+                };
+                self.limits(spec).is_some_and(|limits| {
+                    // A pivot that is fixed is typed as its two coordinates.
+                    let fixed = limits.len() == 2 * values.len();
+                    let values = if fixed { values.iter().flat_map(|v| [*v; 2]).collect() } else { values };
+                    reach_out(&limits, &values)
+                })
+            }
+            (_, TypedValue::Number(value)) => {
+                self.limits(spec).is_some_and(|limits| reach_out(&limits, &[*value]))
+            }
+            (_, TypedValue::Numbers(values)) => {
+                self.limits(spec).is_some_and(|limits| reach_out(&limits, values))
+            }
+            _ => false,
+        }
+    }
+
     /// What a candidate, judged under the problem that demands, has in place of each limit.
     pub fn attained(self, judged: &Candidate) -> Option<Vec<f64>> {
         if self == Demand::Tolerance {
@@ -311,6 +346,12 @@ impl Demand {
             }
         }
     }
+}
+
+/// Whether each value is where its limit is or farther out.
+fn reach_out(limits: &[Limit], values: &[f64]) -> bool {
+    limits.len() == values.len()
+        && limits.iter().zip(values).all(|(limit, value)| limit.outward * (value - limit.value) >= 0.0)
 }
 
 impl DesignKey {

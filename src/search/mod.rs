@@ -37,6 +37,8 @@ pub mod warm;
 pub mod warnings;
 
 use crate::linkage::effort::is_stopped_by_a_test;
+pub use relaxed::RELAXED;
+
 use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};

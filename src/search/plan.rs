@@ -17,11 +17,12 @@ use super::starts::Starts;
 use super::{Budget, HitsSoFar, Observer, Progress, SearchOutcome};
 use super::{continuation, free, relaxed, timed};
 use crate::assess::assess;
+use crate::linkage::Complex;
 use crate::problem::Problem;
 use crate::problem::spec::{Method, Objective};
 use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use crate::solve::population::PopulationError;
-use crate::task::Timing;
+use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -111,10 +112,7 @@ fn approximated(
         return search_here(problem, budget, observer, keeper);
     };
     let mut outcome = search_here(&near, budget, observer, keeper)?;
-    let back = |candidate: &Candidate| {
-        let linkage = candidate.linkage.shifted(centre).ok()?;
-        assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at)
-    };
+    let back = |candidate: &Candidate| moved_back(problem, candidate, centre);
     // Also the next best: one that only just closes there may be open here.
     let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
     let found = found.collect();
@@ -126,6 +124,22 @@ fn approximated(
         outcome.reason = Reason::Converged;
     }
     Ok(outcome)
+}
+
+/// A candidate that was found around its target's centre, moved `by` to where the target is and judged there; `None`
+/// where it does not close there. Its pivots are rounded on the way: angles that are counted from the ground line are
+/// those from the line that is there then.
+pub(super) fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
+    let linkage = candidate.linkage.shifted(by).ok()?;
+    let timing = problem.spec().task.path.timing.as_ref();
+    match timing.filter(|timing| timing.offset == AngleOffset::Ground) {
+        None => assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at),
+        Some(timing) => {
+            let base = linkage.ground_angle().to_degrees();
+            let crank_deg: Vec<f64> = timing.crank_deg.iter().map(|deg| base + deg).collect();
+            assess(problem, &linkage, &crank_deg, &candidate.t1_at)
+        }
+    }
 }
 
 fn search_here(

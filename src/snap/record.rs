@@ -7,7 +7,7 @@ use crate::practicality::Sweep;
 use crate::practicality::sensitivity::along;
 use crate::problem::Problem;
 use crate::problem::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
-use crate::record::{Candidate, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
+use crate::record::{Candidate, MethodRecord, ProblemRecord, Record, Termination, Tool, Unit};
 use crate::run::{RunError, digest};
 use crate::search::costs::marginal;
 use crate::search::family::family;

@@ -1,13 +1,16 @@
 //! Exact answers, recomputed: the census adds up, each linkage passes the points, can do what is said of it, and is
 //! proved again. (That the census is complete is a search of its own: run it.)
 
-use super::{Against, Mismatch};
+use super::{Against, Mismatch, verdict};
+use crate::linkage::AssemblyMode;
 use crate::problem::Problem;
-use crate::record::{Candidate, Certified, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
-use crate::search::continuation::{certified, same, target};
+use crate::record::{
+    Candidate, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES, Reason, Record,
+};
+use crate::search::continuation::{certified, nearly_exact, same, target};
 use crate::search::exact_linkages::class_at;
 
-/// A proof found again may be wider by this factor.
+/// A proof found again may be wider or narrower by this factor: the radius is an upper bound made of roundings.
 const WIDER: f64 = 1.5;
 
 pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mismatch>) {
@@ -26,11 +29,12 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
             mismatches.push(Mismatch { rank: None, what: what.into(), recorded, found });
         }
     };
-    census(exact, &mut whole);
+    census(exact, record.termination.reason == Reason::Cancelled, &mut whole);
     let Some(target) = target else {
         whole("exact", "nine points and what passes through them".into(), "not nine points".into());
         return;
     };
+    let places = nearly_exact(problem);
     for (i, listed) in exact.linkages.iter().enumerate() {
         let mut whole = |figure: &str, recorded: String, found: String| {
             whole(&format!("exact.linkages {}: {figure}", i + 1), recorded, found);
@@ -41,34 +45,64 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
             continue;
         };
         if let Some(found) = class.judged {
-            figures(listed, &found, &mut whole);
+            figures(problem, listed, &found, &mut whole);
             if let Some(recorded) = listed.certified
                 && let Some((recorded, found)) = proof(recorded, certified(&target, &found))
             {
                 whole("certified.radius", recorded, found);
             }
         }
+        let sign = |t: AssemblyMode| format!("{:+}", t.sign());
+        let first = listed.t1_at.first().copied().map_or("none".into(), sign);
+        whole("linkage.t1", sign(listed.linkage.assembly()), first);
         let all = [listed.one_circuit, listed.in_order, listed.free_of_defects];
-        whole("what the class can do", format!("{all:?}"), format!("{:?}", class.abilities));
-        let known = |form: &crate::linkage::FourBar| class.forms.iter().any(|other| same(other, form));
-        let count = listed.others.iter().filter(|form| known(&form.linkage)).count();
-        whole("others", listed.others.len().to_string(), count.to_string());
-        let ranked = record.candidates.iter().find(|c| class.forms.iter().any(|form| same(form, &c.linkage)));
-        let near = record.candidates.get(listed.rank.wrapping_sub(1));
-        if listed.rank > 0 && !near.is_some_and(|c| class.forms.iter().any(|form| same(form, &c.linkage))) {
-            whole("rank", listed.rank.to_string(), ranked.map_or(0, |c| c.rank).to_string());
-        }
+        // What is in doubt is as it is recorded.
+        let pairs = || all.into_iter().zip(class.abilities);
+        let found: Vec<bool> = pairs().map(|(is, can)| can.certain || is && can.possible).collect();
+        whole("what the class can do", format!("{all:?}"), format!("{found:?}"));
+        others(listed, &class.forms, &mut whole);
+        let of_class = |c: &&Candidate| {
+            c.error.sum_sq <= places && class.forms.iter().any(|(form, _)| same(&form.linkage, &c.linkage))
+        };
+        let rank = record.candidates.iter().filter(of_class).next_back().map_or(0, |c| c.rank);
+        whole("rank", listed.rank.to_string(), rank.to_string());
     }
 }
 
-/// Both in words where the recorded proof says more than is found.
+/// The other mechanisms of a class: all of them that pass beyond doubt, each with its type and its defects.
+fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn FnMut(&str, String, String)) {
+    for (i, other) in listed.others.iter().enumerate() {
+        let what = |figure: &str| format!("others {}: {figure}", i + 1);
+        let Some((found, certain)) = forms.iter().find(|(form, _)| same(&form.linkage, &other.linkage))
+        else {
+            whole(&what("the linkage"), "a mechanism of the class".into(), "none of them".into());
+            continue;
+        };
+        let t1 = |form: &ExactForm| format!("{:+}", form.linkage.assembly().sign());
+        whole(&what("linkage.t1"), t1(other), t1(found));
+        whole(&what("type"), other.linkage_type.to_string(), found.linkage_type.to_string());
+        if *certain {
+            whole(&what("defects"), format!("{:?}", other.defects), format!("{:?}", found.defects));
+        }
+    }
+    let recorded = || listed.others.iter().map(|form| &form.linkage).chain([&listed.linkage]);
+    let missing = |(form, beyond_doubt): &&(ExactForm, bool)| {
+        *beyond_doubt && !recorded().any(|linkage| same(linkage, &form.linkage))
+    };
+    let count = listed.others.len();
+    whole("others", count.to_string(), (count + forms.iter().filter(missing).count()).to_string());
+}
+
+/// Both in words where the recorded proof is not the one that is found.
 fn proof(recorded: Certified, found: Option<Certified>) -> Option<(String, String)> {
-    let holds = found.is_some_and(|found| found.radius <= WIDER * recorded.radius);
+    let near = |one: f64, other: f64| one <= WIDER * other;
+    let holds =
+        found.is_some_and(|found| near(found.radius, recorded.radius) && near(recorded.radius, found.radius));
     let words = |c: Certified| format!("{:e}", c.radius);
     (!holds).then(|| (words(recorded), found.map_or("no proof".into(), words)))
 }
 
-fn census(exact: &ExactRecord, whole: &mut dyn FnMut(&str, String, String)) {
+fn census(exact: &ExactRecord, cancelled: bool, whole: &mut dyn FnMut(&str, String, String)) {
     let c = &exact.census;
     let list = &exact.linkages;
     let many = |of: fn(&ExactLinkage) -> bool| list.iter().filter(|l| of(l)).count();
@@ -86,19 +120,26 @@ fn census(exact: &ExactRecord, whole: &mut dyn FnMut(&str, String, String)) {
     for (name, recorded, found) in sums {
         whole(&format!("exact.census.{name}"), recorded.to_string(), found.to_string());
     }
-    let complete = exact.completeness == Completeness::Complete;
-    whole("exact.completeness", format!("complete: {complete}"), format!("complete: {}", exact.generic));
-    if exact.completeness == Completeness::NonGeneric && c.failed + c.duplicate > 0 {
-        whole(
-            "exact.completeness",
-            "non-generic".into(),
-            "incomplete: paths were lost or ended together".into(),
-        );
-    }
+    // As the search says it: a search that was cancelled says only that.
+    let found = if cancelled && exact.completeness == Completeness::Cancelled {
+        Completeness::Cancelled
+    } else if c.classes == GENERIC_CLASSES {
+        Completeness::Complete
+    } else if c.failed == 0 && c.singular > 0 && c.singular >= c.duplicate {
+        Completeness::NonGeneric
+    } else {
+        Completeness::Incomplete
+    };
+    whole("exact.completeness", format!("{:?}", exact.completeness), format!("{found:?}"));
     whole("exact.generic", exact.generic.to_string(), (c.classes == GENERIC_CLASSES).to_string());
 }
 
-fn figures(listed: &ExactLinkage, found: &Candidate, whole: &mut dyn FnMut(&str, String, String)) {
+fn figures(
+    problem: &Problem,
+    listed: &ExactLinkage,
+    found: &Candidate,
+    whole: &mut dyn FnMut(&str, String, String),
+) {
     let mut number = |what: &str, recorded: f64, found: f64, slack: f64| {
         let near = (recorded - found).abs() <= super::RELATIVE * found.abs() + slack;
         if !near {
@@ -119,9 +160,8 @@ fn figures(listed: &ExactLinkage, found: &Candidate, whole: &mut dyn FnMut(&str,
     number("link_ratio", listed.link_ratio, found.link_ratio, super::ABSOLUTE);
     whole("type", listed.linkage_type.to_string(), found.linkage_type.to_string());
     whole("defects", format!("{:?}", listed.defects), format!("{:?}", found.defects));
-    if !found.requirements.iter().any(super::within_margin) {
-        whole("accepted", listed.accepted.to_string(), found.accepted.to_string());
-        let not_met = crate::search::cognates::not_met(found);
-        whole("not_met", listed.not_met.join(", "), not_met.join(", "));
-    }
+    let said = |name: &str| listed.not_met.iter().any(|not_met| not_met == name);
+    let (not_met, accepted) = verdict(problem, found, &said);
+    whole("accepted", listed.accepted.to_string(), accepted.to_string());
+    whole("not_met", listed.not_met.join(", "), not_met.join(", "));
 }

@@ -1,12 +1,11 @@
 //! What stands beside the candidates, recomputed: warnings, alternatives, the family, the buildable answer.
 
-use super::{ABSOLUTE, Against, Mismatch};
+use super::{ABSOLUTE, Against, Mismatch, verdict};
 use crate::assess::assess;
 use crate::problem::Problem;
 use crate::record::{Alternative, Candidate, Record};
-use crate::search::cognates::{SAME_ERROR, first_apart, not_met};
+use crate::search::cognates::{first_apart, has_error_of};
 use crate::search::family::family;
-use crate::search::rank::exact_sum_sq;
 use crate::search::symmetry::mirror_image_serves;
 use crate::search::warnings::{is_serious, warnings};
 
@@ -34,10 +33,6 @@ pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mi
     let first = record.candidates.first();
     let found = first.and_then(|best| family(problem, best));
     whole("family", words(record.family.as_ref()), words(found.as_ref()));
-    if let Some(repeats) = &record.repeats {
-        whole("repeats", format!("{repeats:?}"), format!("{:?}", repeats.recomputed()));
-        whole("repeats: counts that can be", "true".into(), repeats.is_possible().to_string());
-    }
     let Some(buildable) = &record.buildable else { return };
     let known = record.candidates.iter().find(|c| {
         (c.linkage, &c.crank_deg, &c.t1_at) == (buildable.linkage, &buildable.crank_deg, &buildable.t1_at)
@@ -90,8 +85,7 @@ impl Against<'_> {
         let sum = found.error.sum_sq;
         let slack = size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (n as f64).sqrt();
         self.number(&what("sum_sq"), recorded.sum_sq, sum, slack);
-        let same = candidate.error.sum_sq * (1.0 + 2.0 * SAME_ERROR);
-        if sum > same.max(2.0 * exact_sum_sq(problem)) {
+        if !has_error_of(problem, candidate, (&recorded.linkage, sum), 2.0) {
             self.differ(&what("the error"), "the candidate's".into(), format!("{sum:e}"));
         }
         self.number(&what("link_ratio"), recorded.link_ratio, found.link_ratio, 1.0);
@@ -106,12 +100,13 @@ impl Against<'_> {
         if recorded.linkage_type != found.linkage_type {
             self.differ(&what("type"), recorded.linkage_type.to_string(), found.linkage_type.to_string());
         }
-        let doubtful = found.requirements.iter().any(super::within_margin);
-        if !doubtful && recorded.accepted != found.accepted {
-            self.differ(&what("accepted"), recorded.accepted.to_string(), found.accepted.to_string());
+        let said = |name: &str| recorded.not_met.iter().any(|not_met| not_met == name);
+        let (not_met, accepted) = verdict(problem, &found, &said);
+        if recorded.accepted != accepted {
+            self.differ(&what("accepted"), recorded.accepted.to_string(), accepted.to_string());
         }
-        if !doubtful && recorded.not_met != not_met(&found) {
-            self.differ(&what("not_met"), recorded.not_met.join(", "), not_met(&found).join(", "));
+        if recorded.not_met != not_met {
+            self.differ(&what("not_met"), recorded.not_met.join(", "), not_met.join(", "));
         }
         // The same curve: the same coupler point at every point of the target.
         let apart = first_apart(
@@ -126,6 +121,7 @@ impl Against<'_> {
                 format!("elsewhere at point {i}"),
             );
         }
+        self.assembly(&what("linkage.t1"), &recorded.linkage, &recorded.t1_at);
         found.rank = candidate.rank;
         self.timing(problem, &found);
     }

@@ -1,5 +1,7 @@
 //! Random problems: any target, any timing, any requirements, small budgets.
 
+#![allow(dead_code, reason = "every user takes its own part of it")]
+
 use crate::random::{TYPES, bounding_box, chance, linkage, log_uniform, noisy, one_of, trace};
 use linkwright::linkage::Complex;
 use linkwright::problem_file::{self, ProblemFile};
@@ -21,11 +23,55 @@ pub struct Case {
 pub fn case(seed: u64, index: u64) -> Option<Case> {
     let draws = &mut stream(seed, index);
     let (points, closed) = target(draws);
-    let text = text(draws, &points, closed);
-    let mut file = problem_file::parse("random.toml", &text, None, &[]).ok()?;
-    let path = &mut file.spec.task.path;
+    let asks = Asks { evaluations: [50.0, 1500.0], ..Asks::default() };
+    parsed(draws, index, &points, closed, &asks)
+}
+
+/// As [`case`], from farther afield: targets up to 1e10 of their sizes from the origin, both objectives, digitised points,
+/// budgets of 500 to 20,000 evaluations.
+pub fn wide_case(seed: u64, index: u64) -> Option<Case> {
+    let draws = &mut stream(seed, index);
+    let (mut points, closed) = target(draws);
     let [x0, y0, x1, y1] = bounding_box(&points);
     let size = (x1 - x0).hypot(y1 - y0);
+    if chance(draws, 0.5) {
+        // A coordinate of more than 1e12 is none.
+        let away = (size * log_uniform(draws, 10.0, 1e10)).min(5e11);
+        let by = Complex::from_polar(away, uniform(draws, 0.0, TAU));
+        points.iter_mut().for_each(|p| *p += by);
+    }
+    let digitised = chance(draws, 0.15);
+    let asks = Asks {
+        evaluations: [500.0, 20_000.0],
+        max_deviation: chance(draws, 0.25),
+        smooth: (digitised && chance(draws, 0.6)).then(|| size * log_uniform(draws, 1e-3, 0.05)),
+        samples: (digitised && chance(draws, 0.7)).then(|| 5 + below(draws, 40)),
+    };
+    parsed(draws, index, &points, closed, &asks)
+}
+
+/// What a problem asks besides what is drawn for every one.
+#[derive(Default)]
+struct Asks {
+    /// The budget of evaluations lies between these.
+    evaluations: [f64; 2],
+    /// The objective is the largest deviation.
+    max_deviation: bool,
+    /// The deviation of the smoothing.
+    smooth: Option<f64>,
+    /// The points are resampled; then they have no crank angles and no numbers of their own.
+    samples: Option<usize>,
+}
+
+fn parsed(draws: &mut Stream, index: u64, points: &[Complex], closed: bool, asks: &Asks) -> Option<Case> {
+    let text = text(draws, points, closed, asks);
+    let mut file = problem_file::parse("random.toml", &text, None, &[]).ok()?;
+    let path = &mut file.spec.task.path;
+    let [x0, y0, x1, y1] = bounding_box(points);
+    let size = (x1 - x0).hypot(y1 - y0);
+    if asks.samples.is_some() {
+        return Some(Case { index, text, file });
+    }
     if chance(draws, 0.2) {
         path.weight = Some(points.iter().map(|_| log_uniform(draws, 0.01, 100.0)).collect());
     }
@@ -128,7 +174,7 @@ fn along(corners: &[Complex], n: usize, closed: bool) -> Vec<Complex> {
 }
 
 /// A problem file with random tables.
-fn text(draws: &mut Stream, points: &[Complex], closed: bool) -> String {
+fn text(draws: &mut Stream, points: &[Complex], closed: bool, asks: &Asks) -> String {
     let [x0, y0, x1, y1] = bounding_box(points);
     let (size, centre) = ((x1 - x0).hypot(y1 - y0), [0.5 * (x0 + x1), 0.5 * (y0 + y1)]);
     let listed: Vec<String> = points.iter().map(|p| format!("[{:?}, {:?}]", p.re, p.im)).collect();
@@ -137,7 +183,13 @@ fn text(draws: &mut Stream, points: &[Complex], closed: bool) -> String {
         let tolerance = size * log_uniform(draws, 0.003, 0.5);
         writeln!(out, "tolerance = {tolerance:?}").expect("memory");
     }
-    let offset = if chance(draws, 0.5) { timing(draws, points.len(), &mut out) } else { None };
+    for (key, value) in [("smooth", asks.smooth), ("samples", asks.samples.map(|n| n as f64))] {
+        if let Some(value) = value {
+            writeln!(out, "{key} = {value}").expect("memory");
+        }
+    }
+    let timed = chance(draws, 0.5) && asks.samples.is_none();
+    let offset = if timed { timing(draws, points.len(), &mut out) } else { None };
     design(draws, size, centre, &mut out);
     require(draws, size, centre, offset.is_none_or(|o| o == "free"), &mut out);
     let method = one_of(
@@ -153,13 +205,16 @@ fn text(draws: &mut Stream, points: &[Complex], closed: bool) -> String {
             "differential-evolution",
         ],
     );
-    let evaluations = log_uniform(draws, 50.0, 1500.0) as u64;
+    let evaluations = log_uniform(draws, asks.evaluations[0], asks.evaluations[1]) as u64;
     let (candidates, seed) = (1 + below(draws, 4), below(draws, 1000));
     write!(
         out,
         "[solve]\nmethod = \"{method}\"\nevaluations = {evaluations}\ncandidates = {candidates}\nseed = {seed}\n"
     )
     .expect("memory");
+    if asks.max_deviation {
+        out.push_str("objective = \"max-deviation\"\n");
+    }
     out
 }
 

@@ -1,0 +1,85 @@
+//! What of a record is checked, and how far: each key is recomputed, held to limits, or not checked.
+//!
+//! `docs/results.md` has the whole table, and a test changes every figure of records and looks whether what happens is
+//! what stands there.
+
+use crate::record::Record;
+
+/// How far a key of a record is checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Checked {
+    /// Only a search or a proof could find it again: it is held to what can be.
+    Bounded,
+    /// Nothing says whether it is so.
+    Not,
+}
+
+/// The keys that are not recomputed, as docs/results.md has them: `a.b[].c`, `a.b.*` for all that stands below `a.b`, and
+/// `a[]` for how many entries a list has.
+pub const UNCHECKED: &[(&str, Checked)] = &[
+    ("tool.version", Checked::Not),
+    ("problem.name", Checked::Not),
+    ("problem.source", Checked::Not),
+    ("problem.unit", Checked::Bounded),
+    ("problem.resolved.solve.candidates", Checked::Bounded),
+    ("problem.resolved.solve.evaluations", Checked::Bounded),
+    ("problem.resolved.solve.time_limit_s", Checked::Not),
+    ("problem.resolved.solve.certify.gap", Checked::Bounded),
+    ("problem.resolved.solve.certify.time_limit_s", Checked::Not),
+    ("method.used", Checked::Bounded),
+    ("termination.reason", Checked::Bounded),
+    ("evaluations.*", Checked::Bounded),
+    ("repeats.starts", Checked::Bounded),
+    ("repeats.hits", Checked::Bounded),
+    ("repeats.near", Checked::Bounded),
+    ("repeats.followed", Checked::Bounded),
+    ("repeats.basins", Checked::Bounded),
+    ("conflict.among", Checked::Bounded),
+    ("relaxations[]", Checked::Not),
+    ("relaxations[].set[]", Checked::Bounded),
+    ("relaxations[].set[].to", Checked::Bounded),
+    ("relaxations[].sum_sq", Checked::Bounded),
+    ("candidates[]", Checked::Bounded),
+    ("candidates[].alternatives[]", Checked::Not),
+    ("candidates[].error.max_at", Checked::Bounded),
+    ("candidates[].costs[].rms_without", Checked::Bounded),
+    ("exact.census.not_told_apart", Checked::Not),
+    ("exact.census.*", Checked::Bounded),
+    ("certificate.lower_bound", Checked::Bounded),
+    ("certificate.boxes", Checked::Bounded),
+    ("certificate.wanted_gap", Checked::Bounded),
+    ("certificate.leaves_sha256", Checked::Not),
+    ("certificate.parts[].lower_bound", Checked::Bounded),
+    ("certificate.parts[].closed", Checked::Bounded),
+    ("certificate.parts[].boxes", Checked::Bounded),
+    ("certificate.parts[].leaves_sha256", Checked::Not),
+];
+
+/// How far a key is checked, written as in [`UNCHECKED`]; `None` where it is recomputed.
+pub fn checked(key: &str) -> Option<Checked> {
+    let covers = |row: &str| row == key || row.strip_suffix('*').is_some_and(|start| key.starts_with(start));
+    UNCHECKED.iter().find(|(row, _)| covers(row)).map(|(_, how)| *how)
+}
+
+/// The keys of a record that are checked no further than this. Lists are left out: how many there are is said of the keys
+/// below them.
+pub fn unchecked(record: &Record, how: Checked) -> Vec<&'static str> {
+    let Ok(document) = serde_json::to_value(record) else { return Vec::new() };
+    let asked = UNCHECKED.iter().filter(|(row, is)| *is == how && !row.ends_with("[]"));
+    asked.map(|(row, _)| *row).filter(|row| holds(&document, row)).collect()
+}
+
+/// Whether a document has a key: of lists, in one of their entries.
+fn holds(value: &serde_json::Value, key: &str) -> bool {
+    let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
+    if first == "*" {
+        return true;
+    }
+    let below = |value: &serde_json::Value| rest.is_none_or(|rest| holds(value, rest));
+    match first.strip_suffix("[]") {
+        None => value.get(first).is_some_and(below),
+        Some(name) => {
+            value.get(name).and_then(|list| list.as_array()).is_some_and(|list| list.iter().any(below))
+        }
+    }
+}

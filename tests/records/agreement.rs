@@ -1,0 +1,77 @@
+//! `verify` agrees with every record that a run writes: random problems with all requirements, near the origin and up to
+//! 1e10 sizes away, read back from their bytes.
+//!
+//! `AGREEMENT_CASES=FROM..TO` runs other cases than the few of every day, such as 0..2000; it prints where it is.
+
+use crate::common::{bytes, job};
+use crate::problems::wide_case;
+use linkwright::record::Record;
+use linkwright::results_folder::parse_record;
+use linkwright::run::{Context, run};
+use linkwright::verify::verify;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+const SEED: u64 = 20_261_122;
+/// Cases of every day: half a minute's work for two processors without optimisation.
+const CASES: u64 = 24;
+/// After so many cases a line says how far it is.
+const LINE_EVERY: u64 = 100;
+
+fn asked() -> Option<Range<u64>> {
+    let asked = std::env::var("AGREEMENT_CASES").ok()?;
+    let (from, to) = asked.split_once("..").expect("FROM..TO");
+    Some(from.parse().expect("a number")..to.parse().expect("a number"))
+}
+
+/// A record as it is read back from disk.
+fn read_back(record: &Record) -> Record {
+    let text = bytes(record);
+    parse_record("record.json", text.as_bytes()).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+}
+
+#[test]
+fn verify_agrees_with_every_record_that_a_run_writes() {
+    let cases = asked().unwrap_or(0..CASES);
+    let [done, problems, accepted, conflicts, buildable] = [(); 5].map(|()| AtomicU64::new(0));
+    let count = |of: &AtomicU64, is: bool| of.fetch_add(u64::from(is), Ordering::Relaxed) + u64::from(is);
+    let complaint = |index: u64| {
+        let done = count(&done, true);
+        if asked().is_some() && done.is_multiple_of(LINE_EVERY) {
+            eprintln!("{done} of {} cases", cases.end - cases.start);
+        }
+        let case = wide_case(SEED, index)?;
+        count(&problems, true);
+        let beside =
+            format!("{:?} {:?}", case.file.spec.task.path.weight, case.file.spec.task.path.tolerance);
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&job(case.file), &context).expect("it runs").record;
+        count(&accepted, record.candidates.iter().any(|c| c.accepted));
+        count(&conflicts, record.conflict.is_some());
+        count(&buildable, record.buildable.is_some());
+        let found = verify(&read_back(&record)).expect("the problem is one");
+        let words: Vec<String> = found.iter().take(5).map(ToString::to_string).collect();
+        let told = || format!("case {}: {}\n{}{beside}", case.index, words.join("\n"), case.text);
+        let complaint = (!found.is_empty()).then(told);
+        if let Some(complaint) = complaint.as_ref().filter(|_| asked().is_some()) {
+            // At once: a long run may be stopped.
+            eprintln!("{complaint}");
+        }
+        complaint
+    };
+    let wrong: Vec<String> = cases.clone().into_par_iter().filter_map(complaint).collect();
+    let [problems, accepted, conflicts, buildable] =
+        [problems, accepted, conflicts, buildable].map(AtomicU64::into_inner);
+    if asked().is_some() {
+        eprintln!(
+            "{problems} problems, {} not verified; {accepted} with an accepted answer, {conflicts} with a conflict, \
+             {buildable} with a buildable one beside the first",
+            wrong.len()
+        );
+    }
+    assert!(wrong.is_empty(), "seed {SEED}, {} of {problems}:\n{}", wrong.len(), wrong.join("\n\n"));
+    // A test of records needs some of each kind.
+    assert!(cases.end - cases.start < CASES || (accepted > 0 && conflicts > 0), "{accepted} and {conflicts}");
+    assert!(problems * 2 > cases.end - cases.start, "{problems} problems");
+}
