@@ -43,7 +43,7 @@ impl NameError {
                 "a name has no folder in it: write only its last part (--out says where results go)"
             }
             NameError::Device(_) => {
-                "put something in front or behind it, such as `my-` (a dot is not enough)"
+                "write another word in front of it, such as `my-con`; an ending does not help"
             }
             NameError::LeadingDash => "begin the name with a letter, a digit or _",
             NameError::TrailingDot => "leave the dot at the end out",
