@@ -13,7 +13,7 @@
 
 use super::look::Look;
 use super::multistart::unwrapped;
-use super::rank::{NEAR, SAME_CURVE};
+use super::rank::NEAR;
 use crate::assess::assess;
 use crate::linkage::{AssemblyMode, Complex, FourBar, NaturalCoordinates};
 use crate::problem::Problem;
@@ -101,7 +101,8 @@ pub fn mirror_image_serves(problem: &Problem, candidate: &Candidate) -> bool {
     let mut mirrors = Symmetries::of(problem);
     mirrors.0.retain(|symmetry| symmetry.mirrors);
     mirrors.images(problem, candidate).any(|image| {
-        let another = !Look::of(Cow::Borrowed(&image)).is(&own, NEAR, SAME_CURVE * size);
+        // Another linkage, be it of the same curve: a good fit of a symmetric target is nearly symmetric itself.
+        let another = own.difference(&Look::of(Cow::Borrowed(&image))) >= NEAR;
         let bar = candidate.error.rms * (1.0 + AS_GOOD) + TYPED * size;
         let serves = |c: Candidate| c.accepted && c.error.rms <= bar;
         another && assess(problem, &image.linkage, &image.crank_deg, &image.t1_at).is_some_and(serves)
