@@ -64,7 +64,7 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
         let of_class = |c: &&Candidate| {
             c.error.sum_sq <= places && class.forms.iter().any(|(form, _)| same(&form.linkage, &c.linkage))
         };
-        let rank = record.candidates.iter().filter(of_class).next_back().map_or(0, |c| c.rank);
+        let rank = record.candidates.iter().rfind(of_class).map_or(0, |c| c.rank);
         whole("rank", listed.rank.to_string(), rank.to_string());
     }
 }
