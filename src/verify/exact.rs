@@ -2,6 +2,7 @@
 //! proved again. (That the census is complete is a search of its own: run it.)
 
 use super::{Against, Mismatch, verdict};
+use crate::assess::assess;
 use crate::linkage::AssemblyMode;
 use crate::problem::Problem;
 use crate::record::{
@@ -12,6 +13,10 @@ use crate::search::exact_linkages::class_at;
 
 /// A proof found again may be wider or narrower by this factor: the radius is an upper bound made of roundings.
 const WIDER: f64 = 1.5;
+
+/// A target farther than this many of its sizes from the origin: coordinates are rounded to 1e-10 of its size, which is
+/// what a mechanism may miss the points by, and the class of a listed linkage cannot be found again from them.
+const FOUND_AGAIN: f64 = 2e4;
 
 pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mismatch>) {
     let target = target(problem);
@@ -35,10 +40,23 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
         return;
     };
     let places = nearly_exact(problem);
+    let far = target.points.iter().map(|point| point.norm()).fold(0.0, f64::max);
+    let found_again = far <= FOUND_AGAIN * problem.task().size();
     for (i, listed) in exact.linkages.iter().enumerate() {
         let mut whole = |figure: &str, recorded: String, found: String| {
             whole(&format!("exact.linkages {}: {figure}", i + 1), recorded, found);
         };
+        if !found_again {
+            // The linkage itself is judged all the same.
+            let n = problem.task().len();
+            let counts = listed.crank_deg.len() == n && listed.t1_at.len() == n;
+            let judged = || assess(problem, &listed.linkage, &listed.crank_deg, &listed.t1_at);
+            match counts.then(judged).flatten() {
+                Some(found) => figures(problem, listed, &found, &mut whole),
+                None => whole("the linkage", "closed at every point".into(), "not that".into()),
+            }
+            continue;
+        }
         let at = (&listed.linkage, listed.crank_deg.as_slice(), listed.t1_at.as_slice());
         let Some(class) = class_at(problem, &target, at) else {
             whole("the linkage", "one that passes all points".into(), "not that".into());
@@ -64,7 +82,7 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
         let of_class = |c: &&Candidate| {
             c.error.sum_sq <= places && class.forms.iter().any(|(form, _)| same(&form.linkage, &c.linkage))
         };
-        let rank = record.candidates.iter().filter(of_class).next_back().map_or(0, |c| c.rank);
+        let rank = record.candidates.iter().rfind(of_class).map_or(0, |c| c.rank);
         whole("rank", listed.rank.to_string(), rank.to_string());
     }
 }
