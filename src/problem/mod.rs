@@ -126,6 +126,12 @@ impl Problem {
         &self.types
     }
 
+    /// Whether searches hold their fits to one of the types from the start: where types are required. Where only the
+    /// crank has to turn fully, fits are free to pass a change point, and those that end beyond it are led back.
+    pub fn aims_at_types(&self) -> bool {
+        !self.spec.require.types.is_empty()
+    }
+
     /// Whether the crank angle's offset is an unknown of the design vector.
     pub fn offset_is_free(&self) -> bool {
         matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })

@@ -60,8 +60,8 @@ pub fn none_through(record: &Record) -> Option<String> {
         )
     } else {
         format!(
-            "The nine points are in special position, and no linkage through all nine was found (points in general \
-             position have {} solutions): {nearest}.",
+            "The nine points are non-generic (in special position), and no linkage through all nine was found (points in \
+             general position have {} solutions): {nearest}.",
             count(GENERIC_CLASSES)
         )
     })

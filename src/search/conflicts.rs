@@ -35,6 +35,8 @@ const TRIAL_SHARE: u64 = 4;
 const ALLOWANCE: u64 = 40;
 /// A fit from what is known gets one part in this many of a trial: what succeeds does so soon.
 const FIT_SHARE: u64 = 16;
+/// Evaluations of a fit that leads a design of a trial to the problem as it is, at most: each is a convex program.
+const LED_IN: u64 = 150;
 /// Answers of a trial that further fits start from.
 const WARM: usize = 4;
 /// Limits between asked and attained that are tried.
@@ -64,8 +66,8 @@ pub struct Explained {
 
 /// Explains a search that found nothing acceptable; nothing where it found something or the budget has stopped.
 ///
-/// Where a trial meets a design that is acceptable after all, the outcome's candidates are chosen anew with it, and there
-/// is nothing to explain.
+/// Where a trial meets a design that is acceptable after all, there is nothing to explain, and where the method is `auto`
+/// the outcome's candidates are chosen anew with it.
 ///
 /// Where the clock or a cancellation ends it early there is no explanation, and that becomes the reason why the
 /// search ended: the record cannot be repeated then.
@@ -102,6 +104,10 @@ pub fn explain(
     }
     if met.is_empty() {
         return Ok(if budget.stopped() { Explained::default() } else { explained });
+    }
+    if problem.spec().solve.method != Method::Auto {
+        // The answers are to be those of the method that was asked for.
+        return Ok(Explained::default());
     }
     let mut found = std::mem::take(&mut outcome.candidates);
     found.append(&mut outcome.others);
@@ -223,13 +229,14 @@ impl Inquiry<'_> {
     ) -> Result<Vec<Candidate>, PopulationError> {
         spec.solve.evaluations = evaluations.max(1);
         spec.solve.method = Method::Auto;
-        let (accepted, spent) = self.outcome(spec)?;
+        let (accepted, spent) = self.outcome(spec, WARM)?;
         self.spent += spent;
         Ok(accepted)
     }
 
-    /// What the search accepts of a problem, and what it cost. What it meets is led to the problem as it is.
-    fn outcome(&mut self, spec: ProblemSpec) -> Result<(Vec<Candidate>, u64), PopulationError> {
+    /// What the search accepts of a problem, and what it cost. What it meets is judged by the problem as it is, and this
+    /// many of its ends are fitted under all of it.
+    fn outcome(&mut self, spec: ProblemSpec, fits: usize) -> Result<(Vec<Candidate>, u64), PopulationError> {
         let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
         (self.observer)(&Progress {
             phase: "what would help",
@@ -245,8 +252,8 @@ impl Inquiry<'_> {
         if self.met.is_empty() {
             let mut ends = outcome.candidates.clone();
             ends.append(&mut outcome.others);
-            let each = (self.trial / FIT_SHARE).max(1);
-            let (met, spent) = led_in(self.problem, &ends, each, self.budget);
+            let each = (self.trial / FIT_SHARE).clamp(1, LED_IN);
+            let (met, spent) = led_in(self.problem, &ends, (fits, each), self.budget);
             self.spent += spent;
             self.met.extend(met.into_iter().filter(|c| c.accepted));
         }
@@ -380,7 +387,7 @@ impl Inquiry<'_> {
             before = Some(limits.clone());
             let Some(set) = changes(self.problem, &spec, demands) else { return Ok(None) };
             // With the settings of the problem: what comes out is what comes out when it is typed.
-            let (accepted, _) = self.outcome(spec)?;
+            let (accepted, _) = self.outcome(spec, 0)?;
             if let Some(best) = accepted.first() {
                 let without_measure = (demands.len() - measured.len()) as f64 * WHOLE;
                 let sum_sq = best.error.sum_sq;

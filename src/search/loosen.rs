@@ -263,10 +263,7 @@ impl Demand {
             (Demand::Type, TypedValue::Words(names)) => {
                 spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
             }
-            (
-                Demand::Order | Demand::Direction | Demand::Circuit | Demand::Branch,
-                TypedValue::Word(word),
-            ) => word == "any",
+            (policy, TypedValue::Word(word)) if policy.is_policy() => word == "any",
             (Demand::Design(_), to) => {
                 let values = match to {
                     TypedValue::Number(value) => vec![*value; 2],

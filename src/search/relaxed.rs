@@ -30,18 +30,18 @@ const LEAST_SEARCH: u64 = 1000;
 const LEFT_OUT: [Demand; 3] = [Demand::Transmission, Demand::FootprintIn, Demand::PivotsIn];
 
 /// Judges ends of a relaxed problem by the problem itself, and where none of them is acceptable fits the most promising
-/// under all of its requirements, with at most `each` evaluations a fit.
+/// `most` of them under all of its requirements, with at most `each` evaluations a fit.
 ///
 /// Returns what could be judged, and the evaluations of the fits.
 pub(super) fn led_in(
     problem: &Problem,
     ends: &[Candidate],
-    each: u64,
+    (most, each): (usize, u64),
     budget: &Budget<'_>,
 ) -> (Vec<Candidate>, u64) {
     let mut found: Vec<Candidate> =
         ends.par_iter().filter_map(|end| assess(problem, &end.linkage, &end.crank_deg, &end.t1_at)).collect();
-    if found.iter().any(|candidate| candidate.accepted) {
+    if most == 0 || found.iter().any(|candidate| candidate.accepted) {
         return (found, 0);
     }
     let mut starts: Vec<(f64, Start)> = ends
@@ -53,7 +53,7 @@ pub(super) fn led_in(
         .collect();
     starts.sort_by(|one, other| one.0.total_cmp(&other.0));
     starts.dedup_by(|one, other| one.0 == other.0);
-    starts.truncate(FITTED);
+    starts.truncate(most);
     let fitted: Vec<(Option<Candidate>, u64)> = starts
         .into_par_iter()
         .map(|(_, start)| {
@@ -94,7 +94,7 @@ pub(super) fn search(
         let ends = local_search(&relaxed, share - for_fits, share - for_fits, budget, observer, None);
         evaluations.objective += ends.evaluations.objective;
         evaluations.positions += ends.evaluations.positions;
-        let (led, spent) = led_in(problem, &ends.found, for_fits / FITTED as u64, budget);
+        let (led, spent) = led_in(problem, &ends.found, (FITTED, for_fits / FITTED as u64), budget);
         evaluations.objective += spent;
         evaluations.positions += n * spent;
         found.extend(led);
@@ -134,12 +134,12 @@ mod tests {
         };
         let ends: Vec<Candidate> = ends.into_iter().filter(beyond).collect();
         assert!(ends.len() >= 3, "{} ends", ends.len());
-        let (found, spent) = led_in(&asked, &ends, 400, &budget);
+        let (found, spent) = led_in(&asked, &ends, (FITTED, 400), &budget);
         assert!(spent > 0 && spent <= 400 * FITTED as u64, "{spent} evaluations");
         let accepted: Vec<&Candidate> = found.iter().filter(|c| c.accepted).collect();
         assert!(!accepted.is_empty());
         // A design that is acceptable as it is needs no fit.
-        let (again, spent) = led_in(&asked, &[accepted[0].clone()], 400, &budget);
+        let (again, spent) = led_in(&asked, &[accepted[0].clone()], (FITTED, 400), &budget);
         assert!(again[0].accepted && spent == 0);
     }
 }

@@ -115,7 +115,7 @@ impl<'a> Starts<'a> {
         let turn = ground / ground.norm();
         let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };
         let space = self.spaces.iter().find(|(s, _)| *s == side).map_or(space, |(_, space)| space);
-        let aim = if self.problem.types().is_empty() { None } else { Some(kind) };
+        let aim = self.problem.aims_at_types().then_some(kind);
         let assembly = AssemblyMode::of(assembly_sign(ratios, positions[0]));
         let setting = Setting { aim, assembly, direction, side };
         let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
@@ -130,7 +130,9 @@ impl<'a> Starts<'a> {
         let direction = directions[below(stream, directions.len())];
         let which = below(stream, self.spaces.len());
         let ratios = draw_ratios(stream, drawn)?;
-        let aim = if self.problem.types().is_empty() { None } else { Some(drawn) };
+        let timed = !matches!(self.problem.task().timing(), Timing::Free);
+        let aimed = if timed { !self.problem.types().is_empty() } else { self.problem.aims_at_types() };
+        let aim = aimed.then_some(drawn);
         let theta = uniform(stream, -PI, PI);
         let phase = uniform(stream, -PI, PI);
         let (side, space) = &self.spaces[which];

@@ -6,6 +6,7 @@
 //! branches are free, with an input that turns fully where one branch is required.
 
 use super::super::starts::Start;
+use crate::linkage::mobility::linkage_type;
 use crate::linkage::{AssemblyMode, Branch, LinkageType};
 use crate::problem::Problem;
 use crate::problem::requirements::assembly_of;
@@ -13,12 +14,17 @@ use crate::problem::requirements::assembly_of;
 /// Types whose circuits are branches: the input turns fully.
 const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
 
-/// Whether the points of a start lie on circuits or branches that the problem does not allow together.
+/// Whether the points of a start lie on circuits or branches that the problem does not allow together, or its crank
+/// rocks where it has to turn fully.
 pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
     if problem.circuit_any() && problem.branch_any() {
         return false;
     }
     let Some(shape) = problem.space(start.setting.side).shape(&start.design) else { return false };
+    let turns = || linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully);
+    if problem.has_to_turn_on() && !problem.aims_at_types() && !turns() {
+        return true;
+    }
     let Some(first) = start.positions.first() else { return false };
     let Ok(linkage) = shape.linkage(assembly_of(&shape, first[0], first[1])) else { return false };
     let mobility = linkage.mobility();
