@@ -18,6 +18,12 @@ pub struct Beside {
     pub buildable: Option<Candidate>,
 }
 
+/// Notes on a candidate what follows from it and its problem: its warnings, and whether its mirror image serves as well.
+pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
+    candidate.warnings = warnings(problem, candidate);
+    candidate.mirror_serves = mirror_image_serves(problem, candidate);
+}
+
 /// Gives the candidates their warnings and says what stands beside them.
 ///
 /// Where the first has warnings, the method is `auto` and advice is asked for, a second search looks for something to build, with at
@@ -30,8 +36,7 @@ pub fn beside(
     observer: &Observer<'_>,
 ) -> Beside {
     for candidate in &mut outcome.candidates {
-        candidate.warnings = warnings(problem, candidate);
-        candidate.mirror_serves = mirror_image_serves(problem, candidate);
+        annotate(problem, candidate);
     }
     let family = outcome.candidates.first().and_then(|best| family(problem, best));
     let solve = &problem.spec().solve;

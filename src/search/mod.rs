@@ -29,7 +29,6 @@ pub mod reduced;
 mod relaxed;
 mod repeats;
 pub mod starts;
-#[cfg(test)]
 mod stopping_tests;
 pub mod symmetry;
 pub mod timed;

@@ -1,4 +1,6 @@
-//! What a search computes between two questions about a stop, and after one.
+//! Tests of how much a search computes between two questions about a stop, and after one.
+
+#![cfg(test)]
 
 use super::{Budget, JUDGED_AFTER_STOP};
 use crate::linkage::effort::counted::{Counts, begin, counts};

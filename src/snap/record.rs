@@ -11,7 +11,7 @@ use crate::record::{Candidate, MethodRecord, ProblemRecord, Record, Termination,
 use crate::run::{RunError, digest};
 use crate::search::costs::marginal;
 use crate::search::family::family;
-use crate::search::warnings::warnings;
+use crate::search::answers::annotate;
 
 /// Points on a linkage's own curve.
 const OWN_POINTS: usize = 36;
@@ -34,7 +34,7 @@ pub fn record(
     for candidate in &mut candidates {
         candidate.costs = marginal(problem, candidate);
         candidate.error.to_raw = to_raw(problem, candidate);
-        candidate.warnings = warnings(problem, candidate);
+        annotate(problem, candidate);
     }
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
     Ok(Record {

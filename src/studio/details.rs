@@ -14,7 +14,7 @@ use crate::record::{Termination, Tool, Unit};
 use crate::report::compare::SortKey;
 use crate::report::{csv, html, svg};
 use crate::run::digest;
-use crate::search::warnings::warnings;
+use crate::search::answers::annotate;
 use crate::search::{Budget, SearchOutcome, costs};
 use crate::studio::shelf::Shelf;
 use crate::verify::verify;
@@ -233,7 +233,7 @@ impl Sources<'_> {
         candidate.rank = 1;
         let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
         for candidate in &mut candidates {
-            candidate.warnings = warnings(&problem, candidate);
+            annotate(&problem, candidate);
             candidate.error.to_raw = to_raw(&problem, candidate);
         }
         Ok(Found { record: by_hand(file, digest, candidates), index: 0 })

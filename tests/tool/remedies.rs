@@ -63,7 +63,8 @@ fn every_remedy_that_sets_a_word_is_accepted_by_the_reader() {
         // Messages stand before the tests of a file.
         let text = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
         for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
-            for (key, value) in settings(line) {
+            let line = line.replace("\\n", " ");
+            for (key, value) in settings(&line) {
                 if OTHERS.contains(&key.as_str()) {
                     continue;
                 }
