@@ -208,7 +208,7 @@ impl Inquiry<'_> {
         let mut found = self.known_under(&spec);
         // A tolerance leads no fit: the search that is explained has already looked for the nearest to it.
         if found.is_empty() || demands != [Demand::Tolerance] {
-            found.extend(self.short_search(spec, self.trial)?);
+            found.extend(self.short_search(spec, self.trial, WARM)?);
         }
         self.tried.push((demands.to_vec(), found.clone()));
         Ok(found)
@@ -221,15 +221,16 @@ impl Inquiry<'_> {
         self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
     }
 
-    /// A search of `auto` with a budget of its own: what it accepts.
+    /// A search of `auto` with a budget of its own: what it accepts. `fits` as for [`Inquiry::outcome`].
     fn short_search(
         &mut self,
         mut spec: ProblemSpec,
         evaluations: u64,
+        fits: usize,
     ) -> Result<Vec<Candidate>, PopulationError> {
         spec.solve.evaluations = evaluations.max(1);
         spec.solve.method = Method::Auto;
-        let (accepted, spent) = self.outcome(spec, WARM)?;
+        let (accepted, spent) = self.outcome(spec, fits)?;
         self.spent += spent;
         Ok(accepted)
     }
@@ -422,7 +423,7 @@ impl Inquiry<'_> {
         }
         let mut spec = problem.spec().clone();
         spec.solve.candidates = 1;
-        Ok(self.short_search(spec, self.trial / TRIAL_SHARE)?.into_iter().next())
+        Ok(self.short_search(spec, self.trial / TRIAL_SHARE, 0)?.into_iter().next())
     }
 }
 

@@ -20,6 +20,8 @@ use rayon::prelude::*;
 
 /// The name of this search in a record.
 pub const RELAXED: &str = "relaxed-requirements";
+/// Ends of a relaxed search that are judged by the problem itself: judging takes the whole curve of each.
+const JUDGED: usize = 48;
 /// Ends of a relaxed search that are fitted under all requirements, the most promising first.
 const FITTED: usize = 12;
 /// Of what a relaxed search is given one part in this many goes to those fits.
@@ -29,7 +31,7 @@ const LEAST_SEARCH: u64 = 1000;
 /// Requirements that are left out in turn.
 const LEFT_OUT: [Demand; 3] = [Demand::Transmission, Demand::FootprintIn, Demand::PivotsIn];
 
-/// Judges ends of a relaxed problem by the problem itself, and where none of them is acceptable fits the most promising
+/// Judges the first [`JUDGED`] ends of a relaxed problem by the problem itself, and where none of them is acceptable fits the most promising
 /// `most` of them under all of its requirements, with at most `each` evaluations a fit.
 ///
 /// Returns what could be judged, and the evaluations of the fits.
@@ -39,6 +41,7 @@ pub(super) fn led_in(
     (most, each): (usize, u64),
     budget: &Budget<'_>,
 ) -> (Vec<Candidate>, u64) {
+    let ends = &ends[..ends.len().min(JUDGED)];
     let mut found: Vec<Candidate> =
         ends.par_iter().filter_map(|end| assess(problem, &end.linkage, &end.crank_deg, &end.t1_at)).collect();
     if most == 0 || found.iter().any(|candidate| candidate.accepted) {

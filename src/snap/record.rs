@@ -9,9 +9,9 @@ use crate::problem::Problem;
 use crate::problem::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
 use crate::record::{Candidate, MethodRecord, ProblemRecord, Record, Termination, Tool, Unit};
 use crate::run::{RunError, digest};
+use crate::search::answers::annotate;
 use crate::search::costs::marginal;
 use crate::search::family::family;
-use crate::search::answers::annotate;
 
 /// Points on a linkage's own curve.
 const OWN_POINTS: usize = 36;

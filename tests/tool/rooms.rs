@@ -112,7 +112,7 @@ fn every_room_uses_only_what_the_picture_allows() {
                 "verify",
             ],
         ),
-        ("result_files.rs", &["linkage_file", "name", "record", "report", "results_folder"]),
+        ("result_files.rs", &["linkage_file", "name", "record", "report", "results_folder", "run"]),
         (
             "saved_run.rs",
             &[
