@@ -9,7 +9,7 @@
 //! typed, ends with an accepted candidate. Where no single demand helps, pairs are tried.
 //!
 //! Every design that a trial meets is also judged by the problem as it is, and the nearest ones are fitted under all of
-//! it ([`led_in`]). One that is acceptable refutes the conflict: it becomes an answer, and nothing is explained.
+//! it. One that is acceptable refutes the conflict: it becomes an answer, and nothing is explained.
 //!
 //! All of it says what was found, not what exists: a search that finds nothing is no proof that there is nothing.
 

@@ -37,7 +37,7 @@ const CLOSURE_SAMPLES: usize = 24;
 pub enum Defect {
     /// The points are not passed in their order.
     Order {
-        /// The points at which the motion would have to jump back; [0] where it returns to its first point only
+        /// The points at which the motion would have to jump back; `[0]` where it returns to its first point only
         /// through all others in reverse.
         at: Vec<usize>,
     },
