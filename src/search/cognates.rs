@@ -94,7 +94,7 @@ const ROUNDED: f64 = 32.0 * f64::EPSILON;
 /// counts as exact, or to what rounding makes of it. The margins are taken `times` over: who checks what was computed
 /// elsewhere takes them twice.
 ///
-/// Each error vector is the difference of a point and a coupler point, off by at most r, [`ROUNDED`] of the largest
+/// Each error vector is the difference of a point and a coupler point, off by at most r, `ROUNDED` of the largest
 /// coordinate or length of the two linkages and the points; so that |sqrt(s_1) - sqrt(s_2)| <= 2 r sqrt(n).
 pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&FourBar, f64), times: f64) -> bool {
     let (linkage, sum_sq) = form;
