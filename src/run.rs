@@ -5,9 +5,12 @@ use crate::certificate;
 use crate::problem::Problem;
 use crate::problem::precision::{Refusal, precision_points};
 use crate::problem::spec::{Method, ProblemSpec};
-use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
+use crate::record::{
+    Candidate, FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit,
+};
 use crate::search::conflicts::Explained;
 use crate::search::keeper::Keeper;
+use crate::search::rank::exact_sum_sq;
 use crate::search::{
     Budget, Observer, SearchOutcome, answers, cognates, conflicts, continuation, costs, plan,
 };
@@ -138,6 +141,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
+    outcome.reason = reached(&problem, &outcome);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
     let reproducible = outcome.reason.is_repeatable();
     let record = Record {
@@ -165,6 +169,17 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         exact: outcome.exact,
     };
     Ok(Finished { record, search_s, beside_s, advice_s })
+}
+
+/// Why a search ended, as its list shows it: a target is reached where an accepted candidate of the list is exact. A
+/// search far from the origin, or one whose best gave way to a cognate, may have seen an exact one that the list lacks.
+fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
+    let exact = exact_sum_sq(problem);
+    let is_exact = |c: &Candidate| c.accepted && c.error.sum_sq <= exact;
+    if outcome.reason == Reason::TargetReached && !outcome.candidates.iter().any(is_exact) {
+        return Reason::Converged;
+    }
+    outcome.reason
 }
 
 /// Why nothing is acceptable, where that is so and advice is asked for. Where the budget leaves no time to look for it,
@@ -227,6 +242,34 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
 mod tests {
     use super::*;
     use crate::record::Evaluations;
+
+    #[test]
+    fn a_target_is_reached_where_a_listed_accepted_candidate_is_exact() {
+        let text =
+            "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\n[solve]\ncandidates = 1\n";
+        let file = crate::problem_file::parse("it.toml", text, None, &[]).expect("a problem");
+        let problem = Problem::new(file.spec.clone()).expect("a problem");
+        let job = Job { name: "it".into(), source: None, unit: None, spec: file.spec };
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&job, &context).expect("it runs").record;
+        assert_eq!(record.termination.reason, Reason::TargetReached);
+        let mut outcome = SearchOutcome {
+            candidates: record.candidates,
+            others: Vec::new(),
+            used: Vec::new(),
+            reason: Reason::TargetReached,
+            evaluations: Evaluations::default(),
+            exact: None,
+            repeats: None,
+        };
+        assert_eq!(reached(&problem, &outcome), Reason::TargetReached);
+        outcome.candidates[0].error.sum_sq = 1e-9;
+        assert_eq!(reached(&problem, &outcome), Reason::Converged);
+        outcome.candidates.clear();
+        assert_eq!(reached(&problem, &outcome), Reason::Converged);
+        outcome.reason = Reason::Cancelled;
+        assert_eq!(reached(&problem, &outcome), Reason::Cancelled);
+    }
 
     #[test]
     fn a_record_whose_explanation_found_no_time_says_that_it_cannot_be_repeated() {

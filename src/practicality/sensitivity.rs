@@ -21,6 +21,7 @@
 use super::sweep::Sweep;
 use crate::linkage::gradient::shape_gradient;
 use crate::linkage::{AssemblyMode, Complex, FourBar, dot, length, turned};
+use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 /// P counts as on the line C-D where it is nearer to it than this part of the larger of d and e.
@@ -109,6 +110,9 @@ pub fn is_flat(linkage: &FourBar) -> bool {
     linkage.coupler_offset().im.abs() < FLAT * linkage.crank_side().max(linkage.follower_side())
 }
 
+/// Positions whose shifts a thread takes at once.
+const AT_ONCE: usize = 512;
+
 /// dP by the nine dimensions and the crank angle at a position; `None` at a toggle or where the loop is open.
 fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Complex)> {
     if !flat {
@@ -127,8 +131,10 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
     let mut places = Vec::new();
     let mut rows: Vec<([Complex; 10], Complex)> = Vec::new();
     let ground = Complex::from_polar(1.0, linkage.ground_angle());
-    for (j, at) in positions.iter().enumerate() {
-        let Some((nine, mut by_crank)) = columns(linkage, at, flat) else {
+    let shifts: Vec<_> =
+        positions.par_iter().with_min_len(AT_ONCE).map(|at| columns(linkage, at, flat)).collect();
+    for (j, shift) in shifts.into_iter().enumerate() {
+        let Some((nine, mut by_crank)) = shift else {
             at_toggles.push(j);
             continue;
         };

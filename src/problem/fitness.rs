@@ -21,6 +21,7 @@ use crate::linkage::position::Kernel;
 use crate::linkage::{AssemblyMode, Complex, CouplerSide, LinkageType, cross, xy};
 use crate::solve::population::{Fitness, PopulationProblem};
 use crate::task::{AngleOffset, Timing};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Samples of the coupler curve for free timing: 2.8 degrees apart; the parabola leaves an error of the third
@@ -288,8 +289,13 @@ impl<'a> PathFitness<'a> {
                 let reachable = |i: usize| self.on_arc(ground, arc, i);
                 let (mut cost, mut open) = (0.0, false);
                 let mut course = Course::default();
-                for (j, target) in self.problem.task().points().iter().enumerate() {
-                    match curve.nearest(assembly, *target, &reachable) {
+                let points = self.problem.task().points();
+                // Side by side where there are many, and read in the order of the points: threads change no digit.
+                let nearest = |target: &Complex| curve.nearest(assembly, *target, &reachable);
+                let ready: Option<Vec<_>> = (points.len() >= MANY)
+                    .then(|| points.par_iter().with_min_len(AT_ONCE).map(nearest).collect());
+                for (j, target) in points.iter().enumerate() {
+                    match ready.as_ref().map_or_else(|| nearest(target), |ready| ready[j]) {
                         Some((angle, sq)) => {
                             let part = self.targets.weight[j] * sq;
                             cost = if self.deviation.is_some() { f64::max(cost, part) } else { cost + part };
@@ -331,7 +337,8 @@ impl<'a> PathFitness<'a> {
         self.problem
             .task()
             .points()
-            .iter()
+            .par_iter()
+            .with_min_len(AT_ONCE)
             .map(|target| {
                 let (angle, _) =
                     curve.nearest(assembly, *target, &|i| self.on_arc(ground, reading.arc, i))?;
@@ -342,6 +349,11 @@ impl<'a> PathFitness<'a> {
             .collect()
     }
 }
+
+/// Targets of so many points are compared with the curve by all threads.
+const MANY: usize = 4096;
+/// Points that a thread takes at once.
+const AT_ONCE: usize = 512;
 
 impl PopulationProblem for PathFitness<'_> {
     fn bounds(&self) -> &[(f64, f64)] {

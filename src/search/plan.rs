@@ -117,12 +117,6 @@ fn approximated(
     let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
     let found = found.collect();
     (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-    let exact = exact_sum_sq(problem);
-    let is_exact = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
-    if outcome.reason == Reason::TargetReached && !is_exact {
-        // Exact around its centre; out there rounding is larger than that.
-        outcome.reason = Reason::Converged;
-    }
     Ok(outcome)
 }
 

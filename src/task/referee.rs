@@ -30,6 +30,8 @@ pub const ORDER_TOLERANCE: f64 = 1e-9;
 
 /// Samples of the motion between two neighbouring points on which closure is checked.
 const CLOSURE_SAMPLES: usize = 24;
+/// .. and at most so many in all: a turn in steps of 0.018 degrees.
+const MOST_CLOSURE_SAMPLES: usize = 20_000;
 
 /// What can be wrong with a motion through the points, and at which points (counted from 0).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -118,7 +120,8 @@ pub fn judge(
     assemblies: &[AssemblyMode],
 ) -> Verdict {
     let n = task.len();
-    computed((1 + CLOSURE_SAMPLES) * n);
+    let samples = (CLOSURE_SAMPLES * n).min(MOST_CLOSURE_SAMPLES);
+    computed(n + samples);
     let mobility = linkage.mobility();
     let linkage = linkage.with_assembly(assemblies[0]);
     let first = mobility.branch(crank_angles[0], assemblies[0]);
@@ -211,7 +214,6 @@ pub fn judge(
     let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range };
 
     if off_circuit.is_empty() && off_branch.is_empty() {
-        let samples = CLOSURE_SAMPLES * n;
         let open = (0..=samples).any(|i| motion.joints_at(motion.blend(i, samples)).is_none());
         if open {
             off_circuit.extend(1..n);

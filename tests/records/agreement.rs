@@ -16,8 +16,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 const SEED: u64 = 20_261_122;
-/// Cases of every day: half a minute's work for two processors without optimisation.
-const CASES: u64 = 12;
+/// Cases of every day: ten seconds' work for two processors without optimisation.
+const CASES: u64 = 40;
 /// After so many cases a line says how far it is.
 const LINE_EVERY: u64 = 100;
 
@@ -45,8 +45,9 @@ fn verify_agrees_with_every_record_that_a_run_writes() {
         }
         let case = wide_case(SEED, index)?;
         count(&problems, true);
-        let beside =
-            format!("{:?} {:?}", case.file.spec.task.path.weight, case.file.spec.task.path.tolerance);
+        let spec = &case.file.spec;
+        let [weight, tolerance] = [&spec.task.path.weight, &spec.task.path.tolerance];
+        let beside = format!("{weight:?} {tolerance:?} {} {:?}", spec.solve.advice, spec.require.closing);
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let record = run(&job(case.file), &context).expect("it runs").record;
         count(&accepted, record.candidates.iter().any(|c| c.accepted));

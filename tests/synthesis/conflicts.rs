@@ -68,10 +68,10 @@ fn with(path: &std::path::Path, set: &[(&str, &str)]) -> ProblemFile {
     load(path, &set)
 }
 
-#[test]
-fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
+/// How many changes are proposed for impossible problems; each is typed and ends with an accepted candidate.
+fn proposals_that_hold(problems: Vec<(PathBuf, Set<'static>, &'static str)>) -> usize {
     let mut proposed = 0;
-    for (path, set, among) in impossible() {
+    for (path, set, among) in problems {
         let name = path.display();
         let record = run_on(2, with(&path, &set));
         assert!(record.candidates.iter().all(|c| !c.accepted), "{name} {set:?} is possible");
@@ -93,7 +93,25 @@ fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
             proposed += 1;
         }
     }
+    proposed
+}
+
+#[test]
+#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
+    let proposed = proposals_that_hold(impossible());
     assert!(proposed >= 12, "{proposed} proposals");
+}
+
+#[test]
+fn proposals_that_are_typed_in_end_with_accepted_candidates() {
+    let quick = |(path, set, _): &(PathBuf, Set<'_>, &str)| {
+        set.len() == 1 && !path.ends_with("walking-stride.toml") || path.ends_with("e5.toml")
+    };
+    let some: Vec<_> = impossible().into_iter().filter(quick).collect();
+    assert_eq!(some.len(), 3);
+    let proposed = proposals_that_hold(some);
+    assert!(proposed >= 3, "{proposed} proposals");
 }
 
 /// A key that is typed is no longer filled in by a default, and may take the default of another with it: what is

@@ -105,6 +105,7 @@ fn prescribed_timing() {
 }
 
 #[test]
+#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
 fn free_timing_of_few_points_and_of_many() {
     resumed_is_unbroken(literature("k18f", &[("solve.candidates", "2")]), 3);
     resumed_is_unbroken(literature("shape-heart", &[("solve.candidates", "1")]), 3);
@@ -128,6 +129,7 @@ evaluations = 20000
 "#;
 
 #[test]
+#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
 fn auto_through_all_its_stages() {
     let file = parse(HOPELESS);
     let job = job(file.clone());

@@ -4,12 +4,13 @@
 
 use crate::random::{TYPES, bounding_box, chance, linkage, log_uniform, noisy, one_of, trace};
 use linkwright::linkage::Complex;
+use linkwright::problem::spec::ClosingPolicy;
 use linkwright::problem_file::{self, ProblemFile};
-use linkwright::solve::streams::{Stream, below, stream, uniform};
+use linkwright::solve::streams::{Stream, below, stream, uniform, unit};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// A problem with its text; weights and tolerances a point stand beside the text.
+/// A problem with its text; weights and tolerances a point, `solve.advice` and `require.closing` may differ from it.
 pub struct Case {
     /// Which draw of the seed.
     pub index: u64,
@@ -23,12 +24,12 @@ pub struct Case {
 pub fn case(seed: u64, index: u64) -> Option<Case> {
     let draws = &mut stream(seed, index);
     let (points, closed) = target(draws);
-    let asks = Asks { evaluations: [50.0, 1500.0], ..Asks::default() };
+    let asks = Asks { evaluations: [50.0, 1500.0], small: 1.0, toleranced: 0.15, ..Asks::default() };
     parsed(draws, index, &points, closed, &asks)
 }
 
 /// As [`case`], from farther afield: targets up to 1e10 of their sizes from the origin, both objectives, digitised points,
-/// budgets of 500 to 20,000 evaluations.
+/// budgets of 500 to 20,000 evaluations, with advice and without, closed by one way and by any.
 pub fn wide_case(seed: u64, index: u64) -> Option<Case> {
     let draws = &mut stream(seed, index);
     let (mut points, closed) = target(draws);
@@ -43,11 +44,21 @@ pub fn wide_case(seed: u64, index: u64) -> Option<Case> {
     let digitised = chance(draws, 0.15);
     let asks = Asks {
         evaluations: [500.0, 20_000.0],
-        max_deviation: chance(draws, 0.25),
+        small: 1.5,
+        // The dearest ones are rare: the least largest deviation is a row of cone programs.
+        toleranced: 0.03,
+        max_deviation: chance(draws, 0.04),
         smooth: (digitised && chance(draws, 0.6)).then(|| size * log_uniform(draws, 1e-3, 0.05)),
         samples: (digitised && chance(draws, 0.7)).then(|| 5 + below(draws, 40)),
     };
-    parsed(draws, index, &points, closed, &asks)
+    let mut case = parsed(draws, index, &points, closed, &asks)?;
+    let spec = &mut case.file.spec;
+    // Looking for what conflicts costs several times what the answers do.
+    spec.solve.advice = chance(draws, 0.3);
+    if spec.task.path.closed && chance(draws, 0.3) {
+        spec.require.closing = ClosingPolicy::Any;
+    }
+    Some(case)
 }
 
 /// What a problem asks besides what is drawn for every one.
@@ -55,6 +66,10 @@ pub fn wide_case(seed: u64, index: u64) -> Option<Case> {
 struct Asks {
     /// The budget of evaluations lies between these.
     evaluations: [f64; 2],
+    /// Spread evenly in their logarithm at 1; the more, the more of them are small.
+    small: f64,
+    /// The share of problems with one tolerance, and of the others that with one a point.
+    toleranced: f64,
     /// The objective is the largest deviation.
     max_deviation: bool,
     /// The deviation of the smoothing.
@@ -75,7 +90,7 @@ fn parsed(draws: &mut Stream, index: u64, points: &[Complex], closed: bool, asks
     if chance(draws, 0.2) {
         path.weight = Some(points.iter().map(|_| log_uniform(draws, 0.01, 100.0)).collect());
     }
-    if path.tolerance.is_none() && chance(draws, 0.15) {
+    if path.tolerance.is_none() && chance(draws, asks.toleranced) {
         path.tolerance = Some(points.iter().map(|_| size * log_uniform(draws, 0.003, 0.5)).collect());
     }
     Some(Case { index, text, file })
@@ -179,7 +194,7 @@ fn text(draws: &mut Stream, points: &[Complex], closed: bool, asks: &Asks) -> St
     let (size, centre) = ((x1 - x0).hypot(y1 - y0), [0.5 * (x0 + x1), 0.5 * (y0 + y1)]);
     let listed: Vec<String> = points.iter().map(|p| format!("[{:?}, {:?}]", p.re, p.im)).collect();
     let mut out = format!("format = 1\n[task.path]\npoints = [{}]\nclosed = {closed}\n", listed.join(", "));
-    if chance(draws, 0.15) {
+    if chance(draws, asks.toleranced) {
         let tolerance = size * log_uniform(draws, 0.003, 0.5);
         writeln!(out, "tolerance = {tolerance:?}").expect("memory");
     }
@@ -205,7 +220,8 @@ fn text(draws: &mut Stream, points: &[Complex], closed: bool, asks: &Asks) -> St
             "differential-evolution",
         ],
     );
-    let evaluations = log_uniform(draws, asks.evaluations[0], asks.evaluations[1]) as u64;
+    let [least, most] = asks.evaluations;
+    let evaluations = (least * (most / least).powf(unit(draws).powf(asks.small))) as u64;
     let (candidates, seed) = (1 + below(draws, 4), below(draws, 1000));
     write!(
         out,
