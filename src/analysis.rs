@@ -1,8 +1,8 @@
-//! What a given linkage does: positions, velocities and accelerations at crank angles, by one method or by
-//! several side by side, in one configuration or in all four.
+//! Analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several
+//! side by side, in one configuration or in all four.
 //!
-//! Everything here is data: reports are made from it elsewhere. What has no value has none (`None`, and a
-//! status that says why), never a NaN.
+//! The results are plain data; reports are made from them elsewhere. A missing value is `None`, with a status that
+//! gives the reason, never a NaN.
 
 pub mod chain;
 
@@ -30,7 +30,7 @@ pub enum PositionMethod {
 }
 
 impl PositionMethod {
-    /// All of them, the natural coordinates first.
+    /// All methods, the natural coordinates first.
     pub const ALL: [PositionMethod; 4] = [
         PositionMethod::Natural,
         PositionMethod::Algebraic,
@@ -38,7 +38,7 @@ impl PositionMethod {
         PositionMethod::FixedPoint,
     ];
 
-    /// natural, algebraic, complex, fixed-point.
+    /// Returns the name of the method: natural, algebraic, complex or fixed-point.
     pub fn name(self) -> &'static str {
         match self {
             PositionMethod::Natural => "natural",
@@ -49,7 +49,7 @@ impl PositionMethod {
     }
 }
 
-/// A word that names no method.
+/// The error of a word that names no method.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no method {0:?}: choose from natural, algebraic, complex, fixed-point")]
 pub struct UnknownMethod(pub String);
@@ -62,26 +62,26 @@ impl std::str::FromStr for PositionMethod {
     }
 }
 
-/// What is asked about a linkage.
+/// A request for the analysis of a linkage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// Its name.
+    /// The linkage's name.
     pub name: String,
-    /// The label of its lengths.
+    /// The unit that labels its lengths.
     pub unit: Option<Unit>,
     /// The linkage.
     pub linkage: FourBar,
     /// The crank angles, degrees from the x axis.
     pub crank_deg: Vec<f64>,
-    /// How the crank moves.
+    /// The motion of the crank.
     pub input: CrankMotion,
-    /// The methods besides the natural coordinates, which are always there.
+    /// The methods besides the natural coordinates, which are always used.
     pub methods: Vec<PositionMethod>,
-    /// All four (t1, t2) instead of the linkage's own.
+    /// Whether all four (t1, t2) are analysed instead of the linkage's own.
     pub all_configurations: bool,
 }
 
-/// How a position came out.
+/// Status of the result at one crank angle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Status {
@@ -93,12 +93,12 @@ pub enum Status {
     Open,
     /// C lies on B with b = c: every direction of the follower closes the loop.
     Undetermined,
-    /// The input or an answer is beyond what a number can hold.
+    /// The input or a result is beyond the range of numbers.
     NotFinite,
 }
 
 impl Status {
-    /// ok, singular, open, undetermined, not-finite.
+    /// Returns the status as a word: ok, singular, open, undetermined or not-finite.
     pub fn word(self) -> &'static str {
         match self {
             Status::Ok => "ok",
@@ -110,27 +110,27 @@ impl Status {
     }
 }
 
-/// Where the joints and links are.
+/// Position of the linkage: joints and link angles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pose {
-    /// C.
+    /// C, the crank pin.
     #[serde(rename = "C")]
     pub crank_pin: [f64; 2],
-    /// D.
+    /// D, the follower pin.
     #[serde(rename = "D")]
     pub follower_pin: [f64; 2],
-    /// P.
+    /// P, the coupler point.
     #[serde(rename = "P")]
     pub coupler_point: [f64; 2],
     /// theta3, the direction from C to D, degrees.
     pub coupler_deg: f64,
     /// theta4, the direction from B to D, degrees.
     pub follower_deg: f64,
-    /// mu, between coupler and follower, in [0, 180] degrees.
+    /// mu, the transmission angle between coupler and follower, in [0, 180] degrees.
     pub transmission_deg: f64,
 }
 
-/// How the joints and links move.
+/// Velocities and accelerations of the joints and links.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(non_snake_case, reason = "the letters of the analyze table")]
 pub struct Rates {
@@ -156,23 +156,23 @@ pub struct Rates {
     pub aP: [f64; 2],
 }
 
-/// One crank angle.
+/// Results at one crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Degrees from the x axis.
+    /// The crank angle, degrees from the x axis.
     pub crank_deg: f64,
-    /// How it came out.
+    /// The status of the result.
     pub status: Status,
-    /// The position, where there is one.
+    /// The position, if there is one.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub pose: Option<Pose>,
-    /// The motion, where it is definite.
+    /// The velocities and accelerations, if they are definite.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub rates: Option<Rates>,
-    /// The seed's assembly condition at this position.
+    /// Romero's assembly condition at this position.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assembly: Option<ConditionRecord>,
-    /// What the other methods say.
+    /// The results of the other methods.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub methods: Vec<MethodRow>,
 }
@@ -189,14 +189,14 @@ pub struct ConditionRecord {
     pub sufficient: bool,
 }
 
-/// What another method says at one crank angle.
+/// Result of another method at one crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodRow {
     /// The method.
     pub method: PositionMethod,
-    /// `ok`, or why it has no answer.
+    /// `ok`, or the reason why it has no answer.
     pub status: &'static str,
-    /// The assembly that it found.
+    /// The assembly mode of the position that it found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub t1: Option<AssemblyMode>,
     /// theta3, degrees.
@@ -205,81 +205,82 @@ pub struct MethodRow {
     /// theta4, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub follower_deg: Option<f64>,
-    /// P.
+    /// P, the coupler point.
     #[serde(rename = "P", skip_serializing_if = "Option::is_none")]
     pub coupler_point: Option<[f64; 2]>,
     /// The distance of its P from that of the natural coordinates on the same assembly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_natural: Option<f64>,
-    /// Rounds of the iteration.
+    /// Number of rounds of the fixed-point iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub iterations: Option<u32>,
 }
 
-/// The rows of one (t1, t2).
+/// Results for one pair of signs (t1, t2).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Configuration {
     /// The linkage with these signs.
     pub linkage: FourBar,
-    /// One a crank angle.
+    /// One row for each crank angle.
     pub rows: Vec<Row>,
 }
 
-/// What a linkage can do, whatever the angle.
+/// Mobility of a linkage, which does not depend on the crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MobilityRecord {
-    /// The type; absent where the links cannot be joined.
+    /// The type; absent if the links cannot be assembled.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
     pub linkage_type: Option<LinkageType>,
-    /// p + q - s - l.
+    /// The Grashof margin p + q - s - l.
     pub grashof_margin: f64,
-    /// The crank angles that can be reached, degrees: [from, to] of each arc; empty: none, or a full turn.
+    /// The crank angles that can be reached, degrees: [from, to] of each arc; empty if there are none, or for a full
+    /// turn.
     pub input_arcs_deg: Vec<[f64; 2]>,
     /// Whether the input turns fully.
     pub input_turns_fully: bool,
     /// Crank angles at which coupler and follower are in line, degrees.
     pub toggles_deg: Vec<f64>,
-    /// How many circuits.
+    /// Number of circuits.
     pub circuits: u8,
-    /// How many branches each circuit has.
+    /// Number of branches of each circuit.
     pub branches_per_circuit: u8,
-    /// The least and the greatest transmission angle over what the input can reach, degrees.
+    /// The least and the greatest transmission angle over the range of the input, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmission_deg: Option<[f64; 2]>,
-    /// min(mu, 180 - mu) at its worst, degrees.
+    /// The worst transmission angle, the least min(mu, 180 - mu), degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub worst_transmission_deg: Option<f64>,
-    /// Longest over shortest link; absent for coincident pivots.
+    /// Ratio of the longest to the shortest link; absent for coincident pivots.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub link_ratio: Option<f64>,
 }
 
-/// The answer.
+/// Result of the analysis of a linkage.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Analysis {
-    /// 1.
+    /// Version of the format: 1.
     pub format: u32,
     /// The linkage's name.
     pub name: String,
-    /// The label of lengths.
+    /// The unit that labels lengths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// omega2.
+    /// omega2, the angular velocity of the crank.
     pub omega2_rad_s: f64,
-    /// alpha2.
+    /// alpha2, the angular acceleration of the crank.
     pub alpha2_rad_s2: f64,
-    /// What the linkage can do.
+    /// The mobility of the linkage.
     pub mobility: MobilityRecord,
     /// The configurations asked for, the linkage's own first.
     pub configurations: Vec<Configuration>,
 }
 
-/// Evenly spaced crank angles over a full turn from 0, degrees.
+/// Returns evenly spaced crank angles over a full turn from 0, degrees.
 pub fn full_turn(positions: usize) -> Vec<f64> {
     (0..positions).map(|i| 360.0 * i as f64 / positions as f64).collect()
 }
 
-/// Answers a request.
+/// Analyses a linkage as requested.
 pub fn analyze(request: &Request) -> Analysis {
     let own = request.linkage.natural_coordinates();
     let mut signs = vec![(own.assembly, own.side)];
@@ -402,7 +403,7 @@ fn closed_form(
     (status, roots.root(assembly))
 }
 
-/// What a linkage can do, whatever the angle.
+/// Computes the mobility of a linkage, which does not depend on the crank angle.
 pub fn mobility(linkage: &FourBar) -> MobilityRecord {
     let mobility = linkage.mobility();
     let arc = |arc: &crate::linkage::InputArc| {
@@ -429,8 +430,8 @@ pub fn mobility(linkage: &FourBar) -> MobilityRecord {
     }
 }
 
-/// The joints of a linkage in words of complex numbers, for drawings: A, B, C, D, P at a row; `None` where the
-/// row has no position.
+/// Returns the joints A, B, C, D, P of a linkage at a row as complex numbers, for drawings; `None` if the row has no
+/// position.
 pub fn joints_of(linkage: &FourBar, row: &Row) -> Option<[Complex; 5]> {
     let pose = row.pose?;
     let point = crate::linkage::point;

@@ -1,7 +1,7 @@
-//! Every figure and verdict of a candidate, from nothing but the problem, the linkage and its positions.
+//! Assessment of a candidate: every figure and verdict, from nothing but the problem, the linkage and its positions.
 //!
-//! Searches call it to rank, `run` to write the record and `verify` to check one: there is one judge, and it
-//! asks no optimiser.
+//! Searches call it to rank, `run` to write the record and `verify` to check one: there is one judge, and it uses no
+//! optimiser.
 
 use crate::linkage::{AssemblyMode, Complex, FourBar};
 use crate::problem::Problem;
@@ -14,7 +14,7 @@ use crate::task::referee::{Defect, Verdict, judge};
 
 pub use crate::record::MET_TOLERANCE;
 
-/// Whether `value` reaches at least `limit`, within the tolerance.
+/// Returns whether `value` reaches at least `limit`, within the tolerance.
 fn at_least(value: f64, limit: f64) -> bool {
     value >= limit - MET_TOLERANCE * limit.abs().max(1.0)
 }
@@ -23,12 +23,13 @@ fn at_most(value: f64, limit: f64) -> bool {
     value <= limit + MET_TOLERANCE * limit.abs().max(1.0)
 }
 
-/// Judges a linkage at crank angles given in degrees, one a target point (that is how the record has them).
+/// Judges a linkage at crank angles given in degrees, one per target point (as in the record).
 ///
-/// `None` where the loop is open at a point or the pivots coincide: then there is no error to speak of. The rank is left at 0.
+/// `None` if the loop is open at a point or the pivots coincide: then there is no error to report. The rank is left at
+/// 0.
 ///
 /// # Panics
-/// When there are fewer angles or assemblies than points.
+/// If there are fewer angles or assemblies than points.
 pub fn assess(
     problem: &Problem,
     linkage: &FourBar,
@@ -38,11 +39,11 @@ pub fn assess(
     assess_on_curve(problem, linkage, crank_deg, assemblies, None)
 }
 
-/// As [`assess`], of a linkage whose distances to its whole curve are known: a cognate has those of the linkage
-/// that it is a cognate of. They are most of the cost.
+/// As [`assess`], for a linkage whose distances to its whole curve are known: a cognate has those of the linkage that
+/// it is a cognate of. They are most of the cost.
 ///
 /// # Panics
-/// When there are fewer angles or assemblies than points.
+/// If there are fewer angles or assemblies than points.
 pub fn assess_on_curve(
     problem: &Problem,
     linkage: &FourBar,
@@ -53,7 +54,7 @@ pub fn assess_on_curve(
     let task = problem.task();
     let crank_angles: Vec<f64> = crank_deg.iter().map(|d| d.to_radians()).collect();
     let linkage_type = linkage.linkage_type()?;
-    // Coincident pivots are no linkage to build: there is no ratio and no ground line to speak of.
+    // Coincident pivots do not give a linkage to build: there is no ratio and no ground line.
     if !linkage.link_ratio().is_finite() {
         return None;
     }
@@ -121,8 +122,8 @@ pub fn assess_on_curve(
     Some(candidate)
 }
 
-/// The distances from the points as they were given, before smoothing and resampling, to the coupler curve of a
-/// candidate; `None` where the target is those points themselves.
+/// Returns the distances from the points as they were given, before smoothing and resampling, to the coupler curve of a
+/// candidate; `None` if the target is those points themselves.
 pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorRecord> {
     let raw = &problem.spec().task.path.raw.as_ref()?.points;
     let points: Vec<Complex> = raw.iter().map(|[x, y]| Complex::new(*x, *y)).collect();
@@ -132,8 +133,8 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
 }
 
 fn tolerance_row(tolerances: &[f64], structural: &[crate::linkage::Complex]) -> Requirement {
-    // The point whose error is the largest part of its own tolerance: what the largest deviation minimises and what
-    // ranks. A point that is missed goes before one that is met by the margin of a very small tolerance.
+    // The point whose error is the largest part of its own tolerance: the quantity that the largest deviation minimises
+    // and that ranks. A point that is missed goes before one that is met only by the margin of a very small tolerance.
     let error = |k: usize| structural[k].norm();
     let missed = |k: usize| !at_most(error(k), tolerances[k]);
     let part = |k: usize| if error(k) == 0.0 { 0.0 } else { error(k) / tolerances[k] };
@@ -218,7 +219,7 @@ fn requirements(problem: &Problem, candidate: &Candidate, verdict: &Verdict) -> 
     rows
 }
 
-/// The design table's limits, each with the linkage's own value.
+/// Returns the design table's limits, each with the linkage's own value.
 fn design_rows(problem: &Problem, linkage: &FourBar) -> Vec<Requirement> {
     let design = &problem.spec().design;
     let offset = linkage.coupler_offset();

@@ -1,14 +1,14 @@
-//! A search half done, on disk: what `synth --resume` goes on from.
+//! Checkpoints of unfinished searches on disk, from which `synth --resume` continues.
 //!
 //! ```json
 //! {"format": 1, "tool": {"name": "linkwright", "version": "0.1.0"}, "digest": "..", "candidates": 5,
 //!  "evaluations": 200000, "checksum": "..", "state": {}}
 //! ```
 //!
-//! A checkpoint is an input like any other: its size is limited, and it is refused where it is not a checkpoint, is of
-//! another problem or another version, or was changed. `checksum` is the SHA-256 of all the rest as it is written
-//! here. The digest leaves out candidates and the budget ([`digest`]): a search for another number of candidates, or
-//! with a smaller budget, would not have come to this state and begins anew ([`Checkpoint::leads_to`]).
+//! A checkpoint is an input like any other: its size is limited, and it is refused if it is not a checkpoint, is of
+//! another problem or another version, or was changed. `checksum` is the SHA-256 of all the rest as it is written here.
+//! The digest does not cover the number of candidates and the budget ([`digest`]): a search for another number of
+//! candidates, or with a smaller budget, would not have reached this state and begins anew ([`Checkpoint::leads_to`]).
 
 use crate::record::Tool;
 use crate::run::{Job, RunError, digest};
@@ -24,45 +24,45 @@ pub const MAX_BYTES: u64 = 256 << 20;
 /// The version of the format.
 const FORMAT: u32 = 1;
 
-/// Why a checkpoint cannot be used.
+/// The reason why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error("{path}: {source}")]
     Io {
-        /// Which file.
+        /// Path of the file.
         path: String,
-        /// What the system said.
+        /// The error of the operating system.
         source: io::Error,
     },
-    /// It is over the limit.
+    /// The file is larger than [`MAX_BYTES`].
     #[error("{path} has more than {MAX_BYTES} bytes, the most that a checkpoint has; {REMEDY}")]
     TooLarge {
-        /// Which file.
+        /// Path of the file.
         path: String,
     },
-    /// It is none.
+    /// The file is not a checkpoint.
     #[error("{path}: this is not a whole linkwright checkpoint: {message}; {REMEDY}")]
     NotACheckpoint {
-        /// Which file.
+        /// Path of the file.
         path: String,
-        /// What is wrong, with line and column.
+        /// The fault, with line and column.
         message: String,
     },
     /// It was written in another format or by another version.
     #[error("{path} was written by {by}, this is {us}: the search may have changed between them; {REMEDY}")]
     OtherVersion {
-        /// Which file.
+        /// Path of the file.
         path: String,
-        /// What wrote it.
+        /// The tool, version and format that wrote it.
         by: String,
-        /// What this is.
+        /// The tool, version and format of this program.
         us: String,
     },
     /// Something in it was changed after it was written.
     #[error("{path} was changed after it was written (its checksum is wrong); {REMEDY}")]
     Changed {
-        /// Which file.
+        /// Path of the file.
         path: String,
     },
     /// It belongs to another problem.
@@ -71,7 +71,7 @@ pub enum CheckpointError {
          \"{name}\"; run it as it was, give another folder with --out, or run without --resume to begin anew"
     )]
     OtherProblem {
-        /// Which file.
+        /// Path of the file.
         path: String,
         /// The problem that is to be run.
         name: String,
@@ -83,7 +83,7 @@ pub enum CheckpointError {
 
 const REMEDY: &str = "run without --resume to begin anew";
 
-/// A search half done.
+/// An unfinished search.
 #[derive(Clone, Debug)]
 pub struct Checkpoint {
     header: Header,
@@ -100,7 +100,7 @@ struct Header {
     evaluations: u64,
 }
 
-/// The file.
+/// The content of the file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Document {
@@ -113,7 +113,7 @@ struct Document {
     state: SearchState,
 }
 
-/// What can be read of a file of any version.
+/// The part that can be read of a file of any version.
 #[derive(Deserialize)]
 struct AnyVersion {
     format: u64,
@@ -138,23 +138,23 @@ impl Header {
     }
 }
 
-/// Writes states of one job's search as checkpoints.
+/// A writer of the states of one job's search as checkpoints.
 #[derive(Clone, Debug)]
 pub struct Writer {
     header: Header,
 }
 
 impl Writer {
-    /// For the search of `job`.
+    /// Creates a writer for the search of `job`.
     ///
     /// # Errors
-    /// [`RunError::Json`] when the problem cannot be written as data.
+    /// [`RunError::Json`] if the problem cannot be written as data.
     pub fn new(job: &Job) -> Result<Self, RunError> {
         Ok(Writer { header: Header::of(job)? })
     }
 
-    /// The file's bytes; `None` where they could not be read back: a state that holds a number which JSON has no
-    /// word for, or one over the limit.
+    /// Returns the file's bytes; `None` if they could not be read back: a state that holds a number that JSON cannot
+    /// express, or one over the limit.
     pub fn bytes(&self, state: &SearchState) -> Option<Vec<u8>> {
         let Header { format, tool, digest, candidates, evaluations } = self.header.clone();
         let checksum = self.header.checksum(state)?;
@@ -167,7 +167,7 @@ impl Writer {
 }
 
 impl Checkpoint {
-    /// Reads the checkpoint of a job's earlier search; `None` where there is none.
+    /// Reads the checkpoint of a job's earlier search; `None` if there is none.
     ///
     /// # Errors
     /// [`CheckpointError`].
@@ -191,8 +191,8 @@ impl Checkpoint {
         Ok(Some(checkpoint))
     }
 
-    /// Why a search of this job would not have come to this state, in words that follow "begins anew: "; `None` where
-    /// it would have.
+    /// Returns the reason why a search of this job would not have reached this state, in words that follow "begins
+    /// anew: "; `None` if it would have.
     pub fn leads_to(&self, job: &Job) -> Option<String> {
         let (then, now) = (&self.header, &job.spec.solve);
         if then.candidates != now.candidates {
@@ -209,13 +209,13 @@ impl Checkpoint {
         None
     }
 
-    /// Where the search stood.
+    /// Returns the state of the search.
     pub fn into_state(self) -> SearchState {
         self.state
     }
 }
 
-/// The checkpoint of a text, of whatever problem; `path` is shown in errors.
+/// Parses a checkpoint of any problem from a text; `path` is shown in errors.
 ///
 /// # Errors
 /// [`CheckpointError`].

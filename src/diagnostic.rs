@@ -1,4 +1,4 @@
-//! What is wrong with a text that a person wrote: where, what, and what to do about it.
+//! Diagnostics: error messages about a text that a person wrote, with the place, the fault and the remedy.
 //!
 //! A [`Diagnostic`] displays as plain text of at most five lines:
 //!
@@ -9,37 +9,37 @@
 //! help: write [10, 50]
 //! ```
 //!
-//! Nothing that came from outside reaches the terminal raw: see [`escaped`].
+//! No text from outside reaches the terminal unescaped: see [`escaped`].
 
 use std::fmt;
 use std::ops::Range;
 
-/// A complaint about an input, with the place in its text.
+/// A diagnostic: an error message about an input, with the place in its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
     /// The file as the user named it.
     pub file: String,
-    /// The whole text that `span` counts in; empty where nothing could be read.
+    /// The whole text that `span` refers to; empty if nothing could be read.
     pub text: String,
-    /// Where in `text`, in bytes.
+    /// The place in `text`, as a range of bytes.
     pub span: Option<Range<usize>>,
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// A few words for the place itself.
+    /// A few words shown at the place itself.
     pub label: Option<String>,
     /// The remedy.
     pub help: Option<String>,
 }
 
-/// The most characters of a source line that are displayed.
+/// The largest number of characters of a source line that are displayed.
 const WINDOW: usize = 96;
-/// How many characters before the caret a window starts.
+/// The number of characters that a window shows before the caret.
 const LEAD: usize = 32;
-/// Stands where a window cuts a line.
+/// The mark at the ends where a line is cut to a window.
 const CUT: &str = "...";
 
 impl Diagnostic {
-    /// A complaint about a whole file.
+    /// Returns a diagnostic about a whole file.
     pub fn new(file: impl Into<String>, text: impl Into<String>, message: impl Into<String>) -> Self {
         Diagnostic {
             file: file.into(),
@@ -51,28 +51,28 @@ impl Diagnostic {
         }
     }
 
-    /// The same at a place in the text.
+    /// Returns the diagnostic with a place in the text.
     #[must_use]
     pub fn at(mut self, span: Range<usize>) -> Self {
         self.span = Some(span);
         self
     }
 
-    /// The same with words for the place.
+    /// Returns the diagnostic with a label for the place.
     #[must_use]
     pub fn with_label(mut self, label: impl Into<String>) -> Self {
         self.label = Some(label.into());
         self
     }
 
-    /// The same with a remedy.
+    /// Returns the diagnostic with a remedy.
     #[must_use]
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Line and column of the place, both counted from 1, columns in characters.
+    /// Returns the line and column of the place, both counted from 1, columns in characters.
     pub fn line_column(&self) -> Option<(usize, usize)> {
         let place = self.place()?;
         Some((place.number, place.before.chars().count() + 1))
@@ -95,7 +95,7 @@ impl Diagnostic {
     }
 }
 
-/// A line of the text in three parts.
+/// A line of the text in three parts: before, in and after the marked place.
 struct Place<'a> {
     number: usize,
     before: &'a str,
@@ -111,7 +111,7 @@ fn floor_boundary(text: &str, index: usize) -> usize {
     index
 }
 
-/// Whether a character could move the cursor, hide or reorder what a terminal shows: controls, marks of
+/// Returns whether a character could move the cursor, or hide or reorder what a terminal shows: controls, marks of
 /// writing direction, separators of lines, characters without width.
 fn is_unprintable(c: char) -> bool {
     c.is_control()
@@ -120,7 +120,7 @@ fn is_unprintable(c: char) -> bool {
         || matches!(c, '\u{e0000}'..='\u{e007f}')
 }
 
-/// The text with every character that could act on a terminal written out: `\n`, `\x1b`, `\u{202e}`.
+/// Returns the text with every character that could act on a terminal escaped: `\n`, `\x1b`, `\u{202e}`.
 ///
 /// ```
 /// use linkwright::diagnostic::escaped;
@@ -145,17 +145,17 @@ fn push_escaped(out: &mut String, c: char) {
     }
 }
 
-/// A part of a source line as it is displayed: escaped, a tab as one blank.
+/// Returns a part of a source line as it is displayed: escaped, and a tab as one blank.
 fn shown(part: &str) -> String {
     escaped(&part.replace('\t', " "))
 }
 
-/// The first characters of a text.
+/// Returns the first `count` characters of a text.
 fn head(text: &str, count: usize) -> &str {
     text.char_indices().nth(count).map_or(text, |(i, _)| &text[..i])
 }
 
-/// The last characters of a text.
+/// Returns the last `count` characters of a text.
 fn tail(text: &str, count: usize) -> &str {
     match count.checked_sub(1) {
         None => "",
@@ -163,9 +163,9 @@ fn tail(text: &str, count: usize) -> &str {
     }
 }
 
-/// A text of any length as it may stand inside a message: escaped and cut after 60 characters.
+/// Returns a text of any length as it may appear inside a message: quoted, escaped and cut after 60 characters.
 pub(crate) fn quoted(text: &str) -> String {
-    /// Enough to know it again.
+    /// The largest number of characters: enough to recognise the text.
     const LONGEST: usize = 60;
     let cut = head(text, LONGEST);
     if cut.len() < text.len() {
@@ -193,7 +193,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// The source line, cut to a window around the caret, and the caret under it.
+/// Writes the source line, cut to a window around the caret, and the caret under it.
 fn write_line(f: &mut fmt::Formatter<'_>, place: &Place<'_>, label: Option<&str>) -> fmt::Result {
     let (before, marked, after) = (shown(place.before), shown(place.marked), shown(place.after));
     let width = |s: &str| s.chars().count();

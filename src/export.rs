@@ -1,12 +1,11 @@
-//! Files to build from: drawings in true millimetres, cutting and printing files, lists.
+//! Export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists.
 //!
-//! Everything is derived from a linkage and, where there is a run, from its record; the same record gives the same
-//! bytes. CAD formats are in millimetres: a length x of the file becomes x times its unit times
-//! [`Settings::scale`]; a file without a unit counts in millimetres, which is said. Every size of a plate is a
-//! setting with a default that follows from the linkage; [`Exported::notes`] and the file itself say which were
-//! taken.
+//! Every file is derived from a linkage and, if there is a run, from its record; the same record gives the same bytes.
+//! CAD formats are in millimetres: a length x of the file becomes x times its unit times [`Settings::scale`]; a file
+//! without a unit is taken to be in millimetres, which a note mentions. Every size of a plate is a setting with a
+//! default that follows from the linkage; [`Exported::notes`] and the file itself state the sizes that were chosen.
 //!
-//! | format | what it is | room |
+//! | format | contents | module |
 //! |---|---|---|
 //! | `svg`, `svg-plates` | drawings, one unit of the view box a millimetre | `svg` |
 //! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting` |
@@ -40,20 +39,20 @@ use crate::linkage::motion::CrankMotion;
 use crate::report::analysis_csv::analysis_csv;
 use model::Model;
 
-/// A finished file.
+/// An exported file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
-    /// Its bytes: text but for [`Format::is_text`] formats that are none.
+    /// The contents of the file: text if [`Format::is_text`].
     pub bytes: Vec<u8>,
-    /// What was assumed, a sentence each.
+    /// The assumptions that were made, one sentence each.
     pub notes: Vec<String>,
 }
 
 /// Writes a subject in a format.
 ///
 /// # Errors
-/// [`Refusal`] where a setting does not fit the linkage (holes that run into each other, a crank angle at which the
-/// loop is open), or the linkage has no position or no sensible size in millimetres.
+/// [`Refusal`] if a setting does not fit the linkage (holes that run into each other, a crank angle at which the loop
+/// is open), or if the linkage has no position or no sensible size in millimetres.
 pub fn export(subject: &Subject, format: Format, settings: &Settings) -> Result<Exported, Refusal> {
     match format {
         Format::Csv | Format::Toml | Format::Json => own_unit(subject, format, settings),
@@ -84,7 +83,7 @@ fn in_millimetres(model: &Model<'_>, format: Format, settings: &Settings) -> Res
     Ok(text.into_bytes())
 }
 
-/// The formats that keep the file's own unit.
+/// Writes a subject in one of the formats that keep the file's own unit.
 fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Exported, Refusal> {
     let linkage = model::scaled(&subject.linkage, settings.scale())?;
     let unit = model::unit_of(subject, settings)?;
@@ -116,7 +115,7 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             if let Some(unit) = unit {
                 object.insert("unit".into(), unit.label().into());
             }
-            // Nine finite numbers and two signs are always JSON.
+            // Nine finite numbers and two signs can always be written as JSON.
             object.insert("linkage".into(), serde_json::to_value(linkage).unwrap_or_default());
             format!("{:#}\n", serde_json::Value::Object(object))
         }

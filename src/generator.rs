@@ -3,7 +3,7 @@
 //!
 //! | kind of file | known by |
 //! |---|---|
-//! | SVG, HTML, DXF, STL, OpenSCAD, PNG, GIF, cut list, Markdown | the words of [`mark`] at the place where the writer puts them |
+//! | SVG, HTML, DXF, STL, OpenSCAD, PNG, GIF, cut list, Markdown | the words of [`mark`], at the writer's place for them |
 //! | linkage file | the mark in its first line, and a `[linkage]` that is still in it |
 //! | CSV | its header row, equal to that of the file which replaces it |
 //! | JSON | `tool.name`, and the key that the kind is about |
@@ -13,12 +13,12 @@
 
 /// The name of the generator in every mark.
 pub const NAME: &str = "linkwright";
-/// The longest file of which a mark is looked for in the whole text.
+/// The largest file, in bytes, in whose whole text a mark is searched.
 pub const MAX_BYTES: u64 = 64 << 20;
-/// A mark that is not at a fixed place is within so many bytes of the beginning.
+/// The number of bytes at the beginning of a file that contain a mark without a fixed place.
 const HEAD: usize = 8192;
 
-/// The mark of this version: `written by linkwright 0.1.0`.
+/// Returns the mark of this version: `written by linkwright 0.1.0`.
 pub fn mark() -> String {
     format!("written by {NAME} {}", env!("CARGO_PKG_VERSION"))
 }
@@ -26,41 +26,41 @@ pub fn mark() -> String {
 /// The beginning of a mark, whatever the version.
 const MARK: &str = "written by linkwright";
 
-/// A kind of file that a person can have written at a place of their choice.
+/// A kind of file that can be written to a path of the user's choice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// A drawing.
+    /// An SVG drawing.
     Svg,
-    /// A drawing for CAD programs.
+    /// A DXF drawing, for CAD programs.
     Dxf,
-    /// Bodies as triangles, in text.
+    /// An STL file: bodies as triangles, in text.
     Stl,
     /// An OpenSCAD script.
     Scad,
-    /// A page with its script.
+    /// An HTML page with its script.
     Html,
     /// A linkage file (TOML).
     Linkage,
-    /// A problem file (TOML): a user's as soon as it is there, so that none is known.
+    /// A problem file (TOML). It belongs to the user as soon as it exists, so that no file is recognised as this kind.
     Problem,
-    /// A table.
+    /// A table (CSV).
     Csv,
     /// A linkage as JSON.
     LinkageJson,
-    /// Results of the suite as JSON.
+    /// Results of a suite as JSON.
     SuiteJson,
-    /// Results of the suite as a page.
+    /// Results of a suite as Markdown.
     SuiteMarkdown,
-    /// Sizes of the plates, to read.
+    /// A cut list: the sizes of the plates, as text.
     CutList,
-    /// A picture.
+    /// A picture (PNG).
     Png,
-    /// A picture in motion.
+    /// An animation (GIF).
     Gif,
 }
 
 impl FileKind {
-    /// The kind with its article, for messages.
+    /// Returns the kind with its article, for messages.
     pub fn described(self) -> &'static str {
         match self {
             FileKind::Svg => "an SVG drawing",
@@ -80,8 +80,9 @@ impl FileKind {
         }
     }
 
-    /// Whether `existing`, the bytes of a file, is one that this program wrote as this kind, whatever the version and
-    /// whatever was edited but for the mark. `new` is what is to replace it: a table is known by its header row alone.
+    /// Returns whether `existing`, the bytes of a file, is one that this program wrote as this kind, whatever its
+    /// version, and whatever was edited apart from the mark. `new` is the content that is to replace it: a table is
+    /// recognised by its header row alone.
     ///
     /// ```
     /// use linkwright::generator::{FileKind, mark};
@@ -94,7 +95,7 @@ impl FileKind {
         let head = head.trim_start_matches('\u{feff}');
         let line = |n: usize| head.lines().nth(n).unwrap_or_default().trim();
         match self {
-            // A drawing that another program saved again may begin with an XML declaration.
+            // A drawing that another program has saved again may begin with an XML declaration.
             FileKind::Svg => {
                 (head.starts_with("<svg") || head.starts_with("<?xml"))
                     && head.contains(&format!("<!-- {MARK}"))
@@ -123,26 +124,26 @@ impl FileKind {
     }
 }
 
-/// Whether the first bytes hold a text.
+/// Returns whether the first bytes contain a text.
 fn holds(bytes: &[u8], text: &str) -> bool {
     bytes[..bytes.len().min(HEAD)].windows(text.len()).any(|window| window == text.as_bytes())
 }
 
-/// The first line, without what ends it and without a byte order mark.
+/// Returns the first line, without its line ending and without a byte order mark.
 fn first_line(bytes: &[u8]) -> &[u8] {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let line = bytes.split(|byte| *byte == b'\n').next().unwrap_or_default();
     line.strip_suffix(b"\r").unwrap_or(line)
 }
 
-/// Whether a text is still a linkage file: whoever made a problem of one did not forget the mark on purpose.
+/// Returns whether a text is still a linkage file: a user who has made a problem of one may have left the mark in.
 fn is_linkage(bytes: &[u8]) -> bool {
     let text = std::str::from_utf8(bytes).unwrap_or_default();
     let table = text.trim_start_matches('\u{feff}').parse::<toml::Table>();
     table.is_ok_and(|table| table.contains_key("linkage") && !table.contains_key("task"))
 }
 
-/// Whether a text is JSON of this tool with one key and without another.
+/// Returns whether a text is JSON of this tool with the key `with` and without the key `without`.
 fn is_json(bytes: &[u8], with: &str, without: &str) -> bool {
     let value: serde_json::Value = serde_json::from_slice(bytes).unwrap_or_default();
     value["tool"]["name"] == NAME && value.get(with).is_some() && value.get(without).is_none()

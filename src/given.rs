@@ -1,10 +1,11 @@
-//! What is exported, compared, reported: a result of a run, one candidate of it, or a linkage without a run.
+//! Inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a
+//! run.
 
 use crate::linkage_file::LinkageFile;
 use crate::record::{Candidate, Record};
 use crate::results_folder::BUILDABLE;
 
-/// What was given.
+/// An input of the export, comparison and report commands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Given {
     /// A result of a run.
@@ -13,46 +14,46 @@ pub enum Given {
     Linkage(Box<LinkageFile>),
 }
 
-/// A result of a run, with the candidate that was named.
+/// A result of a run, with the choice of its candidates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// As it was typed, without the candidate and without record.json: `results/k18`.
+    /// The result's path as it was typed, without the candidate and without record.json: `results/k18`.
     pub named: String,
-    /// The record, with the problem that was run and so the target.
+    /// The record. It contains the problem that was run, and so the target.
     pub record: Record,
-    /// Which of its candidates are meant.
+    /// The choice of its candidates.
     pub which: Which,
 }
 
-/// Which candidates of a result are meant.
+/// A choice among the candidates of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// None was named.
+    /// All candidates: none was named.
     All,
-    /// `:2`: the second. It is there.
+    /// The candidate of this rank, as in `:2`. It exists.
     Rank(usize),
-    /// `:buildable`: the one that a run offers where its first has warnings. It is there.
+    /// The buildable candidate, `:buildable`, which a run offers if its first candidate has warnings. It exists.
     Buildable,
 }
 
-/// A result without any candidate.
+/// The error that a result has no candidate.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0} has no candidate: the run found none")]
 pub struct NoCandidate(pub String);
 
-/// A candidate that was meant.
+/// A candidate that was chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chosen<'a> {
-    /// What it is called: `results/k18:2`.
+    /// Its label: `results/k18:2`.
     pub label: String,
-    /// What stands in the names of its files: `2` or `buildable`.
+    /// Its part in the names of its files: `2` or `buildable`.
     pub suffix: String,
     /// The candidate, as the record has it.
     pub candidate: &'a Candidate,
 }
 
 impl Run {
-    /// The candidates that are meant, best first; none where the result has none.
+    /// Returns the chosen candidates, best first; an empty list if the result has no candidate.
     pub fn chosen(&self) -> Vec<Chosen<'_>> {
         let chosen = |suffix: String, candidate| Chosen {
             label: format!("{}:{suffix}", self.named),
@@ -69,10 +70,10 @@ impl Run {
         }
     }
 
-    /// The candidate that was named, else the first.
+    /// Returns the candidate that was named, otherwise the first.
     ///
     /// # Errors
-    /// [`NoCandidate`] where the result has none.
+    /// [`NoCandidate`] if the result has none.
     pub fn one(&self) -> Result<Chosen<'_>, NoCandidate> {
         self.chosen().into_iter().next().ok_or_else(|| NoCandidate(self.named.clone()))
     }

@@ -1,4 +1,4 @@
-//! Reading an input file: bounded in size, text, with a remedy for each way that can fail.
+//! Reading of an input file as text: bounded in size, with a remedy for each way in which it can fail.
 
 use crate::diagnostic::Diagnostic;
 use std::fs::File;
@@ -8,7 +8,7 @@ use std::path::Path;
 /// The largest input file, in bytes: 16 MB.
 pub const MAX_BYTES: u64 = 16 << 20;
 
-/// The text of a file, without its byte order mark.
+/// Returns the text of a file, without its byte order mark.
 ///
 /// # Errors
 /// The file is missing, a folder, not readable, larger than [`MAX_BYTES`] (found before it is read) or not
@@ -42,7 +42,7 @@ pub fn read(path: &Path) -> Result<String, Box<Diagnostic>> {
     if metadata.len() > MAX_BYTES {
         return Err(too_large(format!("has {} MB", metadata.len().div_ceil(1 << 20))));
     }
-    // A pipe or a device tells no length: the limit holds while reading too.
+    // A pipe or a device states no length, so the limit is also checked while reading.
     let mut bytes = Vec::new();
     File::open(path).and_then(|f| f.take(MAX_BYTES + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_BYTES {
@@ -68,7 +68,7 @@ pub fn read(path: &Path) -> Result<String, Box<Diagnostic>> {
     }
 }
 
-/// The text without a byte order mark.
+/// Returns the text without a byte order mark.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }

@@ -21,7 +21,7 @@ pub const FORMAT: u64 = 1;
 /// A linkage with its name and the unit of its lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinkageFile {
-    /// Its name; the file stem where the file has none.
+    /// Its name; the file stem if the file has none.
     pub name: String,
     /// The unit that labels lengths.
     pub unit: Option<Unit>,
@@ -29,19 +29,19 @@ pub struct LinkageFile {
     pub linkage: FourBar,
 }
 
-/// What a linkage file can hold.
+/// The linkage in a linkage file, of any kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Linkage {
-    /// `[linkage]` or `[vector_loop]`.
+    /// A four-bar: `[linkage]` or `[vector_loop]`.
     FourBar(FourBar),
-    /// `[chain]`.
+    /// A chain: `[chain]`.
     Chain(Box<Chain>),
 }
 
 /// A linkage of any kind with its name and the unit of its lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AnyLinkageFile {
-    /// Its name; the file stem where the file has none.
+    /// Its name; the file stem if the file has none.
     pub name: String,
     /// The unit that labels lengths.
     pub unit: Option<Unit>,
@@ -128,29 +128,29 @@ struct RawVectorLoop {
     t1: AssemblyMode,
 }
 
-/// What to write where there is no linkage.
+/// Help for a file without a linkage.
 const KINDS: &str =
     "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop], or [chain]";
 
-/// The four-bar of a file.
+/// Reads the four-bar of a file.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong; a chain is no four-bar, see [`load_any`].
+/// A [`Diagnostic`] that points at the fault; a chain is no four-bar, see [`load_any`].
 pub fn load(path: &Path) -> Result<LinkageFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text)
 }
 
-/// The linkage of a file: a four-bar or a chain.
+/// Reads the linkage of a file: a four-bar or a chain.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong.
+/// A [`Diagnostic`] that points at the fault.
 pub fn load_any(path: &Path) -> Result<AnyLinkageFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse_any(&path.display().to_string(), &text)
 }
 
-/// The four-bar of a text; `file_name` is shown in diagnostics and gives the default name.
+/// Reads the four-bar of a text; `file_name` is shown in diagnostics and gives the default name.
 ///
 /// # Errors
 /// As [`load`].
@@ -167,7 +167,7 @@ pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>
     }
 }
 
-/// The linkage of a text, a four-bar or a chain.
+/// Reads the linkage of a text, a four-bar or a chain.
 ///
 /// # Errors
 /// As [`load_any`].
@@ -232,7 +232,7 @@ fn from_vector_loop(raw: &RawVectorLoop) -> Result<FourBar, LinkageError> {
     })
 }
 
-/// A linkage's error at the key of the file's table that it is about.
+/// Returns the diagnostic of a linkage's error, at the key of the file's table that it is about.
 fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagnostic> {
     let name = |key: &'static str| if table == "linkage" { key } else { vector_loop_key(key) };
     let path = |key: &'static str| format!("{table}.{}", name(key));
@@ -255,7 +255,7 @@ fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagno
     })
 }
 
-/// What would make a triangle of b, d, e.
+/// Returns help for sides b, d, e that make no triangle.
 pub(crate) fn triangle_remedy(b: f64, d: f64, e: f64) -> String {
     let [(first, x), (second, y), (longest, z)] = {
         let mut sides = [("b", b), ("d", d), ("e", e)];
@@ -303,7 +303,7 @@ pub(crate) fn check_format(
     }
 }
 
-/// The name in the file, or one made from the file's name.
+/// Returns the name in the file, or one made from the file's name.
 pub(crate) fn checked_name(
     toml: &TomlText<'_>,
     given: Option<String>,
@@ -316,7 +316,7 @@ pub(crate) fn checked_name(
     }
 }
 
-/// The text of a linkage file; every number reads back to the same digits.
+/// Returns the text of a linkage file; every number reads back to the same digits.
 pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     let p = linkage.natural_coordinates();
     let name = toml::Value::String(name.to_owned());

@@ -1,9 +1,10 @@
-//! A target that moves under the hand: the answers that are there follow it, and what a search finds joins them.
+//! Live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search
+//! join them.
 //!
-//! A [`Session`] keeps a few candidates. After every move of the target each of them starts a short fit of its own
-//! (a warm start: design, assemblies and the position at each point), is judged by the same
-//! [referee](crate::task::referee) as every other answer, and is ranked by the same rules. Nothing here reads a clock:
-//! the same moves give the same candidates.
+//! A [`Session`] keeps a few candidates. After every move of the target each of them starts a short fit of its own (a
+//! warm start: design, assemblies and the position at each point), is judged by the same
+//! [referee](crate::task::referee) as every other answer, and is ranked by the same rules. Nothing here reads a clock,
+//! so the same moves give the same candidates.
 
 pub mod nine;
 
@@ -16,13 +17,13 @@ use crate::search::rank::{compare, distinct, sort};
 use crate::search::warm::start_at;
 use crate::search::{Budget, plan};
 
-/// The most candidates that follow the hand.
+/// The most candidates that follow the target.
 pub const FOLLOWING: usize = 5;
-/// Steps of a fit while the hand moves: from a start so near, convergence is a matter of a few.
+/// Most steps of a fit while the target moves: from so near a start, a few are enough to converge.
 const STEPS: usize = 24;
-/// Rounds of the multipliers in such a fit.
+/// Most rounds of the multipliers in such a fit.
 const ROUNDS: usize = 4;
-/// Evaluations of the cost in such a fit.
+/// Most evaluations of the cost in such a fit.
 const EVALUATIONS: u64 = 120;
 
 /// The candidates that follow a target.
@@ -32,22 +33,22 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session without candidates.
+    /// Creates a session without candidates.
     pub fn new() -> Self {
         Session::default()
     }
 
-    /// The candidates, better first, ranked from 1.
+    /// Returns the candidates, better first, ranked from 1.
     pub fn candidates(&self) -> &[Candidate] {
         &self.kept
     }
 
-    /// Forgets every candidate: for a target that has nothing to do with the one before.
+    /// Removes all candidates: for a target that is unrelated to the one before.
     pub fn clear(&mut self) {
         self.kept.clear();
     }
 
-    /// Fits the candidates again, each from where it stands, to a problem whose target or limits have moved.
+    /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
     ///
     /// A candidate with another number of positions than there are points is placed anew on its own curve. One that
     /// cannot follow (its loop opens at a point) is left out. The candidates are ranked anew, better first.
@@ -59,9 +60,9 @@ impl Session {
         &self.kept
     }
 
-    /// Takes in what a search found: of all together the best distinct ones stay, at most [`FOLLOWING`].
+    /// Adds the candidates of a search and keeps the best distinct ones of all, at most [`FOLLOWING`].
     ///
-    /// Where one is accepted only accepted ones stay.
+    /// If one is accepted, only accepted ones stay.
     pub fn join(&mut self, problem: &Problem, found: Vec<Candidate>) -> &[Candidate] {
         let mut all = found;
         all.append(&mut self.kept);
@@ -76,12 +77,11 @@ impl Session {
     }
 }
 
-/// Evaluations of a first look.
+/// Most evaluations of a first look.
 const FIRST_LOOK: u64 = 3000;
 
-/// A first look at a problem: the search that every run begins with, with a small budget and without tolerances,
-/// whose polish takes long. What it finds is judged by the whole problem. Of a problem that cannot be searched
-/// nothing is found.
+/// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
+/// whose polish takes long. Its answers are judged by the whole problem. Empty for a problem that cannot be searched.
 pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     let mut spec = problem.spec().clone();
     spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
@@ -93,7 +93,7 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     distinct(problem, found, FOLLOWING)
 }
 
-/// A candidate brought to a problem: placed, fitted, judged.
+/// Returns a candidate adapted to a problem: placed, fitted, judged.
 fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Option<Candidate> {
     let placed = placed(problem, candidate)?;
     let start = start_at(problem, &placed)?;
@@ -104,7 +104,7 @@ fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Op
     [fitted, unfitted].into_iter().flatten().min_by(|one, other| compare(problem, one, other))
 }
 
-/// A candidate with a position for each point of the problem.
+/// Returns a candidate with a position for each point of the problem.
 fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     if candidate.crank_deg.len() == problem.task().len() {
         return Some(candidate.clone());
@@ -120,7 +120,7 @@ mod tests {
     use crate::run::{Context, Job, run};
     use std::sync::atomic::AtomicBool;
 
-    /// An egg of `n` points whose point `moved` lies `by` off.
+    /// Returns an egg of `n` points whose point `moved` lies `by` off.
     fn egg(n: usize, moved: usize, by: f64) -> Problem {
         let points: Vec<[f64; 2]> = (0..n)
             .map(|i| {

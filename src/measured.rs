@@ -1,4 +1,4 @@
-//! What was given to be compared, measured by the referee: no figure is taken from a record on trust.
+//! Measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked.
 
 use crate::assess::assess;
 use crate::diagnostic::escaped;
@@ -18,27 +18,27 @@ use crate::task::TaskError;
 use crate::verify::verify_candidate;
 use std::path::Path;
 
-/// What errors are measured on.
+/// The target that errors are measured against, with the problem that it belongs to.
 #[derive(Clone)]
 pub struct Target {
-    /// The name of its problem.
+    /// The name of the problem.
     pub name: String,
     problem: Problem,
-    /// The unit of its lengths.
+    /// The unit of the problem's lengths.
     pub unit: Option<Unit>,
 }
 
 impl Target {
-    /// The target of a problem file.
+    /// Returns the target of a problem file.
     ///
     /// # Errors
-    /// Why it is no problem.
+    /// The reason why the file states no valid problem.
     pub fn new(file: ProblemFile) -> Result<Self, TaskError> {
         let problem = Problem::new(file.spec.clone())?;
         Ok(Target { name: file.name, problem, unit: file.unit })
     }
 
-    /// The target of a run.
+    /// Returns the target of a run.
     fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, String> {
         let asked = &run.record.problem;
         let problem = Problem::new(asked.resolved.clone())
@@ -46,7 +46,8 @@ impl Target {
         Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
     }
 
-    /// Whether points, timing and unit are the same: positions on one are positions on the other.
+    /// Returns whether points, timing and unit are the same, so that positions on one target are positions on the
+    /// other.
     fn is(&self, other: &Target) -> bool {
         let (one, other_path) = (&self.problem.spec().task.path, &other.problem.spec().task.path);
         let one_unit = self.unit.zip(other.unit).is_none_or(|(one, other)| one == other);
@@ -68,7 +69,7 @@ impl Target {
         }
     }
 
-    /// The linkage in this target's unit, measured at the positions nearest to its points or at its angles.
+    /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
     fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, String> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
         let linkage = scaled(linkage, factor).map_err(|e| e.to_string())?;
@@ -84,30 +85,30 @@ impl Target {
     }
 }
 
-/// Everything that was given, measured.
+/// The inputs of a comparison, measured.
 #[derive(Default)]
 pub struct Measured {
-    /// What has figures.
+    /// The entries with figures.
     pub entries: Vec<Entry>,
-    /// What has none.
+    /// The inputs without figures.
     pub left_out: Vec<LeftOut>,
-    /// The label of all that was given with the unit of its file.
+    /// The label of each input with the unit of its file.
     pub units: Vec<(String, Option<Unit>)>,
-    /// What a reader has to know of the measuring, in sentences.
+    /// Remarks on how the figures were measured, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// Why there is no comparison.
+/// The reason why there is no comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotCompared {
-    /// Nothing that was given has figures; why each has none.
+    /// No input has figures; the reason for each.
     Nothing(Vec<LeftOut>),
-    /// What a person has to know.
+    /// The comparison is refused; the message for the user.
     Refused(String),
 }
 
-/// What was given, side by side: in the unit of the target, else of the first that has one, ranked by `keys`.
-/// `reference` is the label of the one that differences are from.
+/// Compares the inputs side by side: in the unit of the target, otherwise of the first input that has a unit, ranked by
+/// `keys`. `reference` is the label of the entry from which differences are taken.
 ///
 /// # Errors
 /// [`NotCompared`].
@@ -147,7 +148,7 @@ fn unit_of(given: &Given) -> Option<Unit> {
     }
 }
 
-/// What a linkage file is called: its name, or its path where something else has that name.
+/// Returns the label of a linkage file: its name, or its path if another file has the same name.
 pub fn label_of_file(given: &[(&Path, Given)], index: usize) -> String {
     let (path, Given::Linkage(file)) = &given[index] else { return String::new() };
     let same = |other: &Given| matches!(other, Given::Linkage(other) if other.name == file.name);
@@ -156,12 +157,12 @@ pub fn label_of_file(given: &[(&Path, Given)], index: usize) -> String {
 }
 
 impl Measured {
-    /// Measures what was given: candidates of runs on their own problems, or everything on `target`. Linkage files
-    /// without a target are measured on the problem of the runs beside them, where these have one. Lengths without a
-    /// unit, also of a target, are taken to be in `unit`.
+    /// Measures the inputs: candidates of runs on their own problems, or everything on `target`. Linkage files without
+    /// a target are measured on the problem of the runs beside them, if these have the same problem. Lengths without a
+    /// unit, also those of a target, are taken to be in `unit`.
     ///
     /// # Errors
-    /// What a person has to know.
+    /// The message for the user.
     pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, String> {
         let mut measured = Measured::default();
         let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
@@ -220,7 +221,7 @@ impl Measured {
         }
     }
 
-    /// A linkage without a run.
+    /// Measures a linkage without a run.
     fn file(&mut self, label: String, file: &LinkageFile, on: &Target) {
         let entry = on
             .nearest(&file.linkage, file.unit)
@@ -228,7 +229,8 @@ impl Measured {
         self.put(label, entry);
     }
 
-    /// A candidate of a run: at its own positions where the target is its own, else as a linkage without a run.
+    /// Measures a candidate of a run: at its own positions if the target is its own, otherwise as a linkage without a
+    /// run.
     fn candidate(&mut self, chosen: &Chosen<'_>, own: &Target, target: Option<&Target>, untrue: &[String]) {
         let (label, recorded) = (chosen.label.clone(), chosen.candidate);
         let on = target.unwrap_or(own);
@@ -239,7 +241,7 @@ impl Measured {
         }));
         let same = on.is(own);
         let measured = if same && found.is_empty() && target.is_none() {
-            // Checked a moment ago. Where a verdict is rounding's, the recorded one stands.
+            // Checked a moment ago. If a verdict depends on rounding, the recorded one is kept.
             Ok(recorded.clone())
         } else {
             let there =
@@ -252,7 +254,7 @@ impl Measured {
     }
 }
 
-/// A problem that was changed after the run, in words.
+/// Returns a message if the problem was changed after the run.
 fn digest_of(run: &Run) -> Vec<String> {
     let asked = &run.record.problem;
     match digest(&asked.resolved) {

@@ -1,42 +1,42 @@
 //! Names of problems and linkages, which become names of folders.
 
-/// The most characters of a name.
+/// The largest number of characters of a name.
 pub const MAX_NAME: usize = 64;
 
-/// What makes a text no name.
+/// The reason why a text is not a name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NameError {
-    /// No character at all, or only blanks.
+    /// The text has no character, or only blanks.
     #[error("the name is empty")]
     Empty,
-    /// More than [`MAX_NAME`] characters.
+    /// The text has more than [`MAX_NAME`] characters.
     #[error("the name has {0} characters, at most {MAX_NAME} are allowed")]
     TooLong(usize),
-    /// It would be a hidden file, or the folder itself or the one above it.
+    /// The text starts with a dot: it would be a hidden file, or the folder itself or the one above it.
     #[error("the name starts with a dot")]
     LeadingDot,
-    /// It holds `/` or `\`.
+    /// The text contains `/` or `\`.
     #[error("the name is a path")]
     Path,
-    /// It starts or ends with a blank.
+    /// The text starts or ends with a blank.
     #[error("the name starts or ends with a blank")]
     OuterBlank,
-    /// A character that is not allowed.
+    /// The text contains a character that is not allowed.
     #[error("the name has {0:?} in it")]
     Character(char),
-    /// Commands would take it for an option.
+    /// The text starts with `-`: commands would take it for an option.
     #[error("the name starts with -, so that commands take it for an option")]
     LeadingDash,
-    /// Windows drops it.
+    /// The text ends with a dot, which Windows drops.
     #[error("the name ends with a dot, which Windows drops")]
     TrailingDot,
-    /// The name of a device on Windows, whatever stands behind a dot.
+    /// The text is the name of a device on Windows, with or without an ending after a dot.
     #[error("{0} is the name of a device on Windows: no file or folder can be called so there")]
     Device(String),
 }
 
 impl NameError {
-    /// What to do about it.
+    /// Returns the remedy.
     pub fn remedy(&self) -> &'static str {
         match self {
             NameError::Path => {
@@ -56,8 +56,8 @@ fn is_allowed(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, ' ' | '-' | '_' | '.')
 }
 
-/// Whether a text is the name of a device on Windows, in capitals or not: `CON`, `nul.v2`, `COM1`, `lpt9`. It is so for
-/// superscript digits too (Microsoft, "Naming Files, Paths, and Namespaces").
+/// Returns whether a text is the name of a device on Windows, in upper or lower case: `CON`, `nul.v2`, `COM1`, `lpt9`.
+/// Superscript digits count too (Microsoft, "Naming Files, Paths, and Namespaces").
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or(name).trim_end().to_ascii_lowercase();
     let port = |rest: &str| {
@@ -70,7 +70,7 @@ fn is_device(name: &str) -> bool {
         || ["com", "lpt"].iter().any(|device| stem.strip_prefix(device).is_some_and(port))
 }
 
-/// Whether a text may be a name: 1 to 64 letters, digits, blanks, `-`, `_`, `.`, not starting with a dot or `-`, not
+/// Checks that a text is a name: 1 to 64 letters, digits, blanks, `-`, `_`, `.`, not starting with a dot or `-`, not
 /// ending with a dot, and not the name of a device on Windows.
 ///
 /// # Errors
@@ -106,7 +106,7 @@ pub fn check(name: &str) -> Result<(), NameError> {
     }
 }
 
-/// A name made from the stem of a file's name: what is not allowed becomes `-`.
+/// Returns a name made from the stem of a file's name: each character that is not allowed becomes `-`.
 ///
 /// ```
 /// assert_eq!(linkwright::name::from_file("shapes/heart (2).csv", "problem"), "heart -2-");
@@ -128,7 +128,7 @@ pub fn from_file(file: &str, fallback: &str) -> String {
     if legal.is_empty() { fallback.to_owned() } else { legal.to_owned() }
 }
 
-/// The name itself where it is one, else a name made of it.
+/// Returns the text itself if it is a name, otherwise a name made from it.
 pub fn legal(name: &str, fallback: &str) -> String {
     match check(name) {
         Ok(()) => name.to_owned(),
@@ -136,7 +136,7 @@ pub fn legal(name: &str, fallback: &str) -> String {
     }
 }
 
-/// A name with something behind it, `my-path-2`, shortened in front where both together are too long.
+/// Returns a name with a suffix, such as `my-path-2`; the name is shortened if both together are too long.
 ///
 /// ```
 /// let long = linkwright::name::with_suffix(&"n".repeat(64), "-snapped");

@@ -1,9 +1,9 @@
-//! The links as things that can be cut: flat plates with holes at the joints.
+//! The links as flat plates with holes at the joints, which can be cut out.
 //!
-//! A plate is the convex hull of its hole centres grown by a radius r: every point within r of the hull, which is
-//! half a hole and the edge margin around it. Its outline is made of straight segments and circular arcs of
-//! radius r about the corners of the hull; once round it turns by 2 pi. With hull area H and perimeter L its area is
-//! H + L r + pi r^2 and its perimeter L + 2 pi r (Steiner 1840).
+//! A plate is the convex hull of its hole centres grown by a radius r: every point within r of the hull. The radius is
+//! half a hole and the edge margin around it. The outline is made of straight segments and circular arcs of radius r
+//! about the corners of the hull; once round it turns by 2 pi. With hull area H and perimeter L its area is H + L r +
+//! pi r^2 and its perimeter L + 2 pi r (Steiner 1840).
 //!
 //! | link | holes | own frame: origin, x axis |
 //! |---|---|---|
@@ -12,7 +12,7 @@
 //! | follower | B, D | B, towards D |
 //! | coupler | C, D, P | C, towards D |
 //!
-//! Lengths are those of the linkage, whatever their unit.
+//! Lengths are in the unit of the linkage.
 
 mod hull;
 mod outline;
@@ -25,20 +25,20 @@ pub use outline::Edge;
 use crate::linkage::{Complex, FourBar, Joints, point};
 use std::f64::consts::PI;
 
-/// Holes nearer to each other than this part of the plate's size (hull and radius) are one hole, and a corner
-/// of the hull that stands out by less is none: far below what any machine cuts.
+/// Distance, as a part of the plate's size (hull and radius), below which two holes coincide and a corner of the hull
+/// is left out: far below what any machine cuts.
 pub const COINCIDENT: f64 = 1e-9;
 
-/// The four links.
+/// A link of a four-bar.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Link {
-    /// A to B, which stands still.
+    /// The fixed link from A to B.
     Ground,
-    /// A to C, which drives.
+    /// The driving link from A to C.
     Crank,
-    /// C, D and the coupler point P.
+    /// The link with C, D and the coupler point P.
     Coupler,
-    /// B to D.
+    /// The link from B to D.
     Follower,
 }
 
@@ -46,7 +46,7 @@ impl Link {
     /// All four, in the order of drawings and lists.
     pub const ALL: [Link; 4] = [Link::Ground, Link::Crank, Link::Coupler, Link::Follower];
 
-    /// Its name in lower case.
+    /// Returns the name of the link in lower case.
     pub fn name(self) -> &'static str {
         match self {
             Link::Ground => "ground",
@@ -60,18 +60,18 @@ impl Link {
 /// The centre of a hole in the plate's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hole {
-    /// The joint: A, B, C, D or P.
+    /// Letter of the joint: A, B, C, D or P.
     pub name: char,
-    /// Where it is.
+    /// Position of the centre.
     pub at: Complex,
 }
 
-/// Where a plate is: its own frame in the plane, z -> origin + direction z.
+/// Position and direction of a plate: its own frame in the plane, z -> origin + direction z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// The first hole.
+    /// Position of the first hole, the origin of the plate's own frame.
     pub origin: Complex,
-    /// The x axis of the plate's own frame, of length 1.
+    /// Unit vector along the x axis of the plate's own frame.
     pub direction: Complex,
 }
 
@@ -80,7 +80,7 @@ impl Placement {
     pub const HOME: Placement =
         Placement { origin: Complex::new(0.0, 0.0), direction: Complex::new(1.0, 0.0) };
 
-    /// The frame with its origin at `from` and its x axis towards `to`; along the plane's x axis where both are
+    /// Returns the frame with its origin at `from` and its x axis towards `to`; along the plane's x axis if both are
     /// one point.
     pub fn between(from: Complex, to: Complex) -> Self {
         let along = to - from;
@@ -89,7 +89,7 @@ impl Placement {
         Placement { origin: from, direction }
     }
 
-    /// A point of the plate in the plane.
+    /// Returns the point of the plane for a point of the plate's own frame.
     pub fn of(&self, own: Complex) -> Complex {
         self.origin + self.direction * own
     }
@@ -98,18 +98,18 @@ impl Placement {
 /// A link's plate: every point within `radius` of the convex hull of the hole centres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plate {
-    /// Which link it is.
+    /// The link.
     pub link: Link,
     /// The hole centres in the plate's own frame.
     pub holes: Vec<Hole>,
-    /// How far the plate reaches beyond the hull.
+    /// Distance that the plate reaches beyond the hull.
     pub radius: f64,
-    /// The corners of the hull, counter-clockwise; one or two where the hull is a point or a line.
+    /// The corners of the hull, counter-clockwise; one or two if the hull is a point or a line.
     corners: Vec<Complex>,
 }
 
 impl Plate {
-    /// The plate of one link of a linkage.
+    /// Builds the plate of one link of a linkage.
     ///
     /// ```
     /// use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
@@ -136,12 +136,12 @@ impl Plate {
         Plate::new(link, holes, radius)
     }
 
-    /// The plates of all four links, in the order of [`Link::ALL`].
+    /// Builds the plates of all four links, in the order of [`Link::ALL`].
     pub fn all(linkage: &FourBar, radius: f64) -> [Plate; 4] {
         Link::ALL.map(|link| Plate::of(linkage, link, radius))
     }
 
-    /// A plate with holes anywhere (at least one); negative radii count as 0.
+    /// Builds a plate with holes anywhere (at least one); negative radii count as 0.
     pub fn new(link: Link, holes: Vec<Hole>, radius: f64) -> Self {
         let radius = radius.max(0.0);
         let centres: Vec<Complex> = holes.iter().map(|hole| hole.at).collect();
@@ -149,34 +149,34 @@ impl Plate {
         Plate { link, holes, radius, corners }
     }
 
-    /// The same plate with another radius: a tool that cuts away half its kerf needs one that is grown by it.
+    /// Returns the same plate with another radius: a tool that cuts away half its kerf needs a plate grown by it.
     #[must_use]
     pub fn with_radius(&self, radius: f64) -> Self {
         Plate::new(self.link, self.holes.clone(), radius)
     }
 
-    /// The corners of the hull of the hole centres, counter-clockwise, in the plate's own frame: one for a
+    /// Returns the corners of the hull of the hole centres, counter-clockwise, in the plate's own frame: one for a
     /// point, two for a line.
     pub fn corners(&self) -> &[Complex] {
         &self.corners
     }
 
-    /// The closed outline, counter-clockwise: each edge starts exactly where the one before ends.
+    /// Computes the closed outline, counter-clockwise: each edge starts exactly where the one before ends.
     pub fn outline(&self) -> Vec<Edge> {
         outline::outline(&self.corners, self.radius)
     }
 
-    /// The area of the whole plate, holes not taken out.
+    /// Computes the area of the whole plate, with the area of its holes included.
     pub fn area(&self) -> f64 {
         hull::area(&self.corners) + hull::perimeter(&self.corners) * self.radius + PI * self.radius.powi(2)
     }
 
-    /// The length of the outline.
+    /// Computes the length of the outline.
     pub fn perimeter(&self) -> f64 {
         hull::perimeter(&self.corners) + 2.0 * PI * self.radius
     }
 
-    /// Lower left and upper right corner of the box around the plate in its own frame.
+    /// Returns the lower left and upper right corner of the plate's bounding box in its own frame.
     pub fn bounds(&self) -> [Complex; 2] {
         let reach = Complex::new(self.radius, self.radius);
         let first = self.corners[0];
@@ -189,7 +189,7 @@ impl Plate {
         [low - reach, high + reach]
     }
 
-    /// The holes that can be told apart: names of one place together, with the place of the first.
+    /// Returns the distinct holes: the letters of coincident holes together, with the position of the first.
     pub fn distinct_holes(&self) -> Vec<(String, Complex)> {
         let centres: Vec<Complex> = self.holes.iter().map(|hole| hole.at).collect();
         let near = COINCIDENT * (hull::extent(&centres) + self.radius);
@@ -203,7 +203,7 @@ impl Plate {
         distinct
     }
 
-    /// Where the plate is while the linkage is at a position.
+    /// Returns the placement of the plate at a position of the linkage.
     pub fn placement(&self, linkage: &FourBar, joints: &Joints) -> Placement {
         let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
         match self.link {
@@ -214,8 +214,8 @@ impl Plate {
         }
     }
 
-    /// How far two placed plates are from each other: the distance between them, below zero where they overlap
-    /// (then how far one must move, at least, until they only touch).
+    /// Computes the signed distance between two placed plates, below zero if they overlap (then its size is the least
+    /// shift after which they only touch).
     pub fn separation(&self, at: &Placement, other: &Plate, other_at: &Placement) -> f64 {
         let placed = |plate: &Plate, at: &Placement| -> Vec<Complex> {
             plate.corners.iter().map(|corner| at.of(*corner)).collect()
@@ -223,7 +223,7 @@ impl Plate {
         separation::separation(&placed(self, at), &placed(other, other_at)) - (self.radius + other.radius)
     }
 
-    /// How far a point of the plane is from the placed plate, below zero inside.
+    /// Computes the signed distance of a point of the plane from the placed plate, below zero inside.
     pub fn distance(&self, at: &Placement, to: Complex) -> f64 {
         let own = (to - at.origin) * at.direction.conj();
         separation::separation(&self.corners, &[own]) - self.radius

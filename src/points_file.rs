@@ -1,4 +1,4 @@
-//! Points CSV: a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
+//! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
 
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::input_text;
@@ -12,40 +12,40 @@ pub use crate::problem::spec::MAX_POINTS;
 /// The columns that are read.
 const COLUMNS: [&str; 5] = ["x", "y", "crank_deg", "weight", "tolerance"];
 
-/// The points of a CSV file and what stands beside them.
+/// The points of a CSV file and their other columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointsFile {
     /// The file as the user named it.
     pub file: String,
-    /// Its text.
+    /// The text of the file.
     pub text: String,
     /// The points.
     pub points: Vec<[f64; 2]>,
-    /// The crank angle at each point, degrees.
+    /// The crank angle at each point, in degrees.
     pub crank_deg: Option<Vec<f64>>,
     /// The weight of each point.
     pub weight: Option<Vec<f64>>,
     /// The largest error accepted at each point.
     pub tolerance: Option<Vec<f64>>,
-    /// Where each point's row is in the text.
+    /// The place of each point's row in the text.
     pub rows: Vec<Range<usize>>,
-    /// What was ignored.
+    /// Warnings about ignored columns.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The points of a file.
+/// Reads the points of a file.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at the row and cell that is wrong.
+/// A [`Diagnostic`] that points at the row and cell at fault.
 pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text)
 }
 
-/// The points of a text; `file` is shown in diagnostics.
+/// Reads the points of a text; `file` is shown in diagnostics.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at the row and cell that is wrong.
+/// A [`Diagnostic`] that points at the row and cell at fault.
 pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
@@ -69,7 +69,7 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         warnings: columns.warnings,
     };
     while let Some(row) = table.next_row()? {
-        // Spreadsheets leave empty cells behind, and cells away that nobody reads.
+        // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
         let beyond = row.cells.iter().skip(header.cells.len()).any(|cell| !cell.is_empty());
         let short = columns.place.iter().flatten().any(|place| *place >= row.cells.len());
         if beyond || short {
@@ -113,14 +113,14 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     Ok(out)
 }
 
-/// A row: its cells, trimmed, and where it is.
+/// A row: its cells, trimmed, and its place in the text.
 struct Row {
     cells: Vec<String>,
     span: Range<usize>,
 }
 
 impl Row {
-    /// Where a cell is, without the blanks around it.
+    /// Returns the place of a cell, without the blanks around it.
     fn cell_span(&self, text: &str, index: usize) -> Range<usize> {
         let row = &text[self.span.clone()];
         let (mut start, mut cell, mut in_quotes) = (0, 0, false);
@@ -162,7 +162,7 @@ impl<'a> Rows<'a> {
         Rows { file, text, reader }
     }
 
-    /// The first row, after the line `sep=,` that some spreadsheets write above it.
+    /// Returns the first row, after the line `sep=,` that some spreadsheets write above it.
     fn header(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
         let first = self.next_row()?;
         match &first {
@@ -218,7 +218,7 @@ impl<'a> Rows<'a> {
         self.at(row.span.clone(), format!("this row has {}, the header has {}", count(found), expected), help)
     }
 
-    /// The finite number in a cell.
+    /// Returns the finite number in a cell.
     fn number(&self, row: &Row, index: usize, column: &str) -> Result<f64, Box<Diagnostic>> {
         let cell = row.cells.get(index).map_or("", String::as_str);
         let refuse =
@@ -248,7 +248,7 @@ impl<'a> Rows<'a> {
     }
 }
 
-/// The row's own bytes: without the comments and blank lines before it and the line's end after it.
+/// Returns the place of the row itself: without the comments and blank lines before it and the line's end after it.
 fn row_span(text: &str, start: usize, end: usize) -> Range<usize> {
     let end = end.min(text.len());
     let mut start = start.min(end);
@@ -263,7 +263,7 @@ fn row_span(text: &str, start: usize, end: usize) -> Range<usize> {
     }
 }
 
-/// A cell without the quotes that blanks before them have kept: `1, "2"`.
+/// Returns a cell without the quotes that were kept because of blanks before them: `1, "2"`.
 fn unquoted(cell: &str) -> &str {
     let inner = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
     inner.filter(|inner| !inner.contains('"')).map_or(cell, str::trim)
@@ -273,7 +273,7 @@ fn is_decimal_comma(cell: &str) -> bool {
     cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok()
 }
 
-/// Which cell holds which column.
+/// The places of the columns in a row.
 struct Columns {
     place: [Option<usize>; 5],
     warnings: Vec<Diagnostic>,
@@ -333,9 +333,9 @@ impl Columns {
     }
 }
 
-/// One warning for all columns that are not read; it points at the first.
+/// Returns one warning for all columns that are not read; it points at the first.
 fn extra_columns(table: &Rows<'_>, header: &Row, extra: &[usize]) -> Option<Diagnostic> {
-    /// A warning is a line, not a list.
+    /// The largest number of columns that the warning names, to keep it short.
     const NAMED: usize = 6;
     let first = *extra.first()?;
     let named: Vec<String> = extra.iter().take(NAMED).map(|&i| quoted(&header.cells[i])).collect();

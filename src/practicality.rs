@@ -1,16 +1,16 @@
-//! What stands between a linkage and a workshop: which plates need layers of their own, what comes near what, and
-//! how much a wrong dimension moves the path.
+//! Practicality of building a linkage: layers of its plates, clearances between its parts, and sensitivity of the path
+//! to errors of its dimensions.
 //!
-//! Pure functions of a linkage and its motion, and of the target where there is one.
+//! Pure functions of a linkage and its motion, and of the target if there is one.
 //!
-//! | question | answer |
+//! | result | function or type |
 //! |---|---|
-//! | which plates can share a plane, in which order do they stack? | [`layers::layering`] |
-//! | how near do pivots and pins come to each other? | [`clearance::pivot_distances`] |
-//! | how much does each dimension's error move the path? | [`sensitivity::sensitivity`] |
-//! | all of it at once, for a candidate or a linkage by itself | [`Practicality`] |
+//! | plates that share a plane, and the order in which plates stack | [`layers::layering`] |
+//! | least distances between pivots and pins | [`clearance::pivot_distances`] |
+//! | shift of the path for an error of each dimension | [`sensitivity::sensitivity`] |
+//! | all of these, for a candidate or a linkage by itself | [`Practicality`] |
 //!
-//! Distances over a motion are least values with a proof ([`closest`]), not the least of samples.
+//! Distances over a motion are proved least values ([`closest`]), not the least of samples.
 
 pub mod clearance;
 pub mod closest;

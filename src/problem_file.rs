@@ -1,7 +1,7 @@
-//! Problem files: TOML in, a [`ProblemSpec`] with every default filled in out.
+//! Problem files: TOML is read, and a [`ProblemSpec`] with every default filled in is returned.
 //!
-//! Three ways lead here and give the same diagnostics: a file, a text with `--set` overrides, a bare file of
-//! points. What stands under `[expect]` is read and checked and never reaches the specification.
+//! There are three inputs, with the same diagnostics: a file, a text with `--set` overrides, a bare file of points. The
+//! values under `[expect]` are read and checked and are never part of the specification.
 
 mod certify;
 mod closing;
@@ -35,23 +35,23 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use target::Whereabouts;
 
-/// The format of problem files that this program reads.
+/// The version of the problem file format that this program reads.
 pub const FORMAT: u64 = 1;
 
-/// A problem as its file gives it, checked.
+/// A problem as stated in its file, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProblemFile {
-    /// Its name; the file stem where the file has none.
+    /// The name; the file stem if the file states none.
     pub name: String,
-    /// Where it comes from, in words.
+    /// The source of the problem, in words.
     pub source: Option<String>,
     /// The unit that labels lengths.
     pub unit: Option<Unit>,
-    /// What to search for and how, with every default filled in.
+    /// The specification of the problem and of its search, with every default filled in.
     pub spec: ProblemSpec,
-    /// What is known of the answer; for tests and the suite, never for a search.
+    /// The known facts about the answer; for tests and the suite, never for a search.
     pub expect: Option<Expect>,
-    /// What was ignored or cannot succeed.
+    /// Warnings about values that are ignored or cannot succeed.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -121,16 +121,16 @@ pub struct Published {
     pub note: Option<String>,
 }
 
-/// The problem of a file; `overrides` are dotted keys with values in TOML or bare words.
+/// Reads the problem of a file; `overrides` are dotted keys with values in TOML or bare words.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong.
+/// A [`Diagnostic`] that points at the fault.
 pub fn load(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text, Some(folder_of(path)), overrides)
 }
 
-/// The problem of a file, or of a bare CSV of points or SVG drawing, told apart by the name's ending.
+/// Reads the problem of a file, or of a bare CSV of points or SVG drawing, according to the name's ending.
 ///
 /// # Errors
 /// As [`load`] and [`from_points_file`].
@@ -138,33 +138,34 @@ pub fn load_any(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFi
     if is_bare_target(path) { from_points_file(path, overrides) } else { load(path, overrides) }
 }
 
-/// Whether a file is a target by itself: a CSV or an SVG.
+/// Returns whether a file is a target by itself: a CSV or an SVG.
 pub fn is_bare_target(path: &Path) -> bool {
     is_drawing(path) || path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"))
 }
 
-/// Whether a file is an SVG drawing, by the ending of its name.
+/// Returns whether a file is an SVG drawing, by the ending of its name.
 pub fn is_drawing(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg"))
 }
 
-/// The problem of a text. `file_name` is shown in diagnostics and gives the default name; `folder` is where a
-/// points file or a drawing is looked for, and without it `file = "..."` is refused.
+/// Reads the problem of a text. `file_name` is shown in diagnostics and gives the default name; `folder` is searched
+/// for a points file or a drawing, and without it `file = "..."` is refused.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong.
+/// A [`Diagnostic`] that points at the fault.
 pub fn parse(
     file_name: &str,
     text: &str,
     folder: Option<&Path>,
     overrides: &[(String, String)],
 ) -> Result<ProblemFile, Box<Diagnostic>> {
-    // What is typed may lead anywhere; what a file says may not.
+    // A path that is typed may lead anywhere; a path in a file may not.
     let anywhere = ["file", "svg"].iter().any(|key| is_set(overrides, &format!("task.path.{key}")));
     parse_at(file_name, text, &Whereabouts { folder, anywhere, beside: &[] }, overrides)
 }
 
-/// As [`parse`], with points files that are not on the disk: each by the name under which the problem asks for it.
+/// Reads the problem of a text as [`parse`] does, with points files that are not on the disk: each with the name under
+/// which the problem asks for it.
 ///
 /// # Errors
 /// As [`parse`].
@@ -176,7 +177,7 @@ pub fn parse_beside(
     parse_at(file_name, text, &Whereabouts { folder: None, anywhere: false, beside }, &[])
 }
 
-/// Whether a key is among the overrides.
+/// Returns whether a key is among the overrides.
 fn is_set(overrides: &[(String, String)], key: &str) -> bool {
     overrides.iter().any(|(set, _)| set == key)
 }
@@ -226,10 +227,10 @@ fn parse_at(
     Ok(ProblemFile { name, source: raw.source, unit, spec, expect, warnings })
 }
 
-/// A bare file of points, or a bare drawing, as a problem with every default; its name is the file's.
+/// Reads a bare file of points, or a bare drawing, as a problem with every default; its name is the file's.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at what is wrong.
+/// A [`Diagnostic`] that points at the fault.
 pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
     let shown = path.display().to_string();
     let Some(file) = path.file_name().and_then(|f| f.to_str()) else {
@@ -378,7 +379,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
     })
 }
 
-/// What the largest deviation asks of the points: tolerances above zero; a warning where weights are given.
+/// Checks the points for the objective of the largest deviation: tolerances must be above zero; weights give a warning.
 fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
     if let Some(j) = path.tolerance.iter().flatten().position(|t| *t == 0.0) {
         let message = format!("deviations are measured by the tolerances, and that of point {j} is 0");
@@ -393,12 +394,12 @@ fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnosti
     }))
 }
 
-/// Continuation needs nine precision points.
+/// Checks that continuation has nine precision points.
 fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<(), Box<Diagnostic>> {
     if spec.solve.method != Method::Continuation {
         return Ok(());
     }
-    // What is wrong with the task itself has been said before.
+    // Faults of the task itself have been reported before.
     let refusal = Problem::new(spec.clone()).ok().and_then(|problem| precision_points(&problem).err());
     refusal.map_or(Ok(()), |refusal| {
         let key = match refusal {
@@ -409,7 +410,7 @@ fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<(), Box<Di
     })
 }
 
-/// Reduced variables need a reduced form; a warning where the method does not read them.
+/// Checks that reduced variables have a reduced form; returns a warning if the method does not use them.
 fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
     if spec.solve.variables.is_nine() {
         return Ok(None);
@@ -422,7 +423,7 @@ fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagno
                 .with_help("it is for genetic and differential-evolution; remove it, or choose one of them"),
         ));
     }
-    // What is wrong with the task itself has been said before.
+    // Faults of the task itself have been reported before.
     match Problem::new(spec.clone()).ok().and_then(|problem| reduced::refusal(&problem)) {
         None => Ok(None),
         Some(refusal) => {
@@ -431,7 +432,7 @@ fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagno
     }
 }
 
-/// How many numbers a published vector has.
+/// The number of values of a published vector.
 const PUBLISHED_VECTOR: usize = 9;
 
 fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expect, Box<Diagnostic>> {

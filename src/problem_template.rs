@@ -1,8 +1,8 @@
-//! A commented problem file to start from: it runs as it is, for someone with a motor and a path.
+//! A commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path.
 
 use crate::name::{self, NameError};
 
-/// A closed path that a crank-rocker of the usual proportions draws, in mm.
+/// A closed path in mm that a crank-rocker of usual proportions draws.
 const SAMPLE_POINTS: &str = "\
 # The points to pass, in order, in the unit above. Many points: file = \"points.csv\" (columns x,y).
 points = [
@@ -13,11 +13,11 @@ closed = true                   # the path ends where it begins
 tolerance = 0.5                 # the largest error accepted at any point; remove to take the best there is
 ";
 
-/// The text of a problem file called `name`, with sample points or with those of a CSV file or an SVG drawing (told
-/// apart by the name's ending) that lies beside it.
+/// Returns the text of a problem file called `name`, with sample points or with those of a CSV file or an SVG drawing
+/// (according to the name's ending) in the same folder.
 ///
 /// # Errors
-/// [`NameError`] when the name is none.
+/// [`NameError`] if the name is not valid.
 pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String, NameError> {
     name::check(name)?;
     let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
@@ -42,7 +42,7 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
             quoted(file)
         ),
     };
-    // A drawing may tell its unit itself.
+    // A drawing may state its unit itself.
     let head = match points_file.map(std::path::Path::new) {
         Some(file) if crate::problem_file::is_drawing(file) => {
             HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"")

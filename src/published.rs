@@ -1,4 +1,4 @@
-//! What published answers really give: the vectors of the literature, evaluated by our own referee.
+//! Evaluation of published answers: the vectors of the literature, judged by our own referee.
 //!
 //! A vector is [r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0] with
 //! P = (x0, y0) + e^{i theta0} (r2 e^{i theta2} + (rcx + i rcy) e^{i theta3}), both angles measured from the
@@ -13,9 +13,9 @@ use crate::record::Candidate;
 use crate::search::nearest::nearest_positions;
 use crate::search::rank::compare;
 
-/// The linkage of a vector [ground, crank, coupler, follower, rcx, rcy, x0, y0, theta0], theta0 in radians.
+/// Returns the linkage of a vector [ground, crank, coupler, follower, rcx, rcy, x0, y0, theta0], theta0 in radians.
 ///
-/// `None` where the nine numbers are no linkage: a negative or zero link, a number that is not finite.
+/// `None` if the nine numbers do not form a linkage: a negative or zero link, a number that is not finite.
 ///
 /// ```
 /// use linkwright::linkage::AssemblyMode;
@@ -32,12 +32,12 @@ pub fn linkage_of(vector: &[f64; 9], assembly: AssemblyMode) -> Option<FourBar> 
     FourBar::with_coupler_offset([a, b], links, Complex::new(along, across), assembly).ok()
 }
 
-/// A published answer as a candidate of the problem, every figure and verdict by our referee.
+/// Returns a published answer as a candidate of the problem, every figure and verdict by our referee.
 ///
-/// Its points are met as the problem's timing asks ([`nearest_positions`]): at the prescribed crank angles,
-/// with the offset that suits the vector best where it is free; each at its nearest crank angle with free
-/// timing. The crank angles that were published are not used. Where the source leaves the assembly open the
-/// better one counts. `None` without a vector, for numbers that are no linkage, and where the loop is open at a point.
+/// Its points are met by the problem's timing ([`nearest_positions`]): with prescribed timing at the prescribed crank
+/// angles, with the offset that suits the vector best if it is free; with free timing each at its nearest crank angle.
+/// The crank angles that were published are not used. If the source does not give the assembly, the better one counts.
+/// `None` without a vector, for numbers that do not form a linkage, and if the loop is open at a point.
 pub fn evaluate(problem: &Problem, published: &Published) -> Option<Candidate> {
     let vector: &[f64; 9] = published.vector.as_slice().try_into().ok()?;
     let judged = |assembly: AssemblyMode| {

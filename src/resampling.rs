@@ -1,4 +1,4 @@
-//! Digitised points made into a target: noise taken out, points spread evenly.
+//! Smoothing and resampling of digitised points into a target.
 //!
 //! Points q_0 .. q_m lie on a path with the arc lengths s_i = sum_k |q_k - q_(k-1)|; a closed path goes on from its
 //! last point to its first.
@@ -10,14 +10,14 @@
 
 use nalgebra::{Matrix3, Matrix3x2};
 
-/// Neighbours further away than this many standard deviations have no weight.
+/// Distance in standard deviations beyond which neighbours have no weight.
 const REACH: f64 = 4.0;
-/// A quadratic through three points smooths nothing.
+/// Least number of neighbours: a quadratic through three points smooths nothing.
 const LEAST_NEIGHBOURS: usize = 4;
-/// Points are smoothed up to this many: the work is their number times the neighbours of each.
+/// The most points that are smoothed: the work is their number times the neighbours of each.
 pub const MAX_SMOOTHED: usize = 10_000;
 
-/// The arc length at each point, and of the whole path with the way back where it is closed.
+/// Returns the arc length at each point, and that of the whole path, with the way back if it is closed.
 fn arc_lengths(points: &[[f64; 2]], closed: bool) -> (Vec<f64>, f64) {
     let mut lengths = Vec::with_capacity(points.len());
     let mut length = 0.0;
@@ -37,10 +37,11 @@ fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// As many points, each moved onto the quadratic that fits its neighbours within about `deviation` of arc length.
+/// Smooths points by local regression: each is moved onto the quadratic that fits its neighbours within about
+/// `deviation` of arc length.
 ///
-/// A point with fewer than four neighbours that count stays where it is. A last point that is equal to the first
-/// stays equal to it where the path is closed.
+/// A point with fewer than four neighbours that count stays unchanged. A last point that is equal to the first stays
+/// equal to it if the path is closed.
 pub fn smooth(points: &[[f64; 2]], closed: bool, deviation: f64) -> Vec<[f64; 2]> {
     let (lengths, total) = arc_lengths(points, closed);
     if !(deviation > 0.0 && total > 0.0 && total.is_finite()) {
@@ -55,7 +56,7 @@ pub fn smooth(points: &[[f64; 2]], closed: bool, deviation: f64) -> Vec<[f64; 2]
     smoothed
 }
 
-/// The value at point `i` of the quadratic that fits its neighbours; `around` is the length of a closed path.
+/// Returns the value at point `i` of the quadratic that fits its neighbours; `around` is the length of a closed path.
 fn fitted(points: &[[f64; 2]], lengths: &[f64], around: Option<f64>, i: usize, deviation: f64) -> [f64; 2] {
     let mut normal = Matrix3::<f64>::zeros();
     let mut right = Matrix3x2::<f64>::zeros();
@@ -78,7 +79,7 @@ fn fitted(points: &[[f64; 2]], lengths: &[f64], around: Option<f64>, i: usize, d
             for (column, q) in powers.iter().enumerate() {
                 normal[(row, column)] += weight * p * q;
             }
-            // From the point itself: what is added stays small beside it.
+            // Measured from the point itself: the terms added stay small beside it.
             for axis in 0..2 {
                 right[(row, axis)] += weight * p * (point[axis] - points[i][axis]);
             }
@@ -93,8 +94,8 @@ fn fitted(points: &[[f64; 2]], lengths: &[f64], around: Option<f64>, i: usize, d
     }
 }
 
-/// `count` points at equal distances of arc length on the straight lines between the points: of an open path from end
-/// to end, of a closed one from its first point on, without that point again at the end.
+/// Returns `count` points at equal distances of arc length on the straight lines between the points: of an open path
+/// from end to end, of a closed one from its first point on, without that point again at the end.
 ///
 /// ```
 /// use linkwright::resampling::resample;

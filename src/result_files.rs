@@ -1,4 +1,4 @@
-//! Everything that a result's folder holds, as bytes: pure functions of the record, but for its times.
+//! The files of a result's folder, as bytes: pure functions of the record, apart from its times.
 
 use crate::linkage_file;
 use crate::name;
@@ -8,24 +8,25 @@ use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
 use crate::results_folder::BUILDABLE;
 use crate::run::AdviceSeconds;
 
-/// What `timing.json` holds.
+/// The contents of `timing.json`.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Timing {
-    /// Seconds of search.
+    /// The time of the search, in seconds.
     pub search_s: f64,
-    /// Seconds more for what is worked out beside the candidates.
+    /// The time for everything that is computed beside the candidates, in seconds.
     pub beside_s: f64,
-    /// Of these, seconds of each part; `None` where none was asked for.
+    /// The times of the parts of `beside_s`, in seconds; `None` if no advice was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub advice_s: Option<AdviceSeconds>,
-    /// Seconds altogether.
+    /// The total time, in seconds.
     pub total_s: f64,
-    /// Threads.
+    /// The number of threads.
     pub threads: usize,
 }
 
 impl Timing {
-    /// The whole, the search, and each part of the rest that took a millisecond or more.
+    /// Returns the total time, the time of the search, and that of each other part that took a millisecond or more, in
+    /// words.
     ///
     /// ```
     /// use linkwright::result_files::Timing;
@@ -52,15 +53,15 @@ impl Timing {
     }
 }
 
-/// Shorter parts of a run are left out of its words.
+/// The shortest time of a part that is mentioned in words, in seconds.
 const WORTH_SAYING_S: f64 = 1e-3;
 
-/// Everything that a result's folder holds.
+/// Returns the name and the contents of every file of a result's folder.
 pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
     files_of(record, timing, Extent::Full)
 }
 
-/// The same with a page of this extent.
+/// Returns the files as [`files`] does, with a page of this extent.
 pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, String> {
     let json = |text: Result<String, serde_json::Error>| {
         text.map(|t| (t + "\n").into_bytes())
@@ -100,7 +101,7 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
     Ok(files)
 }
 
-/// The name in the linkage file of a candidate: the problem's with its rank (or `buildable`).
+/// Returns the name in the linkage file of a candidate: the problem's name with the candidate's rank (or `buildable`).
 pub fn linkage_name(record: &Record, which: &str) -> String {
     name::with_suffix(&name::legal(&record.problem.name, "linkage"), &format!("-{which}"))
 }

@@ -1,4 +1,4 @@
-//! A result's folder: locked while it is written to, replaced as a whole, never mixed with foreign files.
+//! A result's folder: locked while it is written to, replaced as a whole, and never mixed with files of other origin.
 
 use crate::record::{BeyondLimits, Record};
 use std::fs::{self, File};
@@ -22,118 +22,118 @@ use lock::Lock;
 use replacement::Wait;
 
 const LOCK: &str = ".lock";
-/// The file of a record.
+/// The name of the file with the record.
 pub const RECORD: &str = "record.json";
 const TEMPORARY: &str = ".linkwright-";
-/// The file of a search half done.
+/// The name of the file with the checkpoint of an unfinished search.
 pub const CHECKPOINT: &str = "checkpoint.json";
-/// The file with the leaves of a certificate.
+/// The name of the file with the leaves of a certificate.
 pub const LEAVES: &str = "certificate.leaves";
-/// The file of a search for a certificate half done.
+/// The name of the file with the checkpoint of an unfinished certificate.
 pub const CERTIFICATE_CHECKPOINT: &str = "certificate.checkpoint";
-/// What stands in the place of a rank in the names of the buildable answer's files.
+/// The word used instead of a rank in the file names of the buildable candidate.
 pub const BUILDABLE: &str = "buildable";
-/// The largest record that is read.
+/// The largest record that is read, in bytes.
 pub const MAX_RECORD_BYTES: u64 = 256 << 20;
 
-/// Why a result cannot be written or read.
+/// The reason why a result cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
     /// The folder or a file in it cannot be used.
     #[error("{path}: {source}; {}", remedy(source))]
     Io {
-        /// Which path.
+        /// The path of the folder or file.
         path: String,
-        /// What the system said.
+        /// The error that the system reported.
         source: io::Error,
     },
-    /// The place is taken by a file.
+    /// The path of the results folder leads to a file.
     #[error("{path} is a file; give a folder for the results with --out")]
     NotAFolder {
-        /// Which path.
+        /// The path of the file.
         path: String,
     },
-    /// Something there is not ours.
+    /// The folder contains something that linkwright did not write.
     #[error(
         "{path} holds {foreign}, which linkwright did not write; give another folder with --out or move it away"
     )]
     Foreign {
-        /// The folder.
+        /// The path of the folder.
         path: String,
-        /// What was found.
+        /// The name of the foreign entry.
         foreign: String,
     },
-    /// A file that a person named for writing is there, and this program did not write it.
+    /// A file at a path that a person named for writing exists, and this program did not write it.
     #[error(
         "{path} is there and is not {kind} that linkwright wrote; name another file, or replace it with --force"
     )]
     NotOurs {
-        /// Which file.
+        /// The path of the file.
         path: String,
-        /// The kind that was to be written.
+        /// The kind of file that was to be written.
         kind: &'static str,
     },
-    /// A file that a person named for writing is read by the same command.
+    /// A file that a person named for writing is also read by the same command.
     #[error("{path} is an input of this command; name another file, or replace it with --force")]
     OwnInput {
-        /// Which file.
+        /// The path of the file.
         path: String,
     },
-    /// A file that is to be made is there already.
+    /// A file that is to be created exists already.
     #[error("{path} exists already; choose another name, or replace it with --force")]
     Exists {
-        /// Which file.
+        /// The path of the file.
         path: String,
     },
-    /// Two files were to be written to one place.
+    /// Two files were to be written to one path.
     #[error("{path} is named twice: each file needs a place of its own")]
     NamedTwice {
-        /// Which file.
+        /// The path of the file.
         path: String,
     },
-    /// Another run has it.
+    /// Another run uses the folder.
     #[error("{path} is in use by another run; wait for it to end or give another folder with --out")]
     Locked {
-        /// The folder.
+        /// The path of the folder.
         path: String,
     },
-    /// No record there.
+    /// There is no record.
     #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
     NoRecord {
-        /// Which file was looked for.
+        /// The path of the file that was looked for.
         path: String,
     },
-    /// A record that is none.
+    /// The file is not a valid record.
     #[error("{path}:{line}:{column}: this is not a linkwright record: {message}")]
     NotARecord {
-        /// Which file.
+        /// The path of the file.
         path: String,
-        /// Where.
+        /// The line of the fault, counted from 1.
         line: usize,
-        /// Where.
+        /// The column of the fault.
         column: usize,
-        /// What is wrong.
+        /// The fault.
         message: String,
     },
-    /// A record that no run has written.
+    /// The record has a value that no run writes.
     #[error("{path}: {beyond}; run the problem again to have a true record")]
     BeyondLimits {
-        /// Which file.
+        /// The path of the file.
         path: String,
-        /// What is beyond its limit.
+        /// The value that is beyond its limit.
         beyond: BeyondLimits,
     },
-    /// A file over the limit.
+    /// The file is larger than the limit.
     #[error("{path} has {bytes} bytes; a record has at most {MAX_RECORD_BYTES}")]
     TooLarge {
-        /// Which file.
+        /// The path of the file.
         path: String,
-        /// Its size.
+        /// The size of the file, in bytes.
         bytes: u64,
     },
 }
 
-/// What to do about a failure of the system.
+/// Returns the remedy for an error of the system.
 fn remedy(error: &io::Error) -> &'static str {
     match error.kind() {
         io::ErrorKind::NotFound => "check the spelling and the folder you are in",
@@ -154,36 +154,36 @@ fn remedy(error: &io::Error) -> &'static str {
 }
 
 impl FolderError {
-    /// Whether the system failed (a full disk, a read-only folder) rather than the caller.
+    /// Returns the error for a failure of the system (a full disk, a read-only folder).
     fn io(path: &Path, source: io::Error) -> Self {
         FolderError::Io { path: path.display().to_string(), source }
     }
 }
 
-/// A folder that is ours until it is dropped.
+/// A results folder that is locked for this run until it is dropped.
 #[derive(Debug)]
 pub struct ResultsFolder {
     path: PathBuf,
     lock: Lock,
-    /// The folders that were made for it, the innermost first; taken away again when nothing is written.
+    /// The folders that were created for it, the innermost first; removed again if nothing is written.
     created: Vec<PathBuf>,
-    /// Whether the checkpoint stays when the rest is replaced.
+    /// Whether the checkpoint is kept when the other files are replaced.
     half_done: bool,
 }
 
-/// Whether a file begins as a checkpoint does: enough to tell it from one that linkwright did not write.
+/// Returns whether a file begins as a checkpoint does, which is enough to recognise a checkpoint of linkwright's.
 fn begins_as_a_checkpoint(path: &Path) -> bool {
     let mut start = [0; 64];
     let read = File::open(path).and_then(|mut file| file.read(&mut start)).unwrap_or(0);
     start[..read].starts_with(b"{\"format\":") && start[..read].windows(12).any(|w| w == b"\"linkwright\"")
 }
 
-/// Whether a text is a rank as a run writes it: 1, 2, .. without zeros in front.
+/// Returns whether a text is a rank as a run writes it: 1, 2, .. without leading zeros.
 fn is_rank(text: &str) -> bool {
     text.parse::<u32>().is_ok_and(|rank| rank > 0 && rank.to_string() == text)
 }
 
-/// Whether a file of this name is one that a run writes.
+/// Returns whether a run writes a file of this name.
 fn is_ours(name: &str) -> bool {
     let numbered = |prefix: &str, suffix: &str| {
         name.strip_prefix(prefix)
@@ -200,29 +200,30 @@ fn is_ours(name: &str) -> bool {
         || numbered("candidate-", ".svg")
 }
 
-/// Whether a name is that of a file half written ([`tempfile`] adds six letters or digits) or of a folder of a
-/// replacement that was broken off.
+/// Returns whether a name is that of a half-written file ([`tempfile`] adds six letters or digits) or of a folder of a
+/// replacement that was interrupted.
 fn is_temporary(name: &str) -> bool {
     let random = |rest: &str| rest.len() == 6 && rest.bytes().all(|b| b.is_ascii_alphanumeric());
     replacement::is_staging(name) || name.strip_prefix(TEMPORARY).is_some_and(random)
 }
 
-/// Whether a file of this name is one that a run leaves in a result's folder: no lock, nothing temporary.
+/// Returns whether a run leaves a file of this name in a result's folder: neither a lock nor a temporary file.
 pub fn is_result_file(name: &str) -> bool {
     is_ours(name) && !name.starts_with('.')
 }
 
-/// How long a lock is left alone: whoever has just made it may be about to take it.
+/// The age below which a lock counts as held: the run that has just created it may be about to lock it.
 const FRESH: Duration = Duration::from_secs(2);
 
-/// Whether a run works in a folder now. A lock that was made a moment ago counts as held.
+/// Returns whether a run works in a folder now. A lock file that was created a moment ago counts as held.
 pub fn is_in_use(folder: &Path) -> bool {
     let Ok(found) = fs::symlink_metadata(folder.join(LOCK)) else { return false };
     let fresh = found.modified().ok().and_then(|made| made.elapsed().ok()).is_none_or(|age| age < FRESH);
     fresh || Lock::is_taken(folder)
 }
 
-/// What a folder with these names, sorted, holds that linkwright did not write.
+/// Returns a description of the first foreign entry (one that linkwright did not write) of a folder with these names,
+/// sorted.
 fn foreign(path: &Path, names: &[String]) -> Option<String> {
     if let Some(foreign) = names.iter().find_map(|name| replacement::not_of_ours(path, name)) {
         return Some(foreign);
@@ -245,7 +246,8 @@ fn foreign(path: &Path, names: &[String]) -> Option<String> {
 }
 
 impl ResultsFolder {
-    /// Takes a folder for a run: creates it where it is missing, refuses foreign files and running neighbours.
+    /// Takes a folder for a run: creates it if it is missing, and refuses it if it contains foreign files or another
+    /// run uses it.
     ///
     /// # Errors
     /// [`FolderError`].
@@ -269,7 +271,7 @@ impl ResultsFolder {
         }
         names.sort();
         if let Some(foreign) = foreign(path, &names) {
-            // Half of a neighbour's result, while it is moved to its place, looks foreign too.
+            // Half of another run's result, while it is moved to its place, looks foreign too.
             let in_use = Lock::is_taken(path);
             return Err(if in_use {
                 FolderError::Locked { path: shown() }
@@ -278,32 +280,32 @@ impl ResultsFolder {
             });
         }
         let lock = Lock::take(path)?;
-        // A replacement that was broken off may be that of a search half done: its checkpoint is not thrown away here.
+        // An interrupted replacement may belong to an unfinished search: its checkpoint is kept here.
         if names.iter().any(|name| name.starts_with(TEMPORARY)) {
             replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
         }
         Ok(ResultsFolder { path: path.to_path_buf(), lock, created, half_done: false })
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether a search half done has left a checkpoint here.
+    /// Returns whether an unfinished search has left a checkpoint here.
     pub fn has_checkpoint(&self) -> bool {
         self.path.join(CHECKPOINT).is_file()
     }
 
-    /// From now on the checkpoint stays when the rest is replaced: the result is of a search half done.
+    /// Keeps the checkpoint when the other files are replaced: the result is that of an unfinished search.
     pub fn keep_checkpoint(&mut self) {
         self.half_done = true;
     }
 
-    /// Removes the checkpoint of a search that is over, if there is one.
+    /// Removes the checkpoint of a finished search, if there is one.
     ///
     /// # Errors
-    /// [`FolderError::Io`] where it cannot be removed.
+    /// [`FolderError::Io`] if it cannot be removed.
     pub fn remove_checkpoint(&self) -> Result<(), FolderError> {
         let path = self.path.join(CHECKPOINT);
         match fs::remove_file(&path) {
@@ -312,19 +314,19 @@ impl ResultsFolder {
         }
     }
 
-    /// Replaces what the folder holds by `files`, as a whole: whatever breaks it off, the folder holds the old result
-    /// or the new one. A folder that was taken away under way is made anew.
+    /// Replaces the contents of the folder by `files`, as a whole: even if it is interrupted, the folder holds the old
+    /// result or the new one. If the folder was removed in the meantime, it is created again.
     ///
     /// # Errors
-    /// [`FolderError::Io`] with the file that could not be written; the old result stays. [`FolderError::Locked`] where
-    /// the folder was taken away under way and is another run's by now.
+    /// [`FolderError::Io`] with the file that could not be written; the old result is kept. [`FolderError::Locked`] if
+    /// the folder was removed in the meantime and another run uses it by now.
     pub fn replace(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
         self.write(files)?;
         self.sync()?;
         self.put(Wait::Now)
     }
 
-    /// The first half of [`ResultsFolder::replace`]: the files are written beside the old result, which stays.
+    /// Does the first half of [`ResultsFolder::replace`]: writes the files beside the old result, which is kept.
     /// [`put_together`] does the rest.
     ///
     /// # Errors
@@ -341,7 +343,7 @@ impl ResultsFolder {
         replacement::sync(&self.path).map_err(|(path, e)| FolderError::io(&path, e))
     }
 
-    /// The names in it are on the disk when this returns.
+    /// Waits until the names in the folder are on the disk.
     fn sync_names(&self) -> Result<(), FolderError> {
         disk::sync_folder(&self.path).map_err(|e| FolderError::io(&self.path, e))
     }
@@ -352,26 +354,26 @@ impl ResultsFolder {
         Ok(())
     }
 
-    /// What stays when the rest is replaced.
+    /// Returns the names that are kept when the other files are replaced.
     fn kept(&self) -> &'static [&'static str] {
         if self.half_done { &[LOCK, CHECKPOINT] } else { &[LOCK] }
     }
 }
 
-/// Replaces the file `name` of a folder that is there: written to a temporary file beside it first and renamed,
-/// so that a reader sees the old file or the new one, never half of either.
+/// Replaces the file `name` of an existing folder: writes it to a temporary file beside it first and renames that, so
+/// that a reader sees the old file or the new one, never half of either.
 ///
 /// # Errors
-/// [`FolderError::Io`] with the file; what was there before stays.
+/// [`FolderError::Io`] with the file; the old file is kept.
 pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
     let target = folder.join(name);
     output_file::over(&target, bytes).map_err(|e| FolderError::io(&target, e))
 }
 
-/// Saves the files of a result that its folder does not take in a new folder of the system's for temporary files.
+/// Saves the files of a result that cannot be written to its folder in a new folder among the system's temporary files.
 ///
 /// # Errors
-/// [`FolderError::Io`] where that has no room either.
+/// [`FolderError::Io`] if they cannot be written there either.
 pub fn rescue(files: &[(String, Vec<u8>)]) -> Result<PathBuf, FolderError> {
     let place = std::env::temp_dir();
     let folder = tempfile::Builder::new().prefix("linkwright-rescued-").tempdir_in(&place);
@@ -394,7 +396,7 @@ impl Drop for ResultsFolder {
 /// Reads a record from its file or from the folder that holds it.
 ///
 /// # Errors
-/// [`FolderError`] with the file and, where it is no record, the line.
+/// [`FolderError`] with the file and, if it is not a valid record, the line.
 pub fn read_record(path: &Path) -> Result<Record, FolderError> {
     if !path.is_dir() {
         return read_record_file(path);
@@ -402,7 +404,7 @@ pub fn read_record(path: &Path) -> Result<Record, FolderError> {
     let records = replacement::records(path);
     let there = records.iter().find(|file| file.exists()).unwrap_or(&records[2]);
     match read_record_file(there) {
-        // It was moved to its place just now.
+        // The record was moved to its place just now.
         Err(FolderError::Io { .. } | FolderError::NoRecord { .. }) if there != &records[2] => {
             read_record_file(&records[2])
         }
@@ -421,7 +423,7 @@ fn read_record_file(file: &Path) -> Result<Record, FolderError> {
     if bytes > MAX_RECORD_BYTES {
         return Err(FolderError::TooLarge { path: file.display().to_string(), bytes });
     }
-    // A pipe or a device tells no length: the limit holds while reading too.
+    // A pipe or a device states no length, so the limit is also checked while reading.
     let mut text = Vec::new();
     File::open(file)
         .and_then(|f| f.take(MAX_RECORD_BYTES + 1).read_to_end(&mut text))
@@ -432,10 +434,10 @@ fn read_record_file(file: &Path) -> Result<Record, FolderError> {
     parse_record(&file.display().to_string(), &text)
 }
 
-/// The record of a text; `path` is shown in errors.
+/// Returns the record of a text; `path` is shown in errors.
 ///
 /// # Errors
-/// [`FolderError`] with the line where it is no record, or the key that is beyond its limit.
+/// [`FolderError`] with the line if it is not a valid record, or with the key that is beyond its limit.
 pub fn parse_record(path: &str, text: &[u8]) -> Result<Record, FolderError> {
     let record: Record = serde_json::from_slice(text).map_err(|e| FolderError::NotARecord {
         path: path.to_owned(),

@@ -1,4 +1,4 @@
-//! One run: a problem in, a record out. This is where the rooms meet.
+//! One run: from a problem to its record. It joins the other modules.
 
 use crate::assess::to_raw;
 use crate::certificate;
@@ -21,12 +21,12 @@ use sha2::{Digest, Sha256};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// What is to be run.
+/// A job to run: a problem with its name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
     /// The problem's name.
     pub name: String,
-    /// Where it comes from, in words.
+    /// The source of the problem, in words.
     pub source: Option<String>,
     /// The label of lengths.
     pub unit: Option<Unit>,
@@ -34,22 +34,22 @@ pub struct Job {
     pub spec: ProblemSpec,
 }
 
-/// What a run needs of its caller.
+/// The inputs of a run from its caller.
 #[derive(Clone, Copy)]
 pub struct Context<'a> {
-    /// Set it to end the run with its best so far.
+    /// The cancellation flag; setting it ends the run with its best answer so far.
     pub cancel: &'a AtomicBool,
-    /// Told where the search stands.
+    /// The callback that receives the progress of the search.
     pub observer: &'a Observer<'a>,
 }
 
-/// Why a job cannot be run.
+/// The reason why a job cannot be run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RunError {
-    /// The task is no task.
+    /// The task is invalid.
     #[error(transparent)]
     Task(#[from] TaskError),
-    /// Exact linkages are asked for where there are none to list.
+    /// Exact linkages are asked for although there are none to list.
     #[error(transparent)]
     Precision(#[from] Refusal),
     /// A population search cannot be set up.
@@ -60,14 +60,14 @@ pub enum RunError {
     Json(String),
 }
 
-/// Seconds of what is worked out beside the answers.
+/// The seconds spent on each part of the advice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct AdviceSeconds {
-    /// What the limits cost that candidates lie on.
+    /// Costs of the limits on which candidates lie.
     pub costs: f64,
-    /// Which requirements conflict, and what would help.
+    /// Conflicts of requirements, and the relaxations that help.
     pub conflicts: f64,
-    /// Warnings, a family, and something that can be built.
+    /// Warnings, a family, and a buildable candidate.
     pub buildable: f64,
 }
 
@@ -78,23 +78,23 @@ pub struct Finished {
     pub record: Record,
     /// Seconds from the checked problem to ranked, refereed candidates.
     pub search_s: f64,
-    /// Seconds more for everything that is worked out beside them.
+    /// Further seconds for everything computed beside them.
     pub beside_s: f64,
-    /// Of these, seconds of each part.
+    /// The seconds of each part of `beside_s`.
     pub advice_s: AdviceSeconds,
 }
 
 /// Runs a job on the current rayon thread pool; a certificate that its problem asks for is left to [`prove`].
 ///
 /// # Errors
-/// [`RunError`] when the job makes no search; a search that finds nothing is a record with no accepted
-/// candidate, not an error.
+/// [`RunError`] if the job cannot be searched; a search that finds nothing is a record with no accepted candidate, not
+/// an error.
 pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
     run_kept(job, context, None)
 }
 
-/// Works out the certificate that a record's problem asks for, within its time limit, and puts it into the record; or
-/// why there is none. Nothing is done where none is asked for or the search was cancelled.
+/// Computes the certificate that a record's problem asks for, within its time limit, and puts it into the record, or
+/// the reason why there is none. Does nothing if no certificate is asked for or the search was cancelled.
 pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(&certificate::Progress)) {
     let Some(asked) = record.problem.resolved.solve.certify else { return };
     if record.termination.reason == Reason::Cancelled {
@@ -109,8 +109,8 @@ pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(
     }
 }
 
-/// As [`run`], with a keeper of where its search stands: the search begins where the keeper says, and ends in the
-/// same record as one from the beginning.
+/// As [`run`], with a keeper of the state of its search: the search resumes from there, and ends in the same record as
+/// one from the beginning.
 ///
 /// # Errors
 /// As [`run`].
@@ -123,7 +123,6 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
     let mut outcome = plan::search_kept(&problem, &budget, context.observer, keeper)?;
     cognates::offer(&problem, &mut outcome.candidates, &budget);
-    continuation::finish(&problem, &mut outcome);
     let search_s = start.elapsed().as_secs_f64();
     let mut advice_s = AdviceSeconds::default();
     let mut so_far = search_s;
@@ -132,8 +131,10 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         (*part, so_far) = (now - so_far, now);
     };
     let explained = explained(&problem, &mut outcome, &budget, context.observer)?;
+    // After it: the list of candidates is final, and ranks refer to it.
+    continuation::finish(&problem, &mut outcome);
     lap(&mut advice_s.conflicts);
-    // After it: looking for what would help may have met an acceptable design.
+    // After the conflicts: the search for relaxations may have met an acceptable design.
     costs::attach(&problem, &mut outcome, &budget);
     lap(&mut advice_s.costs);
     let mut beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
@@ -171,19 +172,21 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     Ok(Finished { record, search_s, beside_s, advice_s })
 }
 
-/// Why a search ended, as its list shows it: a target is reached where an accepted candidate of the list is exact. A
-/// search far from the origin, or one whose best gave way to a cognate, may have seen an exact one that the list lacks.
+/// Returns the reason why a search ended, consistent with its list: a target is reached only if an accepted candidate of
+/// the list is exact. A search far from the origin, or one whose best gave way to a cognate, may have found an exact one
+/// that is not in the list: then it converged if its best came back, else it stalled.
 fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
     let exact = exact_sum_sq(problem);
     let is_exact = |c: &Candidate| c.accepted && c.error.sum_sq <= exact;
     if outcome.reason == Reason::TargetReached && !outcome.candidates.iter().any(is_exact) {
-        return Reason::Converged;
+        let came_back = outcome.repeats.as_ref().is_some_and(|repeats| repeats.hits > 1);
+        return if came_back { Reason::Converged } else { Reason::Stalled };
     }
     outcome.reason
 }
 
-/// Why nothing is acceptable, where that is so and advice is asked for. Where the budget leaves no time to look for it,
-/// the record says so: with more time it would hold more.
+/// Returns the explanation why nothing is acceptable, if that is so and advice is asked for. If the budget leaves no
+/// time for it, the record shows that by its reason: with more time it would hold more.
 fn explained(
     problem: &Problem,
     outcome: &mut SearchOutcome,
@@ -202,11 +205,11 @@ fn explained(
     conflicts::explain(problem, outcome, budget, observer)
 }
 
-/// SHA-256 of what decides a search: task, design, require, objective, variables, method with its
-/// parameters, seed.
+/// Returns the SHA-256 digest of the data that determine a search: task, design, require, objective, variables, method
+/// with its parameters, seed.
 ///
 /// # Errors
-/// [`RunError::Json`] when the problem cannot be written as data.
+/// [`RunError::Json`] if the problem cannot be written as data.
 pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
     #[derive(Serialize)]
     struct Decides<'a> {
@@ -214,7 +217,7 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, RunError> {
         design: &'a crate::problem::spec::DesignSpec,
         require: &'a crate::problem::spec::RequireSpec,
         objective: crate::problem::spec::Objective,
-        // Absent where it is the default: records from before there was a choice keep their digest.
+        // Absent if it is the default: records from before there was a choice keep their digest.
         #[serde(skip_serializing_if = "Option::is_none")]
         variables: Option<crate::problem::spec::Variables>,
         method: crate::problem::spec::Method,
@@ -244,7 +247,7 @@ mod tests {
     use crate::record::Evaluations;
 
     #[test]
-    fn a_target_is_reached_where_a_listed_accepted_candidate_is_exact() {
+    fn a_target_is_reached_only_if_a_listed_accepted_candidate_is_exact() {
         let text =
             "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\n[solve]\ncandidates = 1\n";
         let file = crate::problem_file::parse("it.toml", text, None, &[]).expect("a problem");
@@ -263,7 +266,11 @@ mod tests {
             repeats: None,
         };
         assert_eq!(reached(&problem, &outcome), Reason::TargetReached);
-        outcome.candidates[0].error.sum_sq = 1e-9;
+        outcome.candidates[0].accepted = false;
+        assert_eq!(reached(&problem, &outcome), Reason::Stalled);
+        (outcome.candidates[0].accepted, outcome.candidates[0].error.sum_sq) = (true, 1e-9);
+        assert_eq!(reached(&problem, &outcome), Reason::Stalled);
+        outcome.repeats = Some(crate::record::Repeats::new(9, 2, 2));
         assert_eq!(reached(&problem, &outcome), Reason::Converged);
         outcome.candidates.clear();
         assert_eq!(reached(&problem, &outcome), Reason::Converged);

@@ -1,6 +1,7 @@
-//! One job from its folder to its files: lock, resume, run, checkpoints on the way, result.
+//! Running one job with its folder: lock, resume, run, checkpoints on the way, result files.
 //!
-//! `linkwright synth` and the studio run jobs by this alone, so that the same problem and seed give the same bytes.
+//! `linkwright synth` and the studio both run jobs with this module only, so that the same problem and seed give the
+//! same bytes.
 
 use crate::certificate;
 use crate::checkpoint::{Checkpoint, Writer};
@@ -17,14 +18,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How a job is run.
+/// Options for running a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Whether it goes on from the checkpoint of an earlier run, and is not run where it was done before.
+    /// Whether the job continues from the checkpoint of an earlier run, and is skipped if it was finished before.
     pub resume: bool,
-    /// Checkpoints come at most so often; zero: at every boundary of the search.
+    /// The shortest time between two checkpoints; zero: a checkpoint at every boundary of the search.
     pub checkpoint_every: Duration,
-    /// What the page of the result holds.
+    /// The extent of the result's page.
     pub extent: Extent,
 }
 
@@ -34,51 +35,51 @@ impl Default for Options {
     }
 }
 
-/// Whom a job tells what it does.
+/// Callbacks that receive the progress and the messages of a job.
 #[derive(Clone, Copy)]
 pub struct Listener<'a> {
-    /// Where the search stands.
+    /// Receives the progress of the search.
     pub observer: &'a Observer<'a>,
-    /// Where the certificate stands that the problem asks for.
+    /// Receives the progress of the certificate that the problem asks for.
     pub proving: &'a (dyn Fn(&certificate::Progress) + Sync),
-    /// What a person should know, a sentence each.
+    /// Receives messages for the user, one sentence each.
     pub tell: &'a (dyn Fn(&str) + Sync),
 }
 
-/// What came of a job.
+/// A finished job.
 #[derive(Clone, Debug)]
 pub struct Done {
     /// The record.
     pub record: Record,
-    /// Where it is.
+    /// The folder of the result.
     pub folder: PathBuf,
-    /// What took how long; `None` where it was done before.
+    /// The times of the run's parts; `None` if the job was finished before.
     pub timing: Option<Timing>,
-    /// Whether its certificate was interrupted.
+    /// Whether the certificate was interrupted.
     pub interrupted: bool,
 }
 
-/// A job that has been run.
+/// The outcome of running a job.
 pub enum Ran {
-    /// It was done before.
+    /// The job was finished before.
     Before(Done),
-    /// Its files are written and not yet in their place.
+    /// The result's files are written, but not yet in their place.
     Written(Written),
 }
 
-/// A result that is written, not yet in its place, and its folder.
+/// A result that is written but not yet in its place, with its folder.
 pub struct Written {
     done: Done,
     folder: ResultsFolder,
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs a job on the current thread pool and writes its result to the folder `place`; [`put_in_place`] ends it. The
-/// time that is written counts from `begun`. Setting `cancel` ends the search: its best so far is the result, and the
-/// checkpoint stays.
+/// Runs a job on the current thread pool and writes its result to the folder `place`; [`put_in_place`] completes it.
+/// The time that is written counts from `begun`. Setting `cancel` ends the search: the best linkages so far are the
+/// result, and the checkpoint is kept.
 ///
 /// # Errors
-/// What a person has to know; nothing is half written.
+/// The message for the user; nothing is half written.
 pub fn run(
     job: &Job,
     place: &Path,
@@ -140,16 +141,17 @@ pub fn run(
     let mut timing = Timing { search_s, beside_s, advice_s, total_s, threads };
     let files = files_of(&record, &timing, options.extent)?;
     folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
-    // The file is written by now; what is told has the writing too.
+    // The file is written by now; the time that is reported includes the writing.
     timing.total_s = begun.elapsed().as_secs_f64();
     let done = Done { record, folder: place.to_path_buf(), timing: Some(timing), interrupted };
     Ok(Ran::Written(Written { done, folder, files }))
 }
 
-/// Puts results in their places, with one wait for the disk. One that its folder does not take is saved elsewhere.
+/// Puts results in their places, with one wait for the disk. A result that cannot be put into its folder is saved
+/// elsewhere.
 ///
 /// # Errors
-/// For each what a person has to know.
+/// The message for the user, one for each result that failed.
 pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, String>> {
     let mut folders: Vec<_> = written.iter_mut().map(|result| &mut result.folder).collect();
     let put = put_together(&mut folders);
@@ -159,7 +161,7 @@ pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, String>> {
     written.into_iter().zip(put).map(ended).collect()
 }
 
-/// Saves a result that its folder does not take in another place, and says so.
+/// Saves a result that cannot be written to its folder in another place, and returns a message that says so.
 pub(crate) fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> String {
     match rescue(files) {
         Ok(place) => format!("{e}; the result was saved in {}", place.display()),
@@ -167,9 +169,9 @@ pub(crate) fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> S
     }
 }
 
-/// The record of a run of the same problem that has nothing left to do: of the same version, for as many candidates,
-/// with advice where that is asked for,
-/// neither interrupted nor ended by a time limit, nor by a budget that has been raised since.
+/// Returns the record of an earlier run of the same problem that has nothing left to do: of the same version, with the
+/// same number of candidates, with advice if that is asked for, neither interrupted nor ended by a time limit, nor by a
+/// budget that has been raised since.
 fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, String> {
     let Ok(record) = read_record(place) else { return Ok(None) };
     let (then, now) = (&record.problem.resolved.solve, &job.spec.solve);
@@ -185,8 +187,8 @@ fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, String> {
     Ok(Some(record).filter(|record| same && over && is_proved(job, record)))
 }
 
-/// Whether nothing is left of what the job asks to have proved: the bound stands, as near as is asked for, or there can
-/// be none.
+/// Returns whether nothing is left to prove of what the job asks for: the bound is proved with the gap that is asked
+/// for, or there can be no certificate.
 fn is_proved(job: &Job, record: &Record) -> bool {
     let Some(asked) = job.spec.solve.certify else { return true };
     match &record.certificate {

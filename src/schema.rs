@@ -1,5 +1,5 @@
-//! JSON Schemas of the files that are read and of the record that is written, made from the types that read and write
-//! them.
+//! JSON Schemas of the files that are read and of the record that is written, generated from the types that read and
+//! write them.
 
 mod reference;
 
@@ -24,7 +24,7 @@ impl SchemaKind {
     /// Every kind.
     pub const ALL: [SchemaKind; 3] = [SchemaKind::Problem, SchemaKind::Linkage, SchemaKind::Record];
 
-    /// `problem`, `linkage` or `record`.
+    /// Returns the name of the kind: `problem`, `linkage` or `record`.
     pub fn name(self) -> &'static str {
         match self {
             SchemaKind::Problem => "problem",
@@ -41,12 +41,12 @@ impl std::str::FromStr for SchemaKind {
     }
 }
 
-/// A word that names no kind of file.
+/// The error that a word does not name a kind of file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no schema of {0:?}: the kinds are problem, linkage and record")]
 pub struct UnknownKind(pub String);
 
-/// The JSON Schema (draft 2020-12) of a kind of file.
+/// Returns the JSON Schema (draft 2020-12) of a kind of file.
 ///
 /// ```
 /// use linkwright::schema::{SchemaKind, schema};

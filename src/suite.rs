@@ -1,9 +1,9 @@
-//! The suite: problems whose answer is known, each from many seeds, beside the population searches at equal
-//! evaluations and beside what was published.
+//! The suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population
+//! searches at equal evaluations and with published answers.
 //!
-//! Every run is [`run`] on the problem as its file has it, with two changes: the seed, and one candidate
-//! asked for. Runs go one after the other on one thread, so that their times can be compared. What stands in a
-//! [`Suite`] is the referee's; nothing but the times differs from one machine to the next.
+//! Every run is [`run`] on the problem of its file, with two changes: the seed, and a single candidate. Runs go one
+//! after the other on one thread, so that their times can be compared. All figures in a [`Suite`] are computed by the
+//! referee; only the times differ from one machine to another.
 
 pub mod literature;
 pub mod statistics;
@@ -20,21 +20,21 @@ use serde::Serialize;
 use statistics::{Bar, Summary};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The format of a suite as JSON.
+/// The version of the suite's JSON format.
 pub const FORMAT: u32 = 1;
-/// The searches on the design vector that stand beside the problem's own method.
+/// The population searches on the design vector that are run for comparison with the problem's own method.
 pub const POPULATIONS: [Method; 2] = [Method::Genetic, Method::DifferentialEvolution];
 
-/// What a suite is asked for.
+/// The options of a suite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Seeds 1 to this many for each problem.
+    /// The number of seeds for each problem: seeds 1 to this.
     pub seeds: u64,
-    /// Seeds 1 to this many, and not more than `seeds`, for each population search.
+    /// The number of seeds for each population search: seeds 1 to this, but at most `seeds`.
     pub population_seeds: u64,
-    /// The command that makes the same suite again; kept with the figures.
+    /// The command that makes the same suite again; stored with the figures.
     pub command: String,
-    /// How the best answer of each problem is certified, where that is asked for; on all threads.
+    /// The options for certifying the best answer of each problem, on all threads; `None` for no certificates.
     pub certify: Option<CertifySpec>,
 }
 
@@ -49,136 +49,136 @@ impl Options {
         self.population_seeds.min(self.seeds)
     }
 
-    /// How many runs this makes for so many problems.
+    /// Returns the number of runs for this number of problems.
     pub fn runs(&self, problems: usize) -> u64 {
         problems as u64 * (self.seeds + POPULATIONS.len() as u64 * self.population_seeds())
     }
 }
 
-/// The run that a suite is at.
+/// The progress of a suite, with the current run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step<'a> {
-    /// Which problem.
+    /// The name of the problem.
     pub problem: &'a str,
-    /// Which method.
+    /// The method.
     pub method: Method,
-    /// Which seed.
+    /// The seed.
     pub seed: u64,
-    /// Runs that are over.
+    /// The number of finished runs.
     pub done: u64,
-    /// Runs in all.
+    /// The number of all runs.
     pub total: u64,
 }
 
-/// Whoever wants to know where a suite stands: told at the beginning of a run and now and then during it.
+/// A callback that receives the progress of a suite: at the beginning of a run and repeatedly during it.
 pub type StepObserver<'a> = dyn Fn(&Step<'_>) + Sync + 'a;
 
-/// Why a suite cannot be run.
+/// The reason why a suite cannot be run.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SuiteError {
-    /// A problem that makes no search.
+    /// A problem that cannot be searched.
     #[error("{problem}: {source}")]
     Run {
-        /// Its name.
+        /// The name of the problem.
         problem: String,
-        /// Why.
+        /// The reason.
         source: RunError,
     },
-    /// The thread that it runs on cannot be had.
+    /// The thread for the searches cannot be created.
     #[error("no thread to search with: {0}")]
     Thread(String),
 }
 
-/// Problems, seeds, figures.
+/// A suite: problems, seeds and figures.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Suite {
-    /// [`FORMAT`].
+    /// The version of the format: [`FORMAT`].
     pub format: u32,
-    /// What made it.
+    /// The program that made it, with its version.
     pub tool: Tool,
     /// The command that makes it again.
     pub command: String,
-    /// Seeds 1 to this many were asked for.
+    /// The number of seeds that was asked for: seeds 1 to this.
     pub seeds: u64,
-    /// Threads of every search: 1.
+    /// The number of threads of every search: 1.
     pub threads: usize,
-    /// Whether every run came to its end; not after a cancellation.
+    /// Whether every run was finished; `false` after a cancellation.
     pub complete: bool,
-    /// The problems, as they were given; after a cancellation those that were begun.
+    /// The problems in the given order; after a cancellation, those that were begun.
     pub problems: Vec<ProblemResult>,
 }
 
-/// One problem of a suite.
+/// The results for one problem of a suite.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProblemResult {
-    /// Its name.
+    /// The name of the problem.
     pub name: String,
-    /// Where it comes from.
+    /// The source of the problem.
     pub source: Option<String>,
-    /// How many target points it has.
+    /// The number of target points.
     pub points: usize,
     /// The least sum of squares that is known.
     pub best_known_sum_sq: f64,
-    /// What a run has to reach to count as a hit.
+    /// The sum of squares that a run has to reach to count as a hit.
     pub goal_sum_sq: f64,
-    /// The method that the file asks for, from every seed.
+    /// The results of the method that the file asks for, from every seed.
     pub search: MethodResult,
-    /// The population searches at the evaluations that `search` used in the median.
+    /// The results of the population searches with the median number of evaluations of `search`.
     pub populations: Vec<MethodResult>,
-    /// An accepted answer smaller than the best known by more than one part in a million: the smallest of all
-    /// runs.
+    /// The smallest accepted answer of all runs, if it is smaller than the best known by more than one part in a
+    /// million.
     pub smaller_than_best_known: Option<Smaller>,
-    /// What was published, evaluated again.
+    /// The published answers, evaluated again.
     pub published: Vec<PublishedResult>,
-    /// The one of `published` with the least sum by our evaluation; of those that cannot be evaluated the least
-    /// printed one.
+    /// The one of `published` with the least sum by our evaluation; if none can be evaluated, the one with the least
+    /// printed sum.
     pub best_published: Option<PublishedResult>,
-    /// What is proved about the least accepted sum of `search`, where certificates are asked for and there is one.
+    /// The certificate of the least accepted sum of `search`, if certificates are asked for and there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
-    /// Why there is none, where certificates are asked for.
+    /// The reason why there is no certificate, if certificates are asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_certificate: Option<String>,
 }
 
-/// One method on one problem.
+/// The results of one method on one problem.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MethodResult {
-    /// Which.
+    /// The method.
     pub method: Method,
-    /// Evaluations of the objective that each run had at most.
+    /// The largest number of evaluations of the objective in each run.
     pub evaluations_at_most: u64,
-    /// The figures of all runs.
+    /// The summary of all runs.
     pub summary: Summary,
-    /// The runs, by seed.
+    /// The runs, in the order of their seeds.
     pub runs: Vec<Run>,
 }
 
-/// One run: one problem, one method, one seed.
+/// The results of one run: one problem, one method, one seed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Run {
     /// The seed.
     pub seed: u64,
-    /// Whether its first candidate is acceptable; `false` without one.
+    /// Whether the first candidate is accepted; `false` without a candidate.
     pub accepted: bool,
-    /// The sum of squares of its first candidate at the crank angles; none without a candidate.
+    /// The sum of squares of the first candidate at the crank angles; `None` without a candidate.
     pub sum_sq: Option<f64>,
     /// The sum of squared distances of the points to that candidate's whole curve.
     pub to_curve_sum_sq: Option<f64>,
-    /// How often the objective was computed.
+    /// The number of evaluations of the objective.
     pub evaluations: u64,
-    /// Seconds from the checked problem to ranked, refereed candidates.
+    /// The time from the checked problem to the ranked candidates with their figures, in seconds.
     pub search_s: f64,
-    /// Why it ended.
+    /// The reason why the search ended.
     pub reason: Reason,
 }
 
 /// An accepted answer that is smaller than the best known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Smaller {
-    /// Whose.
+    /// The method that found it.
     pub method: Method,
-    /// From which seed.
+    /// The seed of its run.
     pub seed: u64,
     /// Its sum of squares.
     pub sum_sq: f64,
@@ -189,30 +189,31 @@ pub struct Smaller {
 pub struct PublishedResult {
     /// Author and year.
     pub source: String,
-    /// The sum that was printed, where it could be read in the source.
+    /// The printed sum of squares, if it could be read in the source.
     pub printed_sum_sq: Option<f64>,
-    /// The sum that the vector has by our referee; none without a vector that can be assembled at every point.
+    /// The sum of squares of the published vector by our referee; `None` without a vector that can be assembled at
+    /// every point.
     pub sum_sq: Option<f64>,
-    /// The same to the whole curve.
+    /// The sum of squared distances of the points to the whole curve.
     pub to_curve_sum_sq: Option<f64>,
-    /// Whether it meets the problem's own requirements.
+    /// Whether the answer meets the problem's own requirements.
     pub accepted: Option<bool>,
     /// The requirements that it does not meet.
     pub unmet: Vec<String>,
 }
 
 impl Suite {
-    /// Whether every seed of every problem has an accepted answer, and none is missing.
+    /// Returns whether every seed of every problem has an accepted answer, and no run is missing.
     pub fn is_accepted(&self) -> bool {
         self.complete && self.problems.iter().all(|p| p.search.summary.accepted == p.search.runs.len())
     }
 }
 
-/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] by the method of its file, then by each of
-/// [`POPULATIONS`] with the median of the evaluations that this took. Problems that expect no
+/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then with each of
+/// [`POPULATIONS`] with the median number of evaluations of the first method. Problems without an expected
 /// `best_known_sum_sq` are left out.
 ///
-/// `cancel` ends the run that is under way; that run does not count, and what came before it is given.
+/// `cancel` ends the current run; that run does not count, and the results before it are returned.
 ///
 /// # Errors
 /// [`SuiteError`].
@@ -251,14 +252,14 @@ pub fn suite(
     })
 }
 
-/// What the runs of a suite share.
+/// The state shared by the runs of a suite.
 struct Runner<'a> {
     pool: ThreadPool,
     cancel: &'a AtomicBool,
     observer: &'a StepObserver<'a>,
     done: u64,
     total: u64,
-    /// A certificate was cancelled.
+    /// Whether a certificate was cancelled.
     cut_short: bool,
 }
 
@@ -312,7 +313,7 @@ impl Runner<'_> {
         })
     }
 
-    /// What is proved about a run's answer; nothing where that is cancelled.
+    /// Returns the certificate of a run's answer, or the reason why there is none; neither if it is cancelled.
     fn certificate(
         &mut self,
         mut record: Record,
@@ -330,7 +331,7 @@ impl Runner<'_> {
         (record.certificate, record.no_certificate)
     }
 
-    /// The runs of a method, and the record of the least accepted sum.
+    /// Returns the runs of a method, and the record with the least accepted sum.
     fn method(
         &mut self,
         file: &ProblemFile,
@@ -377,7 +378,7 @@ impl Runner<'_> {
     }
 }
 
-/// The smallest accepted answer of all runs, where it is smaller than the best known.
+/// Returns the smallest accepted answer of all runs, if it is smaller than the best known.
 fn smallest<'a>(methods: impl Iterator<Item = &'a MethodResult>, bar: &Bar) -> Option<Smaller> {
     methods
         .filter_map(|of| {

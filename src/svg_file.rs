@@ -1,9 +1,9 @@
-//! SVG drawings: one shape of a drawing as target points, spaced evenly by arc length, y up.
+//! SVG drawings as targets: one shape of a drawing as target points, spaced evenly by arc length, y up.
 //!
-//! The shape r(t) of the drawing is taken through every transform above it, then (x, y) becomes (x, -y), then the
-//! points r(s_i) are taken at s_i = i L / n of a closed curve of length L and at s_i = i L / (n - 1) of an open one.
-//! Where the drawing's width or height is in mm, cm, in, pt or pc the points are physical lengths; else they are in
-//! the drawing's user units. SVG 1.1, sections 7 to 9.
+//! The shape r(t) of the drawing is mapped by every transform above it, then (x, y) becomes (x, -y), then the points
+//! r(s_i) are taken at s_i = i L / n of a closed curve of length L and at s_i = i L / (n - 1) of an open one. If the
+//! drawing's width or height is in mm, cm, in, pt or pc the points are physical lengths; otherwise they are in the
+//! drawing's user units. SVG 1.1, sections 7 to 9.
 
 mod arc_length;
 mod document;
@@ -18,30 +18,30 @@ use crate::record::Unit;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// How many points a drawing gives where nothing is said.
+/// The default number of points of a drawing.
 pub const DEFAULT_SAMPLES: usize = 60;
-/// The most elements of a drawing, each use of an element counted.
+/// The largest number of elements of a drawing, each use of an element counted.
 pub const MAX_ELEMENTS: u32 = 200_000;
-/// How deep elements and uses may stand inside each other.
+/// The largest depth of nested elements and uses.
 pub const MAX_DEPTH: usize = 128;
-/// The most segments of a shape, arcs counted once.
+/// The largest number of segments of a shape, arcs counted once.
 pub const MAX_SEGMENTS: usize = 100_000;
 
-/// Begins a document type.
+/// The beginning of a document type.
 const DOCTYPE: &str = "<!DOCTYPE";
 
-/// What is wanted of a drawing.
+/// The options for reading a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SvgOptions<'a> {
     /// The id of the shape, of a group that holds it or of a use of it; absent: the first path, polyline, polygon,
-    /// circle or ellipse, and where there is none the first line or rect.
+    /// circle or ellipse, and if there is none the first line or rect.
     pub id: Option<&'a str>,
-    /// How many points.
+    /// The number of points.
     pub samples: usize,
-    /// Whether the target is closed; absent: as it is drawn. `true` closes an open shape by a straight line,
-    /// `false` gives both ends of a closed one.
+    /// Whether the target is closed; absent: as it is drawn. `true` closes an open shape by a straight line, `false`
+    /// gives both ends of a closed one.
     pub closed: Option<bool>,
-    /// What physical lengths are to be given in; absent: mm.
+    /// The unit in which physical lengths are given; absent: mm.
     pub unit: Option<Unit>,
 }
 
@@ -51,33 +51,33 @@ impl Default for SvgOptions<'_> {
     }
 }
 
-/// The points of a shape and what is known of them.
+/// The target points of a shape with their properties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SvgTarget {
     /// The file as the user named it.
     pub file: String,
     /// The points.
     pub points: Vec<[f64; 2]>,
-    /// Whether they are those of a closed curve.
+    /// Whether they are points of a closed curve.
     pub closed: bool,
     /// The unit of physical lengths; absent: user units.
     pub unit: Option<Unit>,
     /// The length of the curve.
     pub length: f64,
-    /// What was passed over.
+    /// Warnings about ignored parts of the drawing.
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The target points of a drawing.
+/// Reads the target points of a drawing.
 ///
 /// # Errors
-/// A [`Diagnostic`] that points at the element or attribute that is wrong.
+/// A [`Diagnostic`] that points at the element or attribute at fault.
 pub fn load(path: &Path, options: &SvgOptions<'_>) -> Result<SvgTarget, Box<Diagnostic>> {
     let text = input_text::read(path)?;
     parse(&path.display().to_string(), &text, options)
 }
 
-/// The target points of the text of a drawing; `file` is shown in diagnostics.
+/// Reads the target points of the text of a drawing; `file` is shown in diagnostics.
 ///
 /// ```
 /// use linkwright::svg_file::{SvgOptions, parse};
@@ -88,7 +88,7 @@ pub fn load(path: &Path, options: &SvgOptions<'_>) -> Result<SvgTarget, Box<Diag
 /// ```
 ///
 /// # Errors
-/// As [`load`]. `samples` below 2 (3 of a closed curve) are refused too.
+/// As [`load`]. `samples` below 2 (3 for a closed curve) are refused too.
 pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarget, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let about = |message: String, help: &str| Box::new(Diagnostic::new(file, text, message).with_help(help));
@@ -140,8 +140,8 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
     })
 }
 
-/// The text with blanks in the place of a document type that declares nothing (`<!DOCTYPE svg PUBLIC ..>`, as many
-/// programs write it). One with declarations stays and is refused.
+/// Returns the text with blanks in the place of a document type that declares nothing (`<!DOCTYPE svg PUBLIC ..>`, as
+/// many programs write it). A document type with declarations is kept and refused later.
 fn without_empty_doctype(text: &str) -> Cow<'_, str> {
     let found = text.find(DOCTYPE).and_then(|start| {
         let end = start + text.get(start..)?.find('>')? + 1;
@@ -158,7 +158,7 @@ fn without_empty_doctype(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// What the XML reader says, in a designer's words.
+/// Translates an error of the XML reader into a designer's words.
 fn not_xml(file: &str, text: &str, error: &roxmltree::Error) -> Box<Diagnostic> {
     use roxmltree::Error;
     let (message, help) = match error {
@@ -173,7 +173,7 @@ fn not_xml(file: &str, text: &str, error: &roxmltree::Error) -> Box<Diagnostic> 
             ("there is no element in this file".to_owned(), "save the drawing as (plain) SVG")
         }
         other => {
-            // The position stands in front of the caret already.
+            // The position is already shown in front of the caret.
             let words = other.to_string();
             let words = words.split(" at ").next().unwrap_or(&words).to_owned();
             (format!("the drawing is no XML: {words}"), "save the drawing again as (plain) SVG")

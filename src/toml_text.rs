@@ -1,7 +1,7 @@
-//! A TOML text with its errors: reads a type from it and finds the place of a key again.
+//! A TOML text with its errors: reads a type from it and finds the place of a key.
 //!
-//! Errors of syntax and of type carry their place; errors of meaning name a key by its path
-//! (`task.path.points.3`), and the place is looked up here. Serde's words are turned into a designer's.
+//! Errors of syntax and of type have a place; errors of meaning name a key by its path (`task.path.points.3`), and the
+//! place is looked up here. Serde's messages are translated into a designer's words.
 
 use crate::diagnostic::{Diagnostic, quoted};
 use serde::de::DeserializeOwned;
@@ -15,14 +15,14 @@ pub(crate) struct TomlText<'a> {
     pub text: &'a str,
 }
 
-/// A key that is known and not read yet.
+/// A key that is known but not supported yet.
 struct KeyToCome {
     key: &'static str,
-    /// A key that stands beside it: the same word elsewhere is just unknown.
+    /// Another key in the same table: elsewhere the same word is just unknown.
     beside: &'static str,
-    /// What isn't supported.
+    /// The feature that is not supported.
     what: &'static str,
-    /// What is.
+    /// The feature to use instead.
     instead: &'static str,
 }
 
@@ -33,12 +33,12 @@ const KEYS_TO_COME: [KeyToCome; 2] = [
 ];
 
 impl<'a> TomlText<'a> {
-    /// The text as a value of type T.
+    /// Reads the text as a value of type T.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, Box<Diagnostic>> {
         toml::from_str(self.text).map_err(|error| self.explain(&error))
     }
 
-    /// A complaint about the value at a path; about the nearest table around it where it doesn't exist.
+    /// Returns a diagnostic about the value at a path, or about the nearest table around it if it does not exist.
     pub fn at(&self, path: &str, message: impl Into<String>) -> Diagnostic {
         let diagnostic = self.about_file(message);
         match self.place(path) {
@@ -47,7 +47,7 @@ impl<'a> TomlText<'a> {
         }
     }
 
-    /// A complaint about the key at a path.
+    /// Returns a diagnostic about the key at a path.
     pub fn at_key(&self, path: &str, message: impl Into<String>) -> Diagnostic {
         let diagnostic = self.about_file(message);
         match self.place(path) {
@@ -56,12 +56,12 @@ impl<'a> TomlText<'a> {
         }
     }
 
-    /// A complaint about the whole file.
+    /// Returns a diagnostic about the whole file.
     pub fn about_file(&self, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(self.file, self.text, message)
     }
 
-    /// The places of the key and of the value at a path, or of the last part of the path that exists.
+    /// Returns the places of the key and of the value at a path, or of the last part of the path that exists.
     fn place(&self, path: &str) -> Option<(Range<usize>, Range<usize>)> {
         let document = DeTable::parse(self.text).ok()?;
         let mut table = Some(document.get_ref());
@@ -91,7 +91,7 @@ impl<'a> TomlText<'a> {
         found
     }
 
-    /// The path of the table that holds the key at a place.
+    /// Returns the path of the table that contains the key at a place.
     fn table_around(&self, key_start: usize) -> Option<String> {
         fn search(table: &DeTable<'_>, start: usize, path: &str) -> Option<String> {
             table.iter().find_map(|(key, value)| {
@@ -116,7 +116,7 @@ impl<'a> TomlText<'a> {
         search(DeTable::parse(self.text).ok()?.get_ref(), key_start, "")
     }
 
-    /// The key of which the value at a place is a part.
+    /// Returns the key whose value contains a place.
     fn key_around(&self, start: usize) -> Option<String> {
         fn in_table(table: &DeTable<'_>, start: usize) -> Option<String> {
             table.iter().find_map(|(key, value)| {
@@ -138,7 +138,7 @@ impl<'a> TomlText<'a> {
         in_table(DeTable::parse(self.text).ok()?.get_ref(), start)
     }
 
-    /// An error of the parser or of serde in a designer's words.
+    /// Translates an error of the parser or of serde into a designer's words.
     fn explain(&self, error: &toml::de::Error) -> Box<Diagnostic> {
         let (message, span) = (error.message(), error.span());
         let diagnostic = if let Some((key, allowed)) = unknown(message, "unknown field ") {
@@ -149,7 +149,7 @@ impl<'a> TomlText<'a> {
             self.about_file(format!("the key {key} is missing")).with_help("add it to this table")
         } else {
             let (message, help) = match message.split_once('\n') {
-                // The value does not know the key that it is of.
+                // A value does not know the key that it belongs to.
                 Some((message, TOO_LARGE)) => {
                     let key = span.as_ref().and_then(|span| self.key_around(span.start));
                     (message, Some(too_large_help(&key.unwrap_or_default()).to_owned()))
@@ -211,7 +211,7 @@ impl<'a> TomlText<'a> {
             .with_help(format!("{hint}values allowed: {list}"))
     }
 
-    /// Remedies for the commonest slips of the hand.
+    /// Returns the remedies for the commonest typing errors.
     fn syntax_help(&self, message: &str, span: Option<&Range<usize>>) -> Option<String> {
         let start = span?.start.min(self.text.len());
         let before = self.text.get(..start)?;
@@ -238,10 +238,10 @@ impl<'a> TomlText<'a> {
     }
 }
 
-/// The remedy of a number that is too large, of a key that is not known.
+/// The remedy for a number that is too large, of an unknown key.
 pub(crate) const TOO_LARGE: &str = "write a number of at most 1e12 in magnitude";
 
-/// The remedy of a number that is too large for a key (or a column): lengths have units, times and angles have others.
+/// Returns the remedy for a number that is too large for a key (or a column): it differs for lengths, times and angles.
 pub(crate) fn too_large_help(key: &str) -> &'static str {
     let is_one = |keys: &[&str]| keys.contains(&key);
     if key == "time_limit_s" {
@@ -256,7 +256,7 @@ pub(crate) fn too_large_help(key: &str) -> &'static str {
     }
 }
 
-/// The offender and what is allowed, from serde's "unknown field `x`, expected one of `a`, `b`".
+/// Returns the faulty word and the allowed words of serde's "unknown field `x`, expected one of `a`, `b`".
 fn unknown<'m>(message: &'m str, prefix: &str) -> Option<(&'m str, Vec<&'m str>)> {
     let rest = message.strip_prefix(prefix)?.strip_prefix('`')?;
     let (name, allowed) =
@@ -264,7 +264,7 @@ fn unknown<'m>(message: &'m str, prefix: &str) -> Option<(&'m str, Vec<&'m str>)
     Some((name, allowed.split('`').skip(1).step_by(2).collect()))
 }
 
-/// Serde's words for types and values in plain ones.
+/// Translates serde's words for types and values into plain ones.
 fn plain_words(message: &str) -> String {
     let Some((found, expected)) = message
         .strip_prefix("invalid type: ")
@@ -305,9 +305,9 @@ fn plain_words(message: &str) -> String {
     format!("expected {expected}, found {found}")
 }
 
-/// The nearest of the allowed words, where it is near enough to be meant.
+/// Returns the nearest of the allowed words, if it is near enough to be meant.
 pub(crate) fn nearest<'w>(word: &str, allowed: &[&'w str]) -> Option<&'w str> {
-    /// Nobody misspells more than this.
+    /// The length in bytes above which a word is not taken for a misspelling.
     const LONGEST: usize = 64;
     if word.len() > LONGEST {
         return None;
@@ -322,7 +322,7 @@ pub(crate) fn nearest<'w>(word: &str, allowed: &[&'w str]) -> Option<&'w str> {
         .map(|(_, a)| a)
 }
 
-/// Levenshtein's distance.
+/// Returns Levenshtein's distance.
 fn edit_distance(x: &str, y: &str) -> usize {
     let y: Vec<char> = y.chars().collect();
     let mut row: Vec<usize> = (0..=y.len()).collect();

@@ -1,7 +1,7 @@
-//! The values of our TOML files with errors that say what was expected in a designer's words.
+//! The value types of our TOML files, with errors that state the expected value in a designer's words.
 //!
-//! Each type here refuses what is no finite number below 1e12 and lists of the wrong length, which serde's
-//! own arrays would cut in silence. A custom error is `message` or `message\nhelp`.
+//! Each type here refuses values that are not finite numbers below 1e12, and lists of the wrong length, which serde's
+//! own arrays would cut without an error. A custom error is `message` or `message\nhelp`.
 
 use crate::linkage::MAX_MAGNITUDE;
 use crate::problem::spec::Limits;
@@ -13,7 +13,7 @@ use serde::de::{
 use std::fmt;
 use std::marker::PhantomData;
 
-/// An error with a remedy.
+/// Returns an error with a remedy.
 pub(crate) fn refuse<E: de::Error>(message: impl fmt::Display, help: impl fmt::Display) -> E {
     E::custom(format_args!("{message}\n{help}"))
 }
@@ -29,7 +29,7 @@ fn usable<E: de::Error>(value: f64) -> Result<f64, E> {
     }
 }
 
-/// A visitor of numbers; integers are numbers too.
+/// Defines the visitor's functions for numbers; integers are numbers too.
 macro_rules! visit_numbers {
     ($make:expr) => {
         fn visit_f64<E: de::Error>(self, value: f64) -> Result<Self::Value, E> {
@@ -66,7 +66,7 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
-/// 2^53: up to here a float tells neighbouring whole numbers apart.
+/// 2^53: up to this value, a float distinguishes neighbouring whole numbers.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
 /// A whole number that is not negative.
@@ -103,9 +103,9 @@ impl<'de> Deserialize<'de> for Count {
     }
 }
 
-/// What a fixed-length list of numbers is called.
+/// The description of a fixed-length list of numbers.
 pub(crate) trait ListName {
-    /// `[x, y]`
+    /// The text of the expected list, such as `[x, y]`.
     const EXPECTED: &'static str;
 }
 
@@ -137,7 +137,7 @@ where
     }
 }
 
-/// Exactly N values of a list.
+/// Reads a list of exactly N values.
 fn exactly<'de, T, A, const N: usize>(mut seq: A, expected: &str) -> Result<[T; N], A::Error>
 where
     T: Deserialize<'de>,
@@ -172,7 +172,7 @@ where
     }
 }
 
-/// Names of lists.
+/// The names of the list types.
 pub(crate) mod names {
     macro_rules! list_name {
         ($name:ident, $expected:literal) => {
@@ -192,17 +192,17 @@ pub(crate) mod names {
 pub(crate) type XY = Exactly<Number, 2, names::XY>;
 /// A point, each coordinate fixed or bounded.
 pub(crate) type BoundedXY = Exactly<Bounds, 2, names::BoundedXY>;
-/// A box.
+/// A rectangle, given by four numbers.
 pub(crate) type Corners = Exactly<Number, 4, names::Corners>;
 
 impl XY {
-    /// x and y.
+    /// Returns x and y.
     pub(crate) fn numbers(self) -> [f64; 2] {
         self.0.map(|n| n.0)
     }
 }
 
-/// A number, which fixes, or [min, max].
+/// The bounds of a number: a number, which fixes the value, or [min, max].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounds(pub Limits);
 
@@ -286,7 +286,7 @@ impl JsonSchema for OneOrEach {
     }
 }
 
-/// A table and nothing else: serde's own structs would take a list as their fields in order.
+/// A table and nothing else: serde's own structs would accept a list as their fields in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct OnlyTable<T>(pub T);
 

@@ -1,4 +1,4 @@
-//! Is a record true? Every figure and verdict recomputed from its problem and its linkages.
+//! Verification of a record: every figure and verdict is recomputed from its problem and its linkages.
 
 use crate::assess::{assess, to_raw};
 use crate::linkage::mobility::wrapped;
@@ -23,25 +23,25 @@ pub use certificate::verify_certificate;
 pub use coverage::{Checked, UNCHECKED, checked, unchecked};
 use verdict::{is_doubtful, scale, verdict};
 
-/// Figures may differ by this part of themselves ..
+/// The relative part of the tolerance of figures ..
 pub const RELATIVE: f64 = 1e-9;
-/// .. plus this part of the target's size (squared sums: of its square).
+/// .. and its absolute part, as a share of the target's size (for sums of squares, of its square).
 pub const ABSOLUTE: f64 = 1e-12;
-/// Crank angles of prescribed timing may differ by this from the prescribed ones, degrees.
+/// The tolerance of crank angles of prescribed timing, in degrees.
 const TIMING_DEG: f64 = 1e-9;
-/// Rates of costs may differ by this part of themselves: they are solutions of small systems of equations.
+/// The relative tolerance of the rates of costs: they are solutions of small systems of equations.
 const RATE: f64 = 1e-6;
 
-/// Something in a record that is not so.
+/// A mismatch: a value in a record that differs from the recomputed one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The candidate's rank, 0: the buildable one; `None`: the record as a whole.
+    /// The candidate's rank; 0: the buildable candidate; `None`: the record as a whole.
     pub rank: Option<usize>,
-    /// Which figure or verdict.
+    /// The name of the figure or verdict.
     pub what: String,
-    /// What the record says.
+    /// The recorded value, in words.
     pub recorded: String,
-    /// What was found.
+    /// The recomputed value, in words.
     pub found: String,
 }
 
@@ -56,10 +56,10 @@ impl std::fmt::Display for Mismatch {
     }
 }
 
-/// Recomputes everything; an empty list: the record is true.
+/// Recomputes the record's figures and verdicts and returns the mismatches; an empty list if the record is true.
 ///
 /// # Errors
-/// [`RunError`] when the record's problem is no problem.
+/// [`RunError`] if the record's problem is not a valid problem.
 pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     let spec = &record.problem.resolved;
     let problem = Problem::new(spec.clone())?;
@@ -96,14 +96,14 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, RunError> {
     Ok(mismatches)
 }
 
-/// Recomputes the figures and verdicts of one candidate of a problem; an empty list: they are true.
+/// Recomputes the figures and verdicts of one candidate of a problem; an empty list if they are true.
 pub fn verify_candidate(problem: &Problem, candidate: &Candidate) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
     Against { rank: candidate.rank, mismatches: &mut mismatches }.candidate(problem, candidate);
     mismatches
 }
 
-/// The target's points are what smoothing and resampling make of the raw ones.
+/// Checks that the target's points are the raw points after smoothing and resampling.
 fn digitised(problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
     let path = &problem.spec().task.path;
     let Some(raw) = &path.raw else { return };
@@ -121,8 +121,8 @@ fn digitised(problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
     }
 }
 
-/// A conflict and its relaxations stand only where nothing is acceptable and speak of the problem as it is. (That
-/// each relaxation helps is a search of its own: type it in.)
+/// Checks that a conflict and its relaxations are recorded only if no candidate is acceptable, and that they describe
+/// the problem as it is. (Whether each relaxation helps takes a search of its own: run the problem with it.)
 fn explanation(record: &Record, problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
     let explains = record.conflict.is_some() || !record.relaxations.is_empty();
     if explains && record.candidates.iter().any(|c| c.accepted) {
@@ -225,7 +225,7 @@ impl Against<'_> {
             }
         }
         if r.max_at != f.max_at {
-            // Another point may stand in the place of an equal maximum.
+            // The largest error may be at another point with an equal error.
             let angles = (&recorded.crank_deg, &recorded.t1_at);
             let radians: Vec<f64> = angles.0.iter().map(|d| d.to_radians()).collect();
             let equal = problem
@@ -269,7 +269,7 @@ impl Against<'_> {
         self.requirements(problem, recorded, &found);
     }
 
-    /// A linkage is recorded as it is assembled at the first point.
+    /// Checks that a linkage is recorded as it is assembled at the first point.
     fn assembly(&mut self, what: &str, linkage: &FourBar, t1_at: &[AssemblyMode]) {
         let sign = |t: AssemblyMode| format!("{:+}", t.sign());
         if let Some(&first) = t1_at.first().filter(|first| **first != linkage.assembly()) {
@@ -309,7 +309,7 @@ impl Against<'_> {
                 self.differ(&r.name, word(r.met).into(), word(f.met).into());
             }
         }
-        // Where a verdict is rounding's, the record has to agree with itself.
+        // If a verdict depends on rounding, the record has to agree with itself.
         let not_met = |name: &str| recorded.requirements.iter().any(|r| r.name == name && !r.met);
         let (_, accepted) = verdict(problem, found, &not_met);
         if recorded.accepted != accepted {
@@ -317,9 +317,10 @@ impl Against<'_> {
         }
     }
 
-    /// The rates are those of the recorded linkage; the error without a requirement is below the error with it.
+    /// Checks that the rates are those of the recorded linkage, and that the error without a requirement is below the
+    /// error with it.
     fn costs(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {
-        // Where a verdict is rounding's, the recorded one decides whether there is anything to price.
+        // If a verdict depends on rounding, the recorded one decides whether there are costs to compute.
         let priced = Candidate { accepted: recorded.accepted, ..found.clone() };
         let costs = marginal(problem, &priced);
         let names = |costs: &[Cost]| {
@@ -360,7 +361,7 @@ impl Against<'_> {
         }
     }
 
-    /// The crank angles are the prescribed ones, whichever way the timing lets them run.
+    /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
     fn timing(&mut self, problem: &Problem, recorded: &Candidate) {
         let Timing::Prescribed { offset, .. } = problem.task().timing() else { return };
         let Some(written) = &problem.spec().task.path.timing else { return };

@@ -1,4 +1,4 @@
-//! What a compound mechanism does: every point's position, velocity and acceleration at crank angles.
+//! Analysis of a chain (compound mechanism): every point's position, velocity and acceleration at crank angles.
 
 use super::Status;
 use crate::linkage::chain::{ChainInput, Outcome};
@@ -7,30 +7,30 @@ use crate::linkage::{Chain, Complex, xy};
 use crate::record::Unit;
 use serde::Serialize;
 
-/// How many crank angles the input range and the traced path are found with.
+/// Number of crank angles from which the input range and the traced path are found.
 pub const CYCLE_SAMPLES: usize = 720;
 
-/// What is asked about a chain.
+/// A request for the analysis of a chain.
 #[derive(Clone, Debug)]
 pub struct ChainRequest {
     /// Its name.
     pub name: String,
-    /// The label of its lengths.
+    /// The unit that labels its lengths.
     pub unit: Option<Unit>,
     /// The chain.
     pub chain: Chain,
     /// The crank angles, degrees from the x axis.
     pub crank_deg: Vec<f64>,
-    /// How the crank moves.
+    /// The motion of the crank.
     pub input: CrankMotion,
 }
 
-/// A point at one crank angle.
+/// Position, velocity and acceleration of a point at one crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointRow {
     /// Its name.
     pub name: String,
-    /// Where it is; absent for points of and after a stage that does not close.
+    /// Its position; absent for points of and after a stage that does not close.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
     /// Its velocity; absent at a toggle of its stage or one before it.
@@ -41,12 +41,12 @@ pub struct PointRow {
     pub acceleration: Option<[f64; 2]>,
 }
 
-/// One crank angle.
+/// Results at one crank angle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChainRow {
-    /// Degrees from the x axis.
+    /// The crank angle, degrees from the x axis.
     pub crank_deg: f64,
-    /// How it came out.
+    /// The status of the result.
     pub status: Status,
     /// The joint whose stage is open or singular.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -55,7 +55,7 @@ pub struct ChainRow {
     pub points: Vec<PointRow>,
 }
 
-/// The box that the traced point's path fills over a turn.
+/// Bounding box of the traced point's path over a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stroke {
     /// Least x and y.
@@ -64,36 +64,36 @@ pub struct Stroke {
     pub high: [f64; 2],
 }
 
-/// The answer.
+/// Result of the analysis of a chain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChainAnalysis {
-    /// 1.
+    /// Version of the format: 1.
     pub format: u32,
     /// The chain's name.
     pub name: String,
-    /// The label of lengths.
+    /// The unit that labels lengths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// omega2 of the crank.
+    /// omega2, the angular velocity of the crank.
     pub omega2_rad_s: f64,
-    /// alpha2 of the crank.
+    /// alpha2, the angular acceleration of the crank.
     pub alpha2_rad_s2: f64,
-    /// How many stages follow the crank.
+    /// Number of stages that follow the crank.
     pub stages: usize,
-    /// The point whose path is shown.
+    /// Name of the point whose path is shown.
     pub trace: String,
-    /// Whether the crank turns through (told by [`CYCLE_SAMPLES`] samples).
+    /// Whether the crank turns fully (found from [`CYCLE_SAMPLES`] samples).
     pub input_turns_fully: bool,
-    /// [from, to] of each arc that the crank can reach, degrees; empty: a full turn, or none.
+    /// [from, to] of each arc that the crank can reach, degrees; empty for a full turn, or if there is none.
     pub input_arcs_deg: Vec<[f64; 2]>,
-    /// The box of the traced path; absent where no crank angle closes.
+    /// Bounding box of the traced path; absent if the point is known at no crank angle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stroke: Option<Stroke>,
-    /// The crank angles asked for.
+    /// One row for each crank angle requested.
     pub rows: Vec<ChainRow>,
 }
 
-/// Answers a request.
+/// Analyses a chain as requested.
 pub fn analyze_chain(request: &ChainRequest) -> ChainAnalysis {
     let chain = &request.chain;
     let input = chain.input(CYCLE_SAMPLES);

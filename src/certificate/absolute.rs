@@ -1,11 +1,11 @@
-//! The bound of a box where crank angles are from the x axis: K = kappa is a real length.
+//! The lower bound of a box if crank angles are from the x axis: K = kappa is a real length.
 //!
 //! ```text
 //! minimise over kappa, Z (and A):   sum_j |T_j - A - kappa e_j - Z u_j(x)|^2,    e_j = e^{i Phi_j} known
 //! ```
 //!
-//! With E = e'/|e'|: T' = (r + i t) E + s tau, u' = v E + alpha tau + eta, b = |eta|, N = |u'|^2, D = N - |v|^2. The least
-//! sum over kappa and Z is (s^2 b^2 N + q^2)/(N D), q = t D - s Im(conj(alpha) v); with kappa given it is
+//! With E = e'/|e'|: T' = (r + i t) E + s tau, u' = v E + alpha tau + eta, b = |eta|, N = |u'|^2, D = N - |v|^2. The
+//! least sum over kappa and Z is (s^2 b^2 N + q^2)/(N D), q = t D - s Im(conj(alpha) v); with kappa given it is
 //! ((|w|^2 + s^2) b^2 + |s v - w alpha|^2)/N, w = r - kappa |e'| + i t (docs/certificate.md has each line).
 
 use super::affine::Affine;
@@ -16,20 +16,20 @@ use super::expansion::{Expansion, LARGER, Moved, STEEPEST};
 use super::target::{MAX_POINTS, Target};
 use crate::problem::spec::{DesignSpec, Limits};
 
-/// The lengths that bound kappa: [least, greatest] of the crank and of the ground.
+/// The limits of lengths that bound kappa: [least, greatest] of the crank and of the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
-    /// Of the crank, which is kappa.
+    /// The limits of the crank's length, which is kappa.
     pub crank: [f64; 2],
-    /// Of the ground: kappa/p (crank-rockers) or kappa p (double-cranks).
+    /// The limits of the ground's length: kappa/p (crank-rockers) or kappa p (double-cranks).
     pub ground: [f64; 2],
 }
 
 impl Lengths {
-    /// Any.
+    /// No limits.
     pub const ANY: Lengths = Lengths { crank: [0.0, f64::INFINITY], ground: [0.0, f64::INFINITY] };
 
-    /// The least and greatest kappa over a range of p: each from the crank's own limits or by the ground's.
+    /// Returns the least and greatest kappa over a range of p: by the crank's own limits, and by the ground's.
     fn ranges(&self, class: Class, p: [f64; 2]) -> [[f64; 2]; 2] {
         let [low, high] = self.ground;
         let by_ground = match class {
@@ -39,7 +39,7 @@ impl Lengths {
         [self.crank, by_ground]
     }
 
-    /// Whether no length of the crank fits any p of the box.
+    /// Returns whether no length of the crank fits any p of the box.
     pub fn exclude(&self, class: Class, cell: &Cell) -> bool {
         let p = [cell.low[0], cell.high[0].min(1.0)];
         let [own, by_ground] = self.ranges(class, p);
@@ -47,32 +47,32 @@ impl Lengths {
     }
 }
 
-/// What is known where crank angles are from the x axis.
+/// The known pivots, directions and limits if crank angles are from the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
-    /// A, where it is fixed.
+    /// The crank pivot A, if it is fixed.
     pub pivot: Option<[f64; 2]>,
-    /// The direction of the ground line, where it is fixed.
+    /// The direction of the ground line, if it is fixed.
     pub line: Option<Line>,
     /// The limits of crank and ground.
     pub lengths: Lengths,
     /// The limits of the ground's angle, degrees.
     pub limits_deg: Option<[f64; 2]>,
-    /// At least the range of phi_0, which is minus the ground's angle, radians; 0 where that is fixed.
+    /// A range that contains that of phi_0, which is minus the ground's angle, radians; 0 if that is fixed.
     pub phi: [f64; 2],
 }
 
 /// A fixed ground line. The problem is turned by it, so that phi_0 = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line {
-    /// Its angle from the x axis, degrees.
+    /// The line's angle from the x axis, degrees.
     Angle(f64),
-    /// From the fixed A to this B.
+    /// The line from the fixed A to this B.
     To([f64; 2]),
 }
 
 impl Axis {
-    /// What a design's limits know.
+    /// Reads the known pivots, directions and limits from a design.
     pub fn of(design: &DesignSpec) -> Self {
         let point = |pivot: Option<[Limits; 2]>| {
             pivot.filter(|xy| xy.iter().all(Limits::is_fixed)).map(|[x, y]| [x.0, y.0])
@@ -97,7 +97,7 @@ impl Axis {
         Axis { pivot, line, lengths, limits_deg: angle.map(|angle| [angle.0, angle.1]), phi }
     }
 
-    /// The ground's angle, where it is fixed, in degrees.
+    /// Returns the ground's angle in degrees, if it is fixed.
     pub fn angle_deg(&self) -> Option<f64> {
         let [x, y] = self.pivot.unwrap_or_default();
         self.line.map(|line| match line {
@@ -107,12 +107,12 @@ impl Axis {
     }
 }
 
-/// By what part limits of lengths are made wider.
+/// The relative amount by which limits of lengths are widened.
 pub(super) const WIDER: f64 = 1e-9;
-/// Every angle.
+/// A range of phi_0 that contains every angle, radians.
 const ALL_ROUND: [f64; 2] = [-3.2, 3.2];
 
-/// Minus the ground's angle, within a turn, with the rounding of the angle.
+/// Returns a range of minus the ground's angle, within a turn, widened by the rounding of the angle.
 fn phi([low, high]: [f64; 2]) -> [f64; 2] {
     use std::f64::consts::{PI, TAU};
     let whole = (0.5 * (low + high) / TAU).round() * TAU;
@@ -121,21 +121,21 @@ fn phi([low, high]: [f64; 2]) -> [f64; 2] {
     if low < -PI - 0.01 || high > PI + 0.01 { ALL_ROUND } else { [-high, -low] }
 }
 
-/// Linear functionals of u over a box.
+/// Enclosures of linear functionals of u over a box.
 struct Parts {
     /// <y, u>: |eta| is at least its real part.
     beta: Affine,
     v: [Affine; 2],
     alpha: [Affine; 2],
-    /// |u'|^2.
+    /// The squared length N = |u'|^2.
     length_sq: Affine,
-    /// N - |v|^2.
+    /// D = N - |v|^2.
     off_crank: Affine,
-    /// What each axis adds to the rest of <y, u>.
+    /// The contribution of each axis to the rest of <y, u>.
     own: [f64; 4],
 }
 
-/// sum w_j u_j over the box.
+/// Encloses <w, u> = sum conj(w_j) u_j over the box.
 #[inline(always)]
 fn functional(w: &[[f64; 2]], u: &[[f64; 2]], moved: &[Moved], h: &[f64; 4], slack: f64) -> [Affine; 2] {
     let (mut re, mut im) = (0.0, 0.0);
@@ -181,7 +181,7 @@ impl Parts {
                 *v = [v[0] * scale, v[1] * scale];
             }
         }
-        // The rounding of every sum of n products, and what y has along the exact basis.
+        // The rounding of every sum of n products, and the part of y along the exact basis.
         let root_n = (n as f64).sqrt() * LARGER;
         let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * root_n;
         let turning = rounding * (1.0 + (h[0] + h[1] + h[2] + h[3]) * STEEPEST);
@@ -218,7 +218,7 @@ impl Parts {
     }
 }
 
-/// X^2 + Y^2 >= L W^2 over the box: where X cos + Y sin >= L^(1/2) W at one angle.
+/// The condition X^2 + Y^2 >= L W^2 over the box, which holds if X cos a + Y sin a >= L^(1/2) W at one angle a.
 struct Condition {
     x: Affine,
     y: Affine,
@@ -226,7 +226,8 @@ struct Condition {
 }
 
 impl Condition {
-    /// The largest L up to `wanted` that is certified, and what each axis changes.
+    /// Raises `sum_sq` to the largest L up to `wanted` that bisection certifies, and adds the change along each axis
+    /// to `weight`.
     fn certified(&self, wanted: f64, sum_sq: &mut f64, weight: &mut [f64; 4]) {
         let (x, y) = (self.x.mid.max(0.0), self.y.mid);
         let size = (x * x + y * y).sqrt();
@@ -259,9 +260,9 @@ impl Condition {
     }
 }
 
-/// The bound of a box for linkages with |Z| <= `cap` and these lengths.
+/// Computes a lower bound of a box for linkages with |Z| <= `cap` and these lengths.
 ///
-/// `wanted` is the sum of squares that would decide the box: nothing above it is worked out.
+/// `wanted` is the sum of squares that would decide the box: the bound is not sharpened beyond it.
 pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap: f64, wanted: f64) -> Bound {
     let parts = Parts::new(target, class, cell);
     let Parts { beta, v, alpha, length_sq, off_crank, own } = &parts;
@@ -289,7 +290,8 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
     let crank = Affine::constant(target.crank());
     let at_length = |kappa: Affine, side: f64, sum_sq: &mut f64, weight: &mut [f64; 4]| {
         let w = r - kappa * crank;
-        // kappa* is beyond this length on the whole box; or it is the only one.
+        // With a side, the best length kappa* has to be beyond this one on the whole box; with side 0, this is the
+        // only length.
         if side != 0.0 && ((w * *off_crank - s * v_re_a).times(side)).low() <= 0.0 {
             return;
         }

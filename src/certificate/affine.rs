@@ -1,19 +1,20 @@
-//! Functions over a box, enclosed: a linear one and a bound for the rest.
+//! Affine enclosures of functions over a box: a linear function and a bound of the remainder (the rest).
 //!
-//! An [`Affine`] stands for every function of e in [-1, 1]^4 within `rest` of `mid + by . e`. What an operation leaves
-//! out (products of linear parts, rounding) goes into the rest. Its sums are of a few non-negative numbers: [`UP`].
+//! An [`Affine`] represents every function of e in [-1, 1]^4 within `rest` of `mid + by . e`. The parts that an
+//! operation leaves out (products of linear parts, rounding) go into the rest. Its sums are of a few non-negative
+//! numbers: [`UP`].
 
 use super::ball::{Ball, not_negative};
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Twice the unit roundoff.
 const EPS: f64 = f64::EPSILON;
-/// Above the rounding of a sum of 64 non-negative numbers.
+/// A factor above the rounding of a sum of 64 non-negative numbers.
 const UP: f64 = 1.0 + 1e-13;
-/// Above everything that underflow can do.
+/// A bound above everything that underflow can do.
 const TINY: f64 = 1e-290;
 
-/// A linear function and a rest.
+/// A linear function with a bound of the remainder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Affine {
     pub mid: f64,
@@ -22,17 +23,17 @@ pub(super) struct Affine {
 }
 
 impl Affine {
-    /// A number.
+    /// Returns the enclosure of a number with an error.
     pub fn constant(x: Ball) -> Self {
         Affine { mid: x.mid, by: [0.0; 4], rest: x.rad }
     }
 
-    /// The number itself.
+    /// Returns the enclosure of an exact number.
     pub fn exact(x: f64) -> Self {
         Affine::constant(Ball::exact(x))
     }
 
-    /// low <= x_k <= high, where `mid` and `half` hold it.
+    /// Returns the enclosure of the variable x_k in [mid - half, mid + half].
     pub fn variable(mid: f64, half: f64, k: usize) -> Self {
         let mut by = [0.0; 4];
         by[k] = half;
@@ -44,7 +45,7 @@ impl Affine {
         (self.by[0].abs() + self.by[1].abs() + self.by[2].abs() + self.by[3].abs()) * UP
     }
 
-    /// At most every value.
+    /// Returns a lower bound of every value.
     #[inline(always)]
     pub fn low(&self) -> f64 {
         let away = (self.spread() + self.rest) * UP;
@@ -52,7 +53,7 @@ impl Affine {
         low - 4.0 * EPS * (self.mid.abs() + away) - TINY
     }
 
-    /// At least every value.
+    /// Returns an upper bound of every value.
     #[inline(always)]
     pub fn high(&self) -> f64 {
         -(-*self).low()
@@ -63,7 +64,7 @@ impl Affine {
         Affine { mid, by, rest: (rest + 4.0 * EPS * size + TINY) * UP }
     }
 
-    /// x times a number.
+    /// Returns x times a number.
     #[inline(always)]
     pub fn times(&self, factor: f64) -> Self {
         let (mid, by) = (self.mid * factor, self.by.map(|by| by * factor));
@@ -71,7 +72,7 @@ impl Affine {
         Affine::rounded(mid, by, self.rest * factor.abs(), size)
     }
 
-    /// x^2: the square of the linear part lies between 0 and that of its size.
+    /// Returns x^2: the square of the linear part lies between 0 and that of its size.
     #[inline(always)]
     pub fn square(&self) -> Self {
         let spread = self.spread();
@@ -82,7 +83,7 @@ impl Affine {
         Affine::rounded(self.mid * self.mid + half, by, rest, size * size)
     }
 
-    /// sqrt max(x, 0): sqrt(1 + y) is in [1 + y/2 - y^2/2, 1 + y/2] for y >= -1.
+    /// Returns sqrt max(x, 0): sqrt(1 + y) is in [1 + y/2 - y^2/2, 1 + y/2] for y >= -1.
     pub fn root(&self) -> Self {
         let (mid, spread) = (self.mid, (self.spread() + self.rest) * UP);
         if !(mid > 1e-12 && spread < 0.9 * mid) {
@@ -95,7 +96,7 @@ impl Affine {
         Affine::rounded(root, by, rest, root * 4.0)
     }
 
-    /// 1/x; `None` where x may be near 0: 1/(1 + y) = 1 - y + y^2/(1 + y).
+    /// Returns 1/x; `None` if x may be near 0: 1/(1 + y) = 1 - y + y^2/(1 + y).
     pub fn inverse(&self) -> Option<Self> {
         let spread = (self.spread() + self.rest) * UP;
         let relative = spread / self.mid.abs();
@@ -152,7 +153,7 @@ impl Mul for Affine {
 mod tests {
     use super::Affine;
 
-    /// The linear part at e, and whether `value` is within the rest of it.
+    /// Asserts that `value` is within the rest of the linear part at e, and within the bounds.
     fn holds(x: &Affine, e: [f64; 4], value: f64) {
         let linear = x.mid + (0..4).map(|k| x.by[k] * e[k]).sum::<f64>();
         assert!((value - linear).abs() <= x.rest + 1e-14, "{x:?} {e:?}: {value}");

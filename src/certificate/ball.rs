@@ -1,36 +1,36 @@
-//! Numbers with a bound of their error: what every discard rests on.
+//! Ball arithmetic: numbers with a bound of their error, on which every discarded box relies.
 //!
-//! A [`Ball`] (m, r) stands for every real x with |x - m| <= r. Each operation encloses its exact result: the new
-//! radius holds what the radii of its arguments do to it, plus 2^-52 of the new middle, twice what rounding to
-//! nearest can do, plus `TINY` against underflow; and it is enlarged by `UP` for its own few roundings. No
-//! rounding mode is set. What cannot be enclosed has an infinite radius or is NaN, and certifies nothing.
+//! A [`Ball`] (m, r) represents every real x with |x - m| <= r. Each operation encloses its exact result: the new
+//! radius holds the effect of the radii of its arguments, plus 2^-52 of the new middle, twice what rounding to
+//! nearest can do, plus `TINY` against underflow; and it is enlarged by `UP` for its own few roundings. No rounding
+//! mode is set. A result that cannot be enclosed has an infinite radius or is NaN, and certifies nothing.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Twice the unit roundoff.
 const EPS: f64 = f64::EPSILON;
-/// Above everything that underflow can do.
+/// A bound above everything that underflow can do.
 const TINY: f64 = 1e-290;
 /// At least (1 + 2^-53)^6: the roundings of a radius.
 const UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// All x with |x - mid| <= rad.
+/// The ball of all x with |x - mid| <= rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {
-    /// m.
+    /// The middle m.
     pub mid: f64,
-    /// r >= 0.
+    /// The radius r >= 0.
     pub rad: f64,
 }
 
-/// max(x, 0); what is not a number stays that, and certifies nothing.
+/// Returns max(x, 0); NaN stays NaN, and certifies nothing.
 #[inline(always)]
 pub(super) fn not_negative(x: f64) -> f64 {
     if x < 0.0 { 0.0 } else { x }
 }
 
 impl Ball {
-    /// The number itself.
+    /// Returns the ball of an exact number.
     pub const fn exact(mid: f64) -> Self {
         Ball { mid, rad: 0.0 }
     }
@@ -40,26 +40,26 @@ impl Ball {
         Ball { mid, rad: (rad + EPS * mid.abs() + TINY) * UP }
     }
 
-    /// At least every |x|.
+    /// Returns an upper bound of every |x|.
     #[inline(always)]
     pub fn magnitude(self) -> f64 {
         (self.mid.abs() + self.rad) * UP
     }
 
-    /// At most every x.
+    /// Returns a lower bound of every x.
     #[inline(always)]
     pub fn low(self) -> f64 {
         let low = self.mid - self.rad;
         low - (low.abs() + self.rad) * EPS - TINY
     }
 
-    /// x^2.
+    /// Returns x^2.
     #[inline(always)]
     pub fn square(self) -> Self {
         self * self
     }
 
-    /// x / y; of infinite radius where y may be near zero.
+    /// Returns x / y; of infinite radius if y may be near zero.
     #[inline(always)]
     pub fn over(self, y: Ball) -> Self {
         let quotient = self.mid / y.mid;
@@ -72,7 +72,7 @@ impl Ball {
         }
     }
 
-    /// The root of max(x, 0).
+    /// Returns the root of max(x, 0).
     #[inline(always)]
     pub fn root(self) -> Self {
         // |sqrt x - sqrt m| = |x - m|/(sqrt x + sqrt m) <= min(r/sqrt m, sqrt r).
@@ -82,9 +82,9 @@ impl Ball {
         Ball::rounded(mid, rad)
     }
 
-    /// cos x and sin x of a number |x| <= 4 (of infinite radius beyond).
+    /// Returns cos x and sin x of a number |x| <= 4 (of infinite radius beyond).
     ///
-    /// Horner's form of the Taylor series to x^33; what is left out is below 4^34/34! < 1.1e-18.
+    /// Horner's form of the Taylor series to x^33; the remainder is below 4^34/34! < 1.1e-18.
     pub fn cos_sin(x: f64) -> [Ball; 2] {
         if x.is_nan() || x.abs() > 4.0 {
             return [Ball { mid: 0.0, rad: f64::INFINITY }; 2];

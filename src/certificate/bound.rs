@@ -1,9 +1,9 @@
-//! The bound of a box: a number L such that no point of the box has a sum of squares below it.
+//! The lower bound of a box: a number L such that no point of the box has a sum of squares below it.
 //!
-//! SSE >= L exactly where |eta| >= kappa |<tau, u>| with kappa^2 = L/(S - L), eta being u off 1, e and tau. For a unit
-//! vector y across all three |eta| >= |<y, u>|: two linear functionals of u are left. y is taken from the box's
-//! centre; both are expanded there with exact first derivatives, and what the expansion leaves out is bounded by the
-//! second derivatives of theta over the box (docs/certificate.md has each line).
+//! SSE >= L exactly where |eta| >= kappa |<tau, u>| with kappa^2 = L/(S - L), eta being u projected off 1, e and tau.
+//! For a unit vector y orthogonal to all three |eta| >= |<y, u>|: two linear functionals of u are left. y is taken
+//! from the box's centre; both are expanded there with exact first derivatives, and the remainder of the expansion is
+//! bounded by the second derivatives of theta over the box (docs/certificate.md has each line).
 
 use super::chart::Class;
 use super::expansion::{Expansion, LARGER, Moved};
@@ -12,14 +12,14 @@ use super::target::{MAX_POINTS, Target};
 /// A box of the chart: p, phi_0, g, d.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// The lower ends.
+    /// The lower ends of the sides.
     pub low: [f64; 4],
-    /// The upper ends.
+    /// The upper ends of the sides.
     pub high: [f64; 4],
 }
 
 impl Cell {
-    /// The middle and half the width, so that the box lies within both.
+    /// Returns the middle and half the width, such that the box lies within them.
     pub(super) fn centre(&self) -> ([f64; 4], [f64; 4]) {
         let mut c = [0.0; 4];
         let mut h = [0.0; 4];
@@ -30,7 +30,7 @@ impl Cell {
         (c, h)
     }
 
-    /// Both halves along an axis.
+    /// Returns both halves of the box, split along an axis.
     pub(super) fn split(&self, axis: usize) -> [Cell; 2] {
         let middle = 0.5 * (self.low[axis] + self.high[axis]);
         let (mut lower, mut upper) = (*self, *self);
@@ -40,23 +40,23 @@ impl Cell {
     }
 }
 
-/// What a box's bound is.
+/// The lower bound of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
-    /// L: at most the sum of squares of every linkage in the box with |Z| within the cap.
+    /// The bound L: at most the sum of squares of every linkage in the box with |Z| within the cap.
     pub sum_sq: f64,
-    /// How much each axis adds to what the bound loses.
+    /// The contribution of each axis to the loss of the bound.
     pub weight: [f64; 4],
 }
 
-/// The bound of a box for linkages with |Z| <= `cap`.
+/// Computes a lower bound of a box for linkages with |Z| <= `cap`.
 ///
-/// `wanted` is the sum of squares that would decide the box: nothing above it is worked out.
+/// `wanted` is the sum of squares that would decide the box: the bound is not sharpened beyond it.
 pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) -> Bound {
     let n = target.len();
     let expansion = Expansion::new(&target.turn, class, cell);
     let Expansion { h, u, .. } = &expansion;
-    // The witness: u off the basis, of length 1.
+    // The witness y: u projected off the basis, scaled to length 1.
     let dot = |b: &[[f64; 2]], v: &[[f64; 2]]| {
         b.iter().zip(v).fold((0.0, 0.0), |(re, im), (b, v)| {
             (re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0])
@@ -74,7 +74,7 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
     for v in &mut y[..n] {
         *v = [v[0] * scale, v[1] * scale];
     }
-    // What y has along the exact basis, and the rounding of every sum of n products below.
+    // The part of y along the exact basis, and the rounding of every sum of n products below.
     let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * (n as f64).sqrt();
     let mut along = 0.0;
     for b in &target.basis {

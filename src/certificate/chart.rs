@@ -1,4 +1,4 @@
-//! The chart: every four-bar whose input turns fully, in a compact box of four numbers.
+//! The chart: coordinates of every four-bar whose input turns fully, in a compact box of four numbers.
 //!
 //! p in [0, 1] is a/g for crank-rockers and g/a for double-cranks; phi_0 is the first crank angle from the ground
 //! line; gamma is the angle from the diagonal CB to the coupler, and g, d are half the sum and half the difference of
@@ -15,7 +15,7 @@
 
 use super::ball::Ball;
 
-/// Which link turns fully with the input.
+/// The class of a linkage whose input turns fully, by its shortest link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The crank is the shortest link: a/g = p.
@@ -25,10 +25,10 @@ pub enum Class {
 }
 
 impl Class {
-    /// Both.
+    /// Both classes.
     pub const ALL: [Class; 2] = [Class::CrankRocker, Class::DoubleCrank];
 
-    /// The name in records.
+    /// Returns the name in records.
     pub fn name(self) -> &'static str {
         match self {
             Class::CrankRocker => "crank-rocker",
@@ -40,7 +40,7 @@ impl Class {
 /// A point of the chart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// a/g or g/a.
+    /// The ratio a/g or g/a.
     pub p: f64,
     /// The first crank angle from the ground line, radians.
     pub phi: f64,
@@ -50,19 +50,19 @@ pub struct Point {
     pub d: f64,
 }
 
-/// b and c over the longer of a and g, and whether t1 is -1.
+/// The ratios of b and c over the longer of a and g, and the sign of t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratios {
     /// b over the longer of crank and ground.
     pub coupler: f64,
-    /// c over the same.
+    /// c over the longer of crank and ground.
     pub follower: f64,
-    /// t = +1.
+    /// Whether t = +1.
     pub positive: bool,
 }
 
 impl Point {
-    /// The links behind the point; `None` where the coupler is endless (slider-cranks) or p is 0.
+    /// Computes the ratios of the point's linkage; `None` if the coupler is endless (slider-cranks) or p is 0.
     ///
     /// cos gamma = k1/f + k2 f at f = 1 - p and 1 + p; q = 1/(2 k2), r^2 = q^2 - 2 q k1.
     pub fn ratios(&self) -> Option<Ratios> {
@@ -79,8 +79,8 @@ impl Point {
         })
     }
 
-    /// The point of links p, q, r (over the longer of crank and ground) with t = +1 or -1; `None` where the input
-    /// does not turn fully.
+    /// Computes the point of links p, q, r (over the longer of crank and ground) with t = +1 or -1; `None` if the
+    /// input does not turn fully.
     pub fn of_ratios(p: f64, phi: f64, q: f64, r: f64, positive: bool) -> Option<Self> {
         let angle = |f: f64| {
             let cosine = (q * q + f * f - r * r) / (2.0 * q * f);
@@ -90,13 +90,13 @@ impl Point {
         Some(Point { p, phi, g: 0.5 * (near + far), d: 0.5 * (near - far) })
     }
 
-    /// The point of the cognate with the same crank angles: coupler and follower change places.
+    /// Computes the point of the cognate with the same crank angles: coupler and follower change places.
     pub fn cognate(&self) -> Option<Self> {
         let Ratios { coupler, follower, positive } = self.ratios()?;
         Point::of_ratios(self.p, self.phi, follower, coupler, !positive)
     }
 
-    /// u at crank angle phi_0 + `turn`.
+    /// Computes u at crank angle phi_0 + `turn`.
     pub fn direction(&self, class: Class, turn: f64) -> [f64; 2] {
         let [cos, sin] = [(self.phi + turn).cos(), (self.phi + turn).sin()];
         let f = (cos - self.p).hypot(sin);
@@ -113,7 +113,7 @@ impl Point {
     }
 }
 
-/// The centre of a box with what all points share.
+/// The centre of a box with the numbers that all points share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Centre {
     pub p: Ball,
@@ -165,12 +165,12 @@ pub(super) struct Motion {
     /// sin gamma, from sin^2 gamma = C_g^2 + cos^2 d sin^2 psi + sin^2 d sin^2 chi: no cancellation.
     pub sin: Ball,
     pub u: [Ball; 2],
-    /// By p, phi, g, d.
+    /// The gradient of theta by p, phi, g, d.
     pub gradient: [Ball; 4],
 }
 
 impl Motion {
-    /// At the crank angle phi_0 + turn, the turn given by its cosine and sine.
+    /// Computes the motion at the crank angle phi_0 + turn, the turn given by its cosine and sine.
     #[inline(always)]
     pub fn at(class: Class, c: &Centre, turn: [Ball; 2]) -> Self {
         let cos_phi = c.phi[0] * turn[0] - c.phi[1] * turn[1];

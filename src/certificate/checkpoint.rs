@@ -1,4 +1,4 @@
-//! A search for a certificate half done, as a file: what `certify --resume` goes on from.
+//! The checkpoint of a search for a certificate, as a file: `certify --resume` continues from it.
 //!
 //! ```text
 //! 0    8  "lwproof\0"
@@ -11,8 +11,8 @@
 //! at the end  32  SHA-256 of all before
 //! ```
 //!
-//! Numbers are the order in which boxes were made, which decides between equal bounds; so what goes on from a file looks at
-//! the same boxes in the same order as what was never broken off.
+//! Numbers are the order in which boxes were made, which decides between equal bounds; so a resumed search evaluates
+//! the same boxes in the same order as an unbroken one.
 
 use super::job::{Proof, Request};
 use super::leaves::{Nodes, OPEN, next};
@@ -30,10 +30,10 @@ const SUM: usize = 32;
 /// Bytes of an open box.
 const OPEN_BYTES: usize = 13;
 
-/// Why a search does not go on from a file.
+/// The reason for which a search does not resume from a file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResumeError {
-    /// It begins otherwise.
+    /// The file does not begin as a checkpoint does.
     #[error("this is no search for a certificate that was stopped; {REMEDY}")]
     Foreign,
     /// Another version wrote it.
@@ -41,9 +41,9 @@ pub enum ResumeError {
         "this was written by version {by}, this is {us}: the search may have changed between them; {REMEDY}"
     )]
     OtherVersion {
-        /// What wrote it.
+        /// The version that wrote it.
         by: String,
-        /// What this is.
+        /// The version of this program.
         us: String,
     },
     /// Its checksum is wrong, or it does not hold a search.
@@ -52,16 +52,16 @@ pub enum ResumeError {
     /// It is of another record or gap.
     #[error("this is of another result or another gap: give the --gap that it was begun with, or {REMEDY}")]
     Other,
-    /// There is no certificate.
+    /// The record has no certificate.
     #[error(transparent)]
     NoCertificate(#[from] NoCertificate),
 }
 
-/// What to do about a file that cannot be gone on from.
+/// The advice for a file that cannot be resumed.
 pub const REMEDY: &str = "run certify without --resume to begin anew";
 
 impl Proof {
-    /// Where the search stands.
+    /// Returns the checkpoint of the search, as the bytes of a file.
     pub fn checkpoint(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(VERSION.to_le_bytes());
@@ -85,7 +85,7 @@ impl Proof {
         bytes
     }
 
-    /// The search for the same record and request that left these bytes.
+    /// Restores the search for the same record and request that left these bytes.
     ///
     /// # Errors
     /// [`ResumeError`]: nothing is taken over.

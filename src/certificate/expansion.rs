@@ -1,30 +1,32 @@
-//! The coupler's directions over a box: first derivatives at its centre, and what they leave out.
+//! The expansion of the coupler's directions over a box: first derivatives at its centre, and a bound of the
+//! remainder.
 //!
-//! u_j = e^{i theta_j}. Less a common turn, theta_j is a linear part t_j and a rest that the second derivatives of theta
-//! over the box bound; where these are not bounded, the chord of u_j is (docs/certificate.md has each line).
+//! u_j = e^{i theta_j}. Less a common turn, theta_j is a linear part t_j and a rest that the second derivatives of
+//! theta over the box bound; if these are not bounded, the chord of u_j is (docs/certificate.md has each line).
 
 use super::ball::Ball;
 use super::bound::Cell;
 use super::chart::{Centre, Class, Motion};
 use super::target::MAX_POINTS;
 
-/// Majorants are computed in plain arithmetic from non-negative numbers and from differences that are kept above
-/// [`NEAR`] times what they are taken from; this covers their rounding.
+/// The factor that covers the rounding of majorants: they are computed in plain arithmetic from non-negative numbers
+/// and from differences that are kept above [`NEAR`] times the numbers they are taken from.
 pub(super) const LARGER: f64 = 1.0 + 1e-9;
-/// Below this f or sin gamma no second derivatives are used.
+/// The least f and sin gamma with which second derivatives are used.
 const NEAR: f64 = 1e-4;
-/// At least every slope |t_k| of a [`Moved`]: what the rounding of the sums of n products with slopes is in proportion to.
+/// An upper bound of every slope |t_k| of a [`Moved`], to which the rounding of the sums of n products with slopes is
+/// proportional.
 ///
-/// Slopes of theta are at most 2/f <= 2/[`NEAR`] = 2e4 (docs/certificate.md, Ranges); no slope above half of this is used,
-/// and a slope less their mean is at most twice as large.
+/// Slopes of theta are at most 2/f <= 2/[`NEAR`] = 2e4 (docs/certificate.md, Ranges); no slope above half of this is
+/// used, and a slope less their mean is at most twice as large.
 pub(super) const STEEPEST: f64 = 1e5;
 
-/// A difference, less what its rounding can be.
+/// Returns a difference less a bound of its rounding.
 fn less(x: f64) -> f64 {
     x - 1e-12
 }
 
-/// At least |cos g|, |sin g|, |cos d|, |sin d| over a box.
+/// Upper bounds of |cos g|, |sin g|, |cos d|, |sin d| over a box, and the greatest p.
 struct Ranges([f64; 4], f64);
 
 impl Ranges {
@@ -41,21 +43,21 @@ impl Ranges {
         )
     }
 
-    /// At least |d gamma/d phi|: both forms of sin^2 gamma >= cos^2 d sin^2 psi + sin^2 d sin^2 chi and the same with
-    /// g, with the Cauchy inequality, leave the root of cos^2 psi_phi^2 + sin^2 chi_phi^2.
+    /// Returns an upper bound of |d gamma/d phi|: both forms of sin^2 gamma >= cos^2 d sin^2 psi + sin^2 d sin^2 chi
+    /// and the same with g, with the Cauchy inequality, leave the root of cos^2 psi_phi^2 + sin^2 chi_phi^2.
     #[inline(always)]
     fn gamma_phi(&self, p: f64, f: f64) -> f64 {
         ((p + self.0[1].min(self.0[3])) / f).min(1.0 / f)
     }
 
-    /// At least how far gamma is from its value at the centre: 1 in g and d, 1/f in p.
+    /// Returns an upper bound of the distance of gamma from its value at the centre: slope 1 in g and d, 1/f in p.
     #[inline(always)]
     fn gamma(&self, f: f64, h: &[f64; 4]) -> f64 {
         h[2] + h[3] + h[0] / f + h[1] * self.gamma_phi(self.1, f)
     }
 }
 
-/// The largest of the second derivatives of theta, in absolute value, over a box; by p, phi, g, d.
+/// Returns upper bounds of the second derivatives of theta, in absolute value, over a box; by p, phi, g, d.
 #[inline(always)]
 fn second_derivatives(r: &Ranges, m: &Motion, p: f64, h: &[f64; 4], f: f64, s: f64) -> [[f64; 4]; 4] {
     let inv = 1.0 / f;
@@ -109,7 +111,7 @@ fn second_derivatives(r: &Ranges, m: &Motion, p: f64, h: &[f64; 4], f: f64, s: f
     [[pp, pphi, gp, dp], [pphi, phiphi, gphi, dphi], [gp, gphi, gg, gd], [dp, dphi, gd, dd]]
 }
 
-/// The directions over a box.
+/// The expansion of the directions u_j over a box.
 pub(super) struct Expansion {
     n: usize,
     /// Half the box's widths.
@@ -118,7 +120,7 @@ pub(super) struct Expansion {
     ranges: Ranges,
     /// The crank's own turn, which a double-crank's coupler makes with it.
     own_turn: f64,
-    /// At the centre.
+    /// The directions u_j at the centre.
     pub u: [[f64; 2]; MAX_POINTS],
     u_error: [f64; MAX_POINTS],
     gradient: [[f64; 4]; MAX_POINTS],
@@ -129,30 +131,30 @@ pub(super) struct Expansion {
     near_f: [f64; MAX_POINTS],
 }
 
-/// A turn of all u_j that a bound leaves out, with how far it goes over the box beyond the crank's own.
+/// A turn common to all u_j, which a bound leaves out, with its extent over the box beyond the crank's own turn.
 pub(super) struct CommonTurn {
     by: [f64; 4],
     beyond: f64,
 }
 
-/// How u_j moves over a box, less the common turn: within `rest` of u_j (1 + i t . x).
+/// The movement of u_j over a box, less the common turn: within `rest` of u_j (1 + i t . x).
 #[derive(Clone, Copy)]
 pub(super) struct Moved {
-    /// The slopes of theta_j; 0 where only a chord is known.
+    /// The slopes of theta_j; 0 if only a chord is known.
     pub t: [f64; 4],
-    /// What is left out.
+    /// A bound of the remainder.
     pub rest: f64,
-    /// What each axis adds to it.
+    /// The contribution of each axis to the remainder.
     pub own: [f64; 4],
 }
 
 impl Moved {
-    /// Not at all.
+    /// No movement.
     pub const NOT: Moved = Moved { t: [0.0; 4], rest: 0.0, own: [0.0; 4] };
 }
 
 impl Expansion {
-    /// For points of the crank's turns.
+    /// Expands the directions at the crank's turns over a box.
     #[inline(always)]
     pub fn new(turn: &[[Ball; 2]], class: Class, cell: &Cell) -> Self {
         let n = turn.len();
@@ -220,7 +222,7 @@ impl Expansion {
         }
     }
 
-    /// The common turn that is the mean of the gradients by these weights.
+    /// Returns the common turn that is the mean of the gradients by these weights.
     #[inline(always)]
     pub fn common_turn(&self, size_y: &[f64; MAX_POINTS]) -> CommonTurn {
         let mut common = [0.0; 4];
@@ -239,11 +241,12 @@ impl Expansion {
         CommonTurn { by, beyond }
     }
 
-    /// At least how far the rounding of the slopes' sums moves one of them over the box, where the rounding of a sum of n
-    /// products with parts of unit vectors is at most `rounding`.
+    /// Returns an upper bound of the amount by which the rounding of the slopes' sums moves one of them over the box,
+    /// if the rounding of a sum of n products with parts of unit vectors is at most `rounding`.
     ///
     /// ```text
-    /// |fl(sum_j w_j t_jk) - sum_j w_j t_jk| <= (n + 4) 2^-53 sum_j |w_j| |t_jk| <= rounding STEEPEST,   sum_j |w_j| <= sqrt n
+    /// |fl(sum_j w_j t_jk) - sum_j w_j t_jk| <= (n + 4) 2^-53 sum_j |w_j| |t_jk| <= rounding STEEPEST,
+    /// sum_j |w_j| <= sqrt n
     /// ```
     ///
     /// for the slope along axis k, which counts h_k times over the box.
@@ -253,7 +256,7 @@ impl Expansion {
         rounding * (h[0] + h[1] + h[2] + h[3]) * STEEPEST
     }
 
-    /// How u_j moves.
+    /// Returns the movement of u_j over the box, less the common turn.
     #[inline(always)]
     pub fn moved(&self, j: usize, common: &CommonTurn) -> Moved {
         let (h, ranges, p_high) = (&self.h, &self.ranges, self.p_high);
@@ -281,7 +284,7 @@ impl Expansion {
             }
         }
         if rest == flat {
-            // The chord's parts.
+            // The contributions of the axes to the chord.
             let steep = 1.0 / self.near_f[j].max(NEAR);
             let by_phi = ranges.gamma_phi(p_high, self.near_f[j].max(NEAR)) + p_high * steep;
             own = [2.0 * steep * h[0], by_phi * h[1], h[2], h[3]];
@@ -296,8 +299,8 @@ mod tests {
     use super::*;
     use crate::solve::streams::{below, stream, uniform};
 
-    /// A sum of products as it is computed here, and without rounding but in the last digit of the result: products
-    /// and sums with their errors (Dekker 1971, Knuth 1969), which are summed apart.
+    /// Returns a sum of products as it is computed here, and without rounding but in the last digit of the result:
+    /// products and sums with their errors (Dekker 1971, Knuth 1969), which are summed apart.
     fn both_sums(terms: &[(f64, f64)]) -> (f64, f64) {
         let (mut plain, mut sum, mut errors) = (0.0, 0.0, 0.0);
         for &(x, y) in terms {

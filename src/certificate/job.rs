@@ -1,4 +1,4 @@
-//! A record in, its certificate out; a recorded certificate worked out again.
+//! The certification of a record, and the recomputation of a recorded certificate.
 
 use super::chart::Class;
 use super::leaves::{Angles, Leaves, LeavesPart};
@@ -8,27 +8,27 @@ use crate::record::{Certificate, Record};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// What is wanted.
+/// The request for a certificate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// The relative gap between the best candidate and the bound, in (0, 1).
     pub gap: f64,
 }
 
-/// How far a search for a certificate is.
+/// The progress of a search for a certificate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Boxes looked at.
+    /// The number of boxes evaluated.
     pub boxes: u64,
     /// The share of the charts that is decided.
     pub decided: f64,
-    /// What is certified by now.
+    /// The lower bound certified by now.
     pub lower_bound: f64,
-    /// Relative to the best candidate.
+    /// The gap of the bound below the best candidate, relative to the candidate.
     pub gap: f64,
 }
 
-/// A search for a certificate: it can be stopped at any time, and what is certified by then is valid.
+/// A search for a certificate: it can be stopped at any time, and the bound certified by then is valid.
 #[derive(Clone, Debug)]
 pub struct Proof {
     pub(super) subject: Subject,
@@ -36,7 +36,7 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// For the task of a result.
+    /// Creates the search for the task of a result.
     ///
     /// # Errors
     /// [`NoCertificate`].
@@ -59,7 +59,7 @@ impl Proof {
         self.searches.iter().map(|(_, _, search)| search.lower_bound()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Searches on until the gap is reached, `cancel` is set or the deadline is over.
+    /// Continues the search until the gap is reached, `cancel` is set or the deadline is over.
     pub fn run(
         &mut self,
         cancel: &AtomicBool,
@@ -88,12 +88,12 @@ impl Proof {
         }
     }
 
-    /// Whether more time would change nothing: the gap is reached, or no more boxes can be kept.
+    /// Returns whether more time would change nothing: the gap is reached, or no more boxes can be kept.
     pub fn ended(&self) -> bool {
         self.searches.iter().all(|(_, _, search)| search.closed() || search.full())
     }
 
-    /// The trees of all parts: a file for a checker, whose digest is in the certificate.
+    /// Returns the trees of all parts: a file for a checker, whose digest is in the certificate.
     pub fn leaves(&self) -> Leaves {
         let part = |(class, direction, search): &(Class, f64, Search)| LeavesPart {
             class: *class,
@@ -105,12 +105,12 @@ impl Proof {
         Leaves { parts: self.searches.iter().map(part).collect() }
     }
 
-    /// What is certified by now.
+    /// Returns the certificate for the bound reached by now.
     pub fn certificate(&self) -> Certificate {
         self.certificate_of(&self.leaves())
     }
 
-    /// What is certified by [`Proof::leaves`], where these are at hand.
+    /// Returns the certificate for `leaves`, those of [`Proof::leaves`], if these are at hand.
     pub fn certificate_of(&self, leaves: &Leaves) -> Certificate {
         self.subject.certificate(leaves)
     }
@@ -118,7 +118,7 @@ impl Proof {
 
 /// Bounds the sum of squares of every linkage whose input turns fully, for the task of a result.
 ///
-/// It ends when the gap is reached, when `cancel` is set or at the deadline: what is certified by then is valid.
+/// It ends when the gap is reached, when `cancel` is set or at the deadline: the bound certified by then is valid.
 ///
 /// # Errors
 /// [`NoCertificate`].
@@ -134,11 +134,11 @@ pub fn certify(
     Ok(proof.certificate())
 }
 
-/// Works out a recorded certificate again, with as many boxes of each part as it has: the same, where it is true; `None`
-/// where `cancel` was set before.
+/// Recomputes a recorded certificate with as many boxes of each part as it has: the result is the same if the
+/// recorded one is true; `None` if `cancel` was set before the end.
 ///
 /// # Errors
-/// [`NoCertificate`] where the record has a task for which there is none.
+/// [`NoCertificate`] if the record has a task for which there is none.
 pub fn recheck(
     record: &Record,
     recorded: &Certificate,

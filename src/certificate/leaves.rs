@@ -1,4 +1,4 @@
-//! The tree of halvings as a file: what a certificate rests on, for a checker that shares nothing with the search.
+//! The branch-and-bound trees as a file: the proof behind a certificate, for a checker with arithmetic of its own.
 //!
 //! ```text
 //! 0    8  "lwleaves"
@@ -20,12 +20,13 @@ use super::bound::Cell;
 use super::chart::Class;
 use sha2::{Digest, Sha256};
 
-/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is exact.
+/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is
+/// exact.
 pub const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
-/// Where crank angles are from.
+/// The reference direction of the crank angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Angles {
-    /// Anywhere: they are increments.
+    /// None: the angles are increments.
     Increments,
     /// The ground line.
     Ground,
@@ -34,7 +35,7 @@ pub enum Angles {
 }
 
 impl Angles {
-    /// The number in a file of leaves.
+    /// Returns the number of the reference direction in a file of leaves.
     pub fn origin(&self) -> u8 {
         match self {
             Angles::Increments => 0,
@@ -44,7 +45,7 @@ impl Angles {
     }
 }
 
-/// The part of the chart with phi_0 in a range, outwards to single precision.
+/// Returns the part of the chart with phi_0 in a range, rounded outwards to single precision.
 pub fn root(phi: [f64; 2]) -> Cell {
     let mut root = ROOT;
     let [low, high] = phi.map(|end| end as f32);
@@ -57,7 +58,7 @@ pub fn root(phi: [f64; 2]) -> Cell {
 
 /// The largest file that is read.
 pub const MAX_BYTES: u64 = 1 << 30;
-/// A box that is open.
+/// The code of a box that is open.
 pub(super) const OPEN: u8 = 0;
 /// The first of the four codes of a halved box.
 pub(super) const HALVED: u8 = 4;
@@ -67,10 +68,10 @@ const VERSION: u32 = 1;
 const MAX_PARTS: u32 = 4;
 const SUM: usize = 32;
 
-/// Why a file holds no leaves.
+/// The reason for which a file holds no leaves.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LeavesError {
-    /// It begins otherwise.
+    /// The file does not begin as a file of leaves does.
     #[error("these are no leaves of a certificate: certify RESULT --leaves writes them")]
     Foreign,
     /// It is of another version.
@@ -78,7 +79,7 @@ pub enum LeavesError {
         "the leaves are of format {found}, this program reads format {VERSION}: certify RESULT --leaves writes them anew"
     )]
     Version {
-        /// What was found.
+        /// The version found.
         found: u32,
     },
     /// Its checksum is wrong, or it ends too early or too late.
@@ -89,9 +90,9 @@ pub enum LeavesError {
     /// The tree does not cover the chart.
     #[error("the leaves of part {part} do not cover the chart: {what}")]
     Uncovered {
-        /// Which part, from 1.
+        /// Number of the part, from 1.
         part: usize,
-        /// What is wrong.
+        /// The fault.
         what: &'static str,
     },
 }
@@ -113,23 +114,23 @@ impl Nodes {
         self.count += 1;
     }
 
-    /// How many.
+    /// Returns the number of nodes.
     pub fn len(&self) -> u64 {
         self.count
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no nodes.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// The codes in order.
+    /// Returns the codes in order.
     pub fn codes(&self) -> impl Iterator<Item = u8> + '_ {
         let halves = self.bytes.iter().flat_map(|byte| [byte & 0x0f, byte >> 4]);
         halves.take(usize::try_from(self.count).unwrap_or(usize::MAX))
     }
 
-    /// SHA-256 of the bytes.
+    /// Returns the SHA-256 of the bytes.
     pub fn sha256(&self) -> [u8; 32] {
         Sha256::digest(&self.bytes).into()
     }
@@ -138,17 +139,17 @@ impl Nodes {
         &self.bytes
     }
 
-    /// `count` nodes from their bytes; `None` where these are not as many, or not filled up as they should be.
+    /// Reads `count` nodes from their bytes; `None` if these are not as many, or not filled up as they should be.
     pub(super) fn from_bytes(bytes: &[u8], count: u64) -> Option<Self> {
         let whole = bytes.len() as u64 == count.div_ceil(2);
         let filled = count.is_multiple_of(2) || bytes.last().is_some_and(|last| last >> 4 == FILLER);
         (whole && filled).then(|| Nodes { bytes: bytes.to_vec(), count })
     }
 
-    /// Whether this is one whole tree of known codes: every halved box has both halves, and nothing is left over.
+    /// Checks that this is one whole tree of known codes: every halved box has both halves, and nothing is left over.
     ///
     /// # Errors
-    /// What is wrong.
+    /// The fault.
     pub fn covers(&self) -> Result<(), &'static str> {
         let mut missing = 1_u64;
         for code in self.codes() {
@@ -163,16 +164,16 @@ impl Nodes {
     }
 }
 
-/// One class in one direction.
+/// The leaves of one class in one direction of the crank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeavesPart {
     /// The class.
     pub class: Class,
     /// The direction of the crank, 1 or -1.
     pub direction: i8,
-    /// Where the crank angles are from: 0, 1 or 2 of the file.
+    /// The reference direction of the crank angles: 0, 1 or 2 as in the file.
     pub origin: u8,
-    /// No linkage of the part has a sum of squares below it.
+    /// The lower bound: no linkage of the part has a sum of squares below it.
     pub lower_bound: f64,
     /// The tree.
     pub nodes: Nodes,
@@ -201,7 +202,7 @@ impl Leaves {
         bytes
     }
 
-    /// The file.
+    /// Returns the bytes of the file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = self.body();
         let sum: [u8; SUM] = Sha256::digest(&bytes).into();
@@ -209,12 +210,12 @@ impl Leaves {
         bytes
     }
 
-    /// SHA-256 of the file without its last 32 bytes, which are this sum.
+    /// Returns the SHA-256 of the file without its last 32 bytes, which are this sum.
     pub fn sha256(&self) -> [u8; 32] {
         Sha256::digest(self.body()).into()
     }
 
-    /// The leaves of a file, each part a whole tree.
+    /// Reads the leaves of a file, each part a whole tree.
     ///
     /// # Errors
     /// [`LeavesError`].
@@ -255,7 +256,7 @@ impl Leaves {
     }
 }
 
-/// The next N bytes; `None` where there are fewer.
+/// Takes the next N bytes; `None` if there are fewer.
 pub(super) fn next<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
     let (first, others) = rest.split_first_chunk::<N>()?;
     *rest = others;

@@ -1,9 +1,9 @@
 //! Best-first branch and bound over the chart.
 //!
 //! Boxes wait in the order of their bounds. A batch of the lowest is taken, each is halved across the axis that costs
-//! its bound most, and the halves are bounded on all cores; what is decided is a leaf, what is not waits again. The
-//! lowest bound that waits is at any time a bound of everything. Batches are of one size whatever the number of
-//! threads, and their results are taken in order: the same boxes, the same digits.
+//! its bound most, and the halves are bounded on all cores; a half that is decided is a leaf, one that is not waits
+//! again. The lowest bound that waits is at any time a bound of the whole. Batches are of one size whatever the
+//! number of threads, and their results are taken in order: the same boxes, the same digits.
 
 use super::absolute::{self, Axis};
 use super::bound::{Bound, Cell, bound};
@@ -14,49 +14,50 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Boxes of a batch.
+/// The number of boxes in a batch.
 const BATCH: usize = 2048;
-/// The most boxes that wait: about a gigabyte.
+/// The largest number of boxes that wait: about a gigabyte.
 pub(super) const MAX_WAITING: usize = 20_000_000;
-/// The most boxes of a tree: about a gigabyte.
+/// The largest number of boxes of a tree: about a gigabyte.
 pub(super) const MAX_BOXES: usize = 250_000_000;
 
-/// One class and one direction of the crank, ready to be bounded.
+/// The problem for one class and one direction of the crank, ready to be bounded.
 #[derive(Clone, Debug)]
 pub struct Question {
     class: Class,
     whole: Target,
-    /// All points but one.
+    /// The targets of all points but one.
     fewer: Vec<Option<Target>>,
     turns: Vec<f64>,
-    /// No linkage with a larger |Z| is asked about.
+    /// The largest |Z| of the linkages that are covered.
     cap: f64,
-    /// Where crank angles are from.
+    /// The reference direction of the crank angles.
     angles: Angles,
 }
 
-/// Why a box needs no further look.
+/// The rule by which a box is decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Leaf {
-    /// No linkage is there: |d| > min(g, pi - g).
+    /// No linkage is in the box: |d| > min(g, pi - g), or no length of the crank fits.
     Outside = 1,
-    /// Its linkages have cognates in the other half.
+    /// The linkages of the box have cognates in the other half.
     Cognate = 2,
-    /// Its bound reaches what was asked for.
+    /// The bound of the box reaches the wanted sum of squares.
     Bounded = 3,
 }
 
-/// What a box is.
+/// The result for a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// Decided.
+    /// The box is decided.
     Leaf(Leaf),
-    /// Not decided: its bound.
+    /// The box is not decided; its bound.
     Open(Bound),
 }
 
 impl Question {
-    /// A class and a direction (+1 or -1) for points with increments of the crank in degrees.
+    /// Creates the question for a class and a direction (+1 or -1), for points with increments of the crank in
+    /// degrees.
     ///
     /// # Errors
     /// [`TargetError`].
@@ -84,7 +85,7 @@ impl Question {
         Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Increments })
     }
 
-    /// A class for points with crank angles from the x axis.
+    /// Creates the question for a class, for points with crank angles from the x axis.
     ///
     /// # Errors
     /// [`TargetError`].
@@ -111,29 +112,29 @@ impl Question {
         Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Axis(axis) })
     }
 
-    /// The same where the angles are from the ground line: phi_0 = 0.
+    /// Returns the same question with the angles from the ground line: phi_0 = 0.
     #[must_use]
     pub fn from_ground(mut self) -> Self {
         self.angles = Angles::Ground;
         self
     }
 
-    /// The whole target.
+    /// Returns the target of all points.
     pub fn target(&self) -> &Target {
         &self.whole
     }
 
-    /// The class.
+    /// Returns the class.
     pub fn class(&self) -> Class {
         self.class
     }
 
-    /// The whole chart.
+    /// Returns the box of the whole chart.
     pub fn root() -> Cell {
         ROOT
     }
 
-    /// The part of the chart that is asked about.
+    /// Returns the part of the chart that is covered.
     fn part(&self) -> Cell {
         match self.angles {
             Angles::Increments => ROOT,
@@ -186,7 +187,8 @@ impl Question {
         if best.sum_sq >= wanted { Outcome::Leaf(Leaf::Bounded) } else { Outcome::Open(best) }
     }
 
-    /// The point whose crank pin comes nearest to B, where it comes near in comparison with the box.
+    /// Returns the index of the point whose crank pin comes nearest to B, if it comes near in comparison with the
+    /// box.
     fn near(&self, cell: &Cell) -> Option<usize> {
         let (c, h) = cell.centre();
         let f = |turn: f64| ((c[1] + turn).cos() - c[0]).hypot((c[1] + turn).sin());
@@ -196,7 +198,7 @@ impl Question {
     }
 }
 
-/// Whether no point of the box has |d| <= min(g, pi - g).
+/// Returns whether no point of the box has |d| <= min(g, pi - g).
 pub fn outside(cell: &Cell) -> bool {
     let d = if cell.low[3] > 0.0 {
         cell.low[3]
@@ -209,7 +211,7 @@ pub fn outside(cell: &Cell) -> bool {
     d > cell.high[2] || d > above_pi - cell.low[2]
 }
 
-/// Whether |sin g sin d| < p cos d |cos g| on the whole box: b > c there, and the cognate has b < c.
+/// Returns whether |sin g sin d| < p cos d |cos g| on the whole box: b > c there, and the cognate has b < c.
 pub fn in_cognate_half(cell: &Cell) -> bool {
     let (c, h) = cell.centre();
     let least = |x: f64, h: f64| (x.abs() - h).max(0.0);
@@ -218,19 +220,19 @@ pub fn in_cognate_half(cell: &Cell) -> bool {
     c[3].abs() + h[3] < 1.57 && sin + 1e-12 < cell.low[0] * cos
 }
 
-/// A box that waits.
+/// An undecided box that waits to be halved.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     sum_sq: f64,
-    /// The order in which boxes were made.
+    /// The number of the box in the order in which boxes were made.
     number: u32,
-    /// Where it stands in the tree.
+    /// The index of the box in the tree.
     node: u32,
     axis: u8,
     cell: [f32; 8],
 }
 
-/// The ends of a box, which have no more digits.
+/// Returns the ends of a box in single precision; they have no more digits.
 fn in_single(cell: &Cell) -> [f32; 8] {
     let mut ends = [0.0; 8];
     for k in 0..4 {
@@ -258,12 +260,12 @@ impl Waiting {
     }
 }
 
-/// What a stopped search keeps of a box that waits.
+/// The data that a stopped search keeps of a box that waits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct OpenBox {
-    /// The order in which boxes were made.
+    /// The number of the box in the order in which boxes were made.
     pub number: u32,
-    /// Its bound.
+    /// The lower bound of the box.
     pub sum_sq: f64,
     /// The axis to halve.
     pub axis: u8,
@@ -281,37 +283,37 @@ impl PartialOrd for Waiting {
     }
 }
 impl Ord for Waiting {
-    /// The lowest bound first, then the oldest.
+    /// Orders the boxes by the lowest bound first, then the oldest.
     fn cmp(&self, other: &Self) -> Ordering {
         other.sum_sq.total_cmp(&self.sum_sq).then(other.number.cmp(&self.number))
     }
 }
 
-/// A search that can be stopped and asked at any time.
+/// A best-first branch and bound that can be stopped and asked for its bound at any time.
 #[derive(Clone, Debug)]
 pub struct Search {
     question: Question,
     wanted: f64,
     heap: BinaryHeap<Waiting>,
     decided: f64,
-    /// The boxes in the order in which they were made, two by two after the first: open, the rule of a leaf, or
-    /// [`halved`].
+    /// The codes of the boxes in the order in which they were made, two by two after the first: open, the rule of a
+    /// leaf, or [`halved`].
     tree: Vec<u32>,
 }
 
-/// A box that is halved across an axis; the first of its halves is an odd number in the tree.
+/// Returns the code of a box that is halved across an axis; the index of its first half in the tree is odd.
 fn halved(first: u32, axis: u8) -> u32 {
     u32::from(HALVED) + (first / 2 * 4 + u32::from(axis))
 }
 
-/// The first half and the axis of a halved box.
+/// Returns the index of the first half and the axis of a halved box; `None` for another box.
 fn halves(node: u32) -> Option<(u32, u8)> {
     let code = node.checked_sub(u32::from(HALVED))?;
     Some((code / 4 * 2 + 1, (code % 4) as u8))
 }
 
 impl Search {
-    /// To find out whether every sum of squares is at least `wanted`.
+    /// Creates a search to decide whether every sum of squares is at least `wanted`.
     pub fn new(question: Question, wanted: f64) -> Self {
         let whole = question.part();
         let turn = if whole.low[1] < whole.high[1] { 2.0 } else { 0.0 };
@@ -320,42 +322,42 @@ impl Search {
         Search { question, wanted, heap, decided: 0.0, tree: vec![u32::from(OPEN)] }
     }
 
-    /// At most the sum of squares of every linkage of the question: what is certified by now.
+    /// Returns the lower bound certified by now: at most the sum of squares of every linkage of the question.
     pub fn lower_bound(&self) -> f64 {
         self.heap.peek().map_or(self.wanted, |lowest| lowest.sum_sq.min(self.wanted))
     }
 
-    /// Whether everything is decided.
+    /// Returns whether every box is decided.
     pub fn closed(&self) -> bool {
         self.heap.is_empty()
     }
 
-    /// How many boxes were looked at.
+    /// Returns the number of boxes evaluated.
     pub fn boxes(&self) -> u64 {
         self.tree.len() as u64 - 1
     }
 
-    /// How many wait.
+    /// Returns the number of boxes that wait.
     pub fn waiting(&self) -> usize {
         self.heap.len()
     }
 
-    /// The share of the chart that is decided.
+    /// Returns the share of the chart that is decided.
     pub fn decided(&self) -> f64 {
         self.decided
     }
 
-    /// Whether no more boxes can wait: the search ends with what is certified.
+    /// Returns whether no more boxes can wait: the search ends with the bound certified so far.
     pub fn full(&self) -> bool {
         self.heap.len() > MAX_WAITING || self.tree.len() > MAX_BOXES
     }
 
-    /// The tree so far, each box before its halves.
+    /// Returns the tree so far, each box before its halves.
     pub fn nodes(&self) -> Nodes {
         self.walk(|_| ())
     }
 
-    /// The tree so far, each box before its halves; `open` is told where each open box stands.
+    /// Returns the tree so far, each box before its halves; `open` is called with the index of each open box.
     fn walk(&self, mut open: impl FnMut(u32)) -> Nodes {
         let mut nodes = Nodes::default();
         let mut next = vec![0_u32];
@@ -377,7 +379,7 @@ impl Search {
         nodes
     }
 
-    /// The tree so far, and what waits in the order of its open boxes.
+    /// Returns the tree so far, and the waiting boxes in the order of its open boxes.
     pub(super) fn state(&self) -> (Nodes, Vec<OpenBox>) {
         let mut by_node: Vec<&Waiting> = self.heap.iter().collect();
         by_node.sort_unstable_by_key(|waiting| waiting.node);
@@ -391,12 +393,13 @@ impl Search {
         (nodes, open)
     }
 
-    /// The sum behind [`Search::decided`].
+    /// Returns the sum behind [`Search::decided`].
     pub(super) fn decided_sum(&self) -> f64 {
         self.decided
     }
 
-    /// A search for the same as `like` that stands where [`Search::state`] says; `None` where no search stands so.
+    /// Restores a search with the question of `like` from the state that [`Search::state`] returned; `None` if no
+    /// search can be in that state.
     pub(super) fn restored(like: &Search, nodes: &Nodes, open: &[OpenBox], decided: f64) -> Option<Self> {
         nodes.covers().ok()?;
         let count = usize::try_from(nodes.len()).ok().filter(|count| *count <= MAX_BOXES + 2 * BATCH)?;
@@ -432,18 +435,18 @@ impl Search {
         Some(Search { question: like.question.clone(), wanted: like.wanted, heap, decided, tree })
     }
 
-    /// SHA-256 of the tree so far.
+    /// Returns the SHA-256 of the tree so far.
     pub fn leaves_sha256(&self) -> [u8; 32] {
         self.nodes().sha256()
     }
 
-    /// Whether some box that waits contains the point.
+    /// Returns whether some box that waits contains the point.
     pub fn waits_at(&self, point: [f64; 4]) -> bool {
         let holds = |cell: &Cell| (0..4).all(|k| (cell.low[k]..=cell.high[k]).contains(&point[k]));
         self.heap.iter().any(|waiting| holds(&waiting.cell()))
     }
 
-    /// Looks at one batch of boxes.
+    /// Evaluates one batch of boxes: halves the lowest ones, and decides or bounds the halves.
     pub fn step(&mut self) {
         let mut batch = Vec::with_capacity(BATCH);
         while batch.len() < BATCH {
@@ -452,7 +455,7 @@ impl Search {
         }
         let look = |parent: &Waiting| {
             let halves = parent.cell().split(usize::from(parent.axis));
-            // Halves meet in a number that the stored box has too.
+            // The halves are rounded as they are stored, so that they meet in one number.
             halves.map(|half| {
                 let half = packed(&half);
                 (half, self.question.look(&half, self.wanted))
@@ -479,7 +482,7 @@ impl Search {
     }
 }
 
-/// A box with its ends rounded to what is stored: both halves round their common end alike.
+/// Rounds the ends of a box to the stored precision: both halves round their common end alike.
 fn packed(cell: &Cell) -> Cell {
     let single = |x: f64| f64::from(x as f32);
     Cell { low: cell.low.map(single), high: cell.high.map(single) }

@@ -1,5 +1,5 @@
-//! What a certificate is about: the points, the crank's increments, the cap and the best sum of a record; and what a
-//! certificate says when each part is bounded.
+//! The subject of a certificate: the points, the crank's increments, the cap and the best sum of a record; and the
+//! statement of a certificate once each part is bounded.
 
 use super::absolute::{Axis, Line};
 use super::bound::Cell;
@@ -12,19 +12,20 @@ use crate::record::{Certificate, CertificatePart, Record};
 use crate::task::AngleOffset;
 use sha2::{Digest, Sha256};
 
-/// A little less than the wanted gap is searched for, so that the gap from the rounded bound is not above it.
+/// The factor of the wanted gap: a little less is searched for, so that the gap from the rounded bound is not above
+/// it.
 const WITHIN: f64 = 1.0 - 1e-9;
 
-/// Why a result has no certificate.
+/// The reason for which a result has no certificate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NoCertificate {
-    /// Nothing to compare with.
+    /// The result has no candidate to compare with.
     #[error("the result has no candidate")]
     NoCandidate,
-    /// The points are met at whatever crank angle is nearest.
+    /// The timing is free: each point is met at the nearest crank angle.
     #[error("no certificate is available for free timing: give the points crank angles (task.path.timing)")]
     FreeTiming,
-    /// The sum is not the plain one.
+    /// The objective is not the plain sum of squares.
     #[error("no certificate is available yet for weighted points or for objective = \"max-deviation\"")]
     OtherObjective,
     /// A linkage may be taken apart between two points.
@@ -32,19 +33,19 @@ pub enum NoCertificate {
         "no certificate is available where points may lie on different circuits: it needs require.circuit = \"one\""
     )]
     AnyCircuit,
-    /// The recorded problem is none.
+    /// The recorded problem is not valid.
     #[error("the recorded problem is none: {0}")]
     Problem(String),
     /// The best candidate meets the points exactly.
     #[error("the best candidate meets the points exactly: nothing can be below it")]
     Exact,
-    /// A gap that is none.
+    /// The gap is not between 0 and 1.
     #[error("the gap is {gap}; it lies between 0 and 1, such as 1e-4")]
     Gap {
-        /// What was given.
+        /// The gap that was given.
         gap: f64,
     },
-    /// The coupler point may be anywhere.
+    /// The coupler point has no limits.
     #[error("the coupler point has no limits: give design.coupler_x and coupler_y, or design.d")]
     NoLimits,
     /// The figures are too few or too much alike.
@@ -57,17 +58,17 @@ pub enum NoCertificate {
 pub struct Subject {
     /// The points.
     pub points: Vec<[f64; 2]>,
-    /// The crank's increments, degrees; its angles where these are from the ground line.
+    /// The crank's increments, degrees; its angles if these are from the ground line or the x axis.
     pub turns_deg: Vec<f64>,
-    /// Where the crank angles are from.
+    /// The reference direction of the crank angles.
     pub angles: Angles,
-    /// Which links may turn fully with the input.
+    /// The classes of linkages covered.
     pub classes: Vec<Class>,
     /// The directions of the crank: 1, -1.
     pub directions: Vec<f64>,
     /// The problem's own limit of |Z|, the distance of the coupler point from the crank pin.
     pub limit: f64,
-    /// R, a little above the limit: no linkage with a larger |Z| is asked about.
+    /// The cap R, a little above the limit: no linkage with a larger |Z| is covered.
     pub cap: f64,
     /// The sum of squares of the best candidate.
     pub best: f64,
@@ -76,7 +77,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// Of a record.
+    /// Reads the subject of a record.
     ///
     /// # Errors
     /// [`NoCertificate`].
@@ -134,22 +135,22 @@ impl Subject {
         })
     }
 
-    /// The bound that closes the gap.
+    /// Returns the bound that closes the gap.
     pub fn wanted(&self) -> f64 {
         self.best * (1.0 - self.gap * WITHIN)
     }
 
-    /// The parts of the proof: each class in each direction, in the order of the record.
+    /// Returns the parts of the proof: each class in each direction, in the order of the record.
     pub fn parts(&self) -> Vec<(Class, f64)> {
         self.classes.iter().flat_map(|class| self.directions.iter().map(|way| (*class, *way))).collect()
     }
 
-    /// How far a bound is below the best, relative.
+    /// Returns the gap of a bound below the best sum, relative to that sum.
     pub fn gap_of(&self, lower_bound: f64) -> f64 {
         (1.0 - lower_bound / self.best).max(0.0)
     }
 
-    /// SHA-256 of all figures: two subjects with one digest have the same searches.
+    /// Returns the SHA-256 of all figures: two subjects with one digest have the same searches.
     pub fn sha256(&self) -> [u8; 32] {
         let mut sum = Sha256::new();
         let points = self.points.iter().flatten();
@@ -174,7 +175,7 @@ impl Subject {
         sum.finalize().into()
     }
 
-    /// The part of the chart that is asked about.
+    /// Returns the part of the chart that is covered.
     pub fn root(&self) -> Cell {
         match self.angles {
             Angles::Increments => ROOT,
@@ -183,7 +184,7 @@ impl Subject {
         }
     }
 
-    /// What the record says when its parts have these trees.
+    /// Returns the certificate whose parts have these trees.
     pub fn certificate(&self, leaves: &Leaves) -> Certificate {
         let parts: Vec<CertificatePart> = leaves
             .parts
@@ -193,7 +194,7 @@ impl Subject {
                 direction: part.direction,
                 lower_bound: part.lower_bound,
                 closed: part.nodes.codes().all(|code| code != OPEN),
-                // The first box is the whole chart, which is not looked at.
+                // The first box is the whole chart, which is not evaluated.
                 boxes: part.nodes.len().saturating_sub(1),
                 leaves_sha256: hex(&part.nodes.sha256()),
             })
@@ -201,8 +202,8 @@ impl Subject {
         self.stated(parts, hex(&leaves.sha256()))
     }
 
-    /// What a certificate says whose parts have these bounds: everything in it but the parts themselves and the digest of
-    /// its leaves follows from them and the problem.
+    /// Returns the certificate whose parts have these bounds: everything in it but the parts themselves and the
+    /// digest of its leaves follows from them and the problem.
     pub fn stated(&self, parts: Vec<CertificatePart>, leaves_sha256: String) -> Certificate {
         let bound = parts.iter().map(|part| part.lower_bound).fold(f64::INFINITY, f64::min);
         let (points, best) = (self.points.len(), self.best);
@@ -231,7 +232,7 @@ impl Subject {
     }
 }
 
-/// The classes that hold linkages of these types; all where none does.
+/// Returns the classes that contain linkages of these types; all if none does.
 fn classes(types: &[LinkageType]) -> Vec<Class> {
     let own = |class: &Class| match class {
         Class::CrankRocker => LinkageType::CrankRocker,

@@ -1,4 +1,4 @@
-//! The target, ready for bounds: T', its length, and the directions that the linear unknowns take away.
+//! The target, prepared for bounds: T', its length, and the directions that the linear unknowns take away.
 //!
 //! With P_j = A + K e_j + Z u_j the span of 1 and e_j = e^{i (phi_0 + s Delta_j)} does not depend on phi_0. T' is the
 //! target off that span, S = |T'|^2 and tau = T'/|T'|.
@@ -6,16 +6,16 @@
 use super::absolute::{Axis, Line};
 use super::ball::Ball;
 
-/// The most points of a target: a box's figures live on the stack.
+/// The largest number of points of a target: the arrays of a box are on the stack.
 pub const MAX_POINTS: usize = 64;
 
-/// Why there is no certificate for a target.
+/// The reason for which there is no certificate for a target.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TargetError {
-    /// Too few or too many.
+    /// The number of points is too small or too large.
     #[error("{points} points: a certificate needs from 5 to {MAX_POINTS}")]
     Points {
-        /// How many.
+        /// The number of points.
         points: usize,
     },
     /// The crank angles are all alike, or a fit by A and K alone is nearly exact.
@@ -26,17 +26,17 @@ pub enum TargetError {
 /// The points of a target (all, or all but one), in one direction of the crank.
 #[derive(Clone, Debug)]
 pub struct Target {
-    /// Which points of the whole target these are.
+    /// The turn of the crank at each point, e^{i turn}.
     pub(super) turn: Vec<[Ball; 2]>,
     /// The unit vectors 1/sqrt n, e' and tau, rounded.
     pub(super) basis: [Vec<[f64; 2]>; 3],
-    /// |T'|^2.
+    /// The squared length |T'|^2.
     size_sq: Ball,
-    /// At least the distance of each rounded basis vector from the exact one.
+    /// An upper bound of the distance of each rounded basis vector from the exact one.
     basis_error: f64,
-    /// <e'/|e'|, T>: what e' takes away.
+    /// <e'/|e'|, T>: the part of T that e' takes away.
     along: [Ball; 2],
-    /// |e'|.
+    /// The length |e'|.
     crank: Ball,
     /// Whether A is known: then ' takes away nothing, and the first basis vector is 0.
     pivot_known: bool,
@@ -44,7 +44,7 @@ pub struct Target {
 
 type BallVector = Vec<[Ball; 2]>;
 
-/// <b, v> = sum conj(b_j) v_j.
+/// Computes the inner product <b, v> = sum conj(b_j) v_j.
 fn product(b: &BallVector, v: &BallVector) -> [Ball; 2] {
     b.iter().zip(v).fold([Ball::exact(0.0); 2], |[re, im], (b, v)| {
         [re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0]]
@@ -65,7 +65,7 @@ fn unit(v: &BallVector) -> BallVector {
     v.iter().map(|v| [v[0].over(norm), v[1].over(norm)]).collect()
 }
 
-/// e^{i direction angle} of an angle in degrees.
+/// Encloses e^{i direction angle} of an angle in degrees.
 fn unit_at(deg: f64, direction: f64) -> [Ball; 2] {
     // pi/180 and its rounding; the angle is first brought to at most half a turn, exactly.
     let degree = Ball { mid: std::f64::consts::PI / 180.0, rad: 4e-18 };
@@ -77,7 +77,7 @@ fn unit_at(deg: f64, direction: f64) -> [Ball; 2] {
 }
 
 impl Target {
-    /// The points with the crank's increments in degrees, in the direction of the crank (+1 or -1).
+    /// Creates the target of points with the crank's increments in degrees, in the direction of the crank (+1 or -1).
     ///
     /// # Errors
     /// [`TargetError`].
@@ -85,8 +85,8 @@ impl Target {
         Target::placed(points, turns_deg, direction, None)
     }
 
-    /// The points with crank angles from the x axis, with what is known of the pivots; turned, where the ground line is
-    /// known, so that it is the x axis.
+    /// Creates the target of points with crank angles from the x axis and the known pivots; if the ground line is
+    /// known, all is turned so that it is the x axis.
     ///
     /// # Errors
     /// [`TargetError`].
@@ -150,17 +150,17 @@ impl Target {
         Ok(Target { turn, basis, size_sq, basis_error, along, crank, pivot_known })
     }
 
-    /// How many points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.turn.len()
     }
 
-    /// Whether there are none; never.
+    /// Returns whether there are no points; always false.
     pub fn is_empty(&self) -> bool {
         self.turn.is_empty()
     }
 
-    /// At most S.
+    /// Returns a lower bound of S.
     pub fn size_sq(&self) -> f64 {
         self.size_sq.low()
     }
@@ -185,8 +185,8 @@ impl Target {
         self.pivot_known
     }
 
-    /// The sum of squares left by the best A, K and Z for given directions of the coupler, in plain arithmetic:
-    /// S - |<u', T'>|^2/|u'|^2.
+    /// Computes the sum of squares left by the best A, K and Z for given directions of the coupler, in plain
+    /// arithmetic: S - |<u', T'>|^2/|u'|^2.
     pub fn sum_sq(&self, u: &[[f64; 2]]) -> f64 {
         let mut rest = u.to_vec();
         let mut along = [0.0; 2];

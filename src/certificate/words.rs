@@ -1,4 +1,4 @@
-//! What a certificate says it covers, in words.
+//! The wording of a certificate: the linkages that it covers and those that it does not.
 
 use super::absolute::{Axis, WIDER};
 use super::chart::Class;
@@ -6,18 +6,19 @@ use super::leaves::Angles;
 use super::subject::Subject;
 use std::f64::consts::TAU;
 
-/// The words of a certificate.
+/// The wording of a certificate.
 pub(super) struct Words {
-    /// No .. whose coupler point is near enough has a sum below the bound.
+    /// The linkages of the statement "No .. whose coupler point is near enough has a sum below the bound", as a noun
+    /// phrase.
     pub linkage: String,
-    /// Where the crank angles are from.
+    /// The reference direction of the crank angles.
     pub angles: &'static str,
     pub covered: Vec<String>,
     pub not_covered: Vec<String>,
 }
 
 impl Subject {
-    /// The words for what its certificate covers.
+    /// Returns the wording of the subject's certificate.
     pub(super) fn words(&self) -> Words {
         let limit = self.limit;
         let either = if self.directions.len() == 2 { "either way" } else { "the way that is asked for" };
@@ -76,12 +77,12 @@ impl Subject {
     }
 }
 
-/// A limit as it was before it was made wider, by far more than what rounding takes away.
+/// Rounds a limit to twelve digits: the limit as it was before it was widened, by far more than the rounding.
 fn to_twelve_digits(x: f64) -> f64 {
     format!("{x:.11e}").parse().unwrap_or(x)
 }
 
-/// What is known of the pivots and lengths.
+/// Returns the wording for the known pivots, ground line and lengths.
 fn place(axis: &Axis) -> Vec<String> {
     let range = |name: &str, [low, high]: [f64; 2]| {
         let [least, most] = [low / (1.0 - WIDER), high / (1.0 + WIDER)].map(to_twelve_digits);
@@ -97,7 +98,7 @@ fn place(axis: &Axis) -> Vec<String> {
     };
     let [low, high] = axis.phi;
     let line = match (axis.angle_deg(), axis.limits_deg) {
-        // Adding 0 makes one zero of the two.
+        // Adding 0 turns -0 into 0.
         (Some(angle), _) => format!("ground line at {} degrees", angle + 0.0),
         (None, Some([from, to])) if high - low < TAU => format!("ground line at {from} to {to} degrees"),
         (None, _) => "any ground line".into(),

@@ -1,4 +1,4 @@
-//! One path in double-double, for a solution nearer to infinity than doubles can follow.
+//! Homotopy path tracking of one path in double-double, for a solution nearer to infinity than doubles can follow.
 //!
 //! Equations, elimination, predictor and step control are those of [`super::equations`] and [`super::tracker`]. A
 //! solution with links of a million times the points' extent loses twelve digits of sixteen in doubles, and with them
@@ -15,11 +15,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// [x, x - a, x*, x* - a*, y, .., tau_1 .. tau_8].
 type Unknowns = [DoubleComplex; UNKNOWNS];
 
-/// The end of a path.
+/// The end of a tracked path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Followed {
     pub(super) ending: Ending,
-    /// Rounded to doubles.
+    /// The solution at the end, rounded to doubles.
     pub(super) solution: Solution,
     /// The relative size of the last Newton step.
     pub(super) newton_step: f64,
@@ -27,14 +27,14 @@ pub(super) struct Followed {
     pub(super) speed: f64,
 }
 
-/// Unknowns below this are not asked for relative accuracy.
+/// The size below which the change of an unknown is not measured relative to it.
 const FLOOR: f64 = 1e-6;
-/// Newton steps on arrival, and before the first step.
+/// The number of Newton steps on arrival, and before the first step.
 const CORRECTIONS: usize = 4;
-/// The shortest step: t is a double.
+/// The shortest step in t, which is a double.
 const SHORTEST: f64 = 1e-14;
 
-/// Follows a solution along a segment.
+/// Tracks a solution along a segment.
 pub(super) fn follow(start: &Solution, along: &Segment, with: &Parameters, cancel: &AtomicBool) -> Followed {
     let mut z = unknowns(start).map(DoubleComplex::from);
     let mut tangent = corrected(&mut z, along, 0.0).1;
@@ -82,7 +82,7 @@ pub(super) fn follow(start: &Solution, along: &Segment, with: &Parameters, cance
     ended(Ending::OutOfSteps { t }, &z, f64::INFINITY, &tangent)
 }
 
-/// A few Newton steps at t; the relative size of the last, and dz/dt before it.
+/// Applies a few Newton steps at t; returns the relative size of the last, and dz/dt before it.
 fn corrected(z: &mut Unknowns, along: &Segment, t: f64) -> (f64, Unknowns) {
     let mut last = (f64::INFINITY, [DoubleComplex::default(); UNKNOWNS]);
     for _ in 0..CORRECTIONS {
@@ -106,7 +106,7 @@ fn predicted(nodes: &[(f64, Unknowns, Unknowns)], to: f64) -> Unknowns {
     z
 }
 
-/// The solution, rounded after the ground pivots and the rotations have been computed.
+/// Returns the solution, rounded after the ground pivots and the rotations have been computed.
 fn rounded(z: &Unknowns) -> Solution {
     let place = |i: usize| [z[i], z[LEG + i]].map(DoubleComplex::to_complex);
     let ground = |i: usize| [z[i] - z[i + 1], z[LEG + i] - z[LEG + i + 1]].map(DoubleComplex::to_complex);
@@ -129,7 +129,8 @@ fn add(z: &mut Unknowns, step: &Unknowns) {
     }
 }
 
-/// The relative change, the root of the sum of squares; T_j in place of tau_j. Not finite where a step is not.
+/// Computes the relative change, the root of the sum of squares, with T_j in place of tau_j. It is not finite if a
+/// step is not.
 fn change(step: &Unknowns, of: &Unknowns) -> f64 {
     let relative = |i: usize| {
         let z = if i < ORDER { of[i] } else { of[i] + real(1.0) };
@@ -138,7 +139,7 @@ fn change(step: &Unknowns, of: &Unknowns) -> f64 {
     (0..UNKNOWNS).map(relative).sum::<f64>().sqrt()
 }
 
-/// delta_j, delta*_j at t and how fast they move.
+/// Computes delta_j and delta*_j at t, each with its derivative by t.
 fn displaced(along: &Segment, t: f64) -> [[(DoubleComplex, DoubleComplex); STEPS]; 2] {
     let (t, left) = (real(t), real(1.0) - real(t));
     let moving = |from: &[Complex; STEPS], to: &[Complex; STEPS]| {
@@ -151,7 +152,7 @@ fn displaced(along: &Segment, t: f64) -> [[(DoubleComplex, DoubleComplex); STEPS
     [moving(delta, &to.delta), moving(starred, &to.starred)]
 }
 
-/// Newton's step at t and dz/dt.
+/// Computes Newton's step at t and dz/dt.
 fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
     let zero = DoubleComplex::default();
     let [delta, starred] = displaced(along, t);
@@ -203,7 +204,7 @@ fn magnitude(z: DoubleComplex) -> f64 {
     z.to_complex().norm_sqr()
 }
 
-/// Solves A x = b with row pivoting, rows weighed by their largest entries; x replaces b.
+/// Solves A x = b with row pivoting, rows weighted by their largest entries; x replaces b.
 #[expect(clippy::needless_range_loop, reason = "indices follow the equations")]
 fn eliminate(matrix: &mut [[DoubleComplex; ORDER]; ORDER], right: &mut [[DoubleComplex; 2]; ORDER]) {
     let mut weights = matrix.map(|row| row.into_iter().map(magnitude).fold(0.0, f64::max));

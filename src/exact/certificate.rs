@@ -3,28 +3,32 @@
 //! # Existence and uniqueness
 //!
 //! Let f be the polynomials of `exact::polynomial`, m a point of C^16, s_i > 0 weights, D the polydisc |w_i - m_i| <=
-//! rho s_i, and R, S the diagonal matrices of row scales and weights. For any matrix Y put, in the norm max_i |w_i| / s_i,
+//! rho s_i, and R, S the diagonal matrices of row scales and weights. For any matrix Y put, in the norm
+//! max_i |w_i| / s_i,
 //!
 //! ```text
 //! beta = |S Y R f(m)|          alpha = sup |I - Y R J S| over the matrices J whose entries lie in the discs of f'(D)
 //! ```
 //!
-//! If alpha < 1 and beta + alpha rho < rho, then G(w) = w - S Y R f(w) maps D into the polydisc of radius beta + alpha
-//! rho about m, which lies inside D: for w in D, f(w) - f(m) = (integral of f' along the segment) (w - m), and that
-//! integral is a matrix with entries in the discs, as discs are convex; so G(w) - m = -S Y R f(m) + S (I - Y R J S)
-//! S^-1 (w - m). In the same way |G(w) - G(v)| <= alpha |w - v|. By Banach's theorem G has exactly one fixed point in D.
-//! Y is regular, as alpha < 1 makes Y R J S regular; so the fixed points of G are the zeros of f. This is Krawczyk's
-//! test. The zero w lies within beta / (1 - alpha) of m, as |w - m| = |G(w) - m| <= beta + alpha |w - m|. No T_j of D is zero, which is checked, so the zeros are solutions of the equations in their original form.
+//! If alpha < 1 and beta + alpha rho < rho, then G(w) = w - S Y R f(w) maps D into the polydisc of radius
+//! beta + alpha rho about m, which lies inside D: for w in D, f(w) - f(m) = (integral of f' along the segment) (w -
+//! m), and that integral is a matrix with entries in the discs, as discs are convex; so G(w) - m = -S Y R f(m) + S
+//! (I - Y R J S) S^-1 (w - m). In the same way |G(w) - G(v)| <= alpha |w - v|. By Banach's theorem G has exactly
+//! one fixed point in D. Y is regular, as alpha < 1 makes Y R J S regular; so the fixed points of G are the zeros
+//! of f. This is Krawczyk's test. The zero w lies within beta / (1 - alpha) of m, as |w - m| = |G(w) - m| <= beta +
+//! alpha |w - m|. No T_j of D is zero, which is checked, so the zeros are solutions of the equations in their
+//! original form.
 //!
-//! m is a double-double, Y is any matrix of doubles, s_i and R are powers of two, and alpha and beta are upper bounds with
-//! outward rounding ([`super::discs`]). The displacements are taken as exact; of a [`Target`] they are those of the
-//! points as given: differences of doubles are double-doubles, and the scale is a power of two.
+//! m is a double-double, Y is any matrix of doubles, s_i and R are powers of two, and alpha and beta are upper bounds
+//! with outward rounding ([`super::discs`]). The displacements are taken as exact; of a [`Target`] they are those of
+//! the points as given: differences of doubles are double-doubles, and the scale is a power of two.
 //!
-//! Whether it is real: [`super::conjugation`].
+//! [`super::conjugation`] proves whether it is real.
 //!
-//! # What is not proved
+//! # Limits of the proof
 //!
-//! That no further solution exists outside the discs. That there are 1442 classes is the published generic count.
+//! It is not proved that no further solution exists outside the discs. That there are 1442 classes is the published
+//! generic count.
 //!
 //! Sources: R. Krawczyk, "Newton-Algorithmen zur Bestimmung von Nullstellen mit Fehlerschranken", Computing 4 (1969)
 //! 187-201; S. M. Rump, "Solving algebraic problems with high accuracy", in A new approach to scientific computation
@@ -42,19 +46,19 @@ use crate::linkage::Complex;
 use rayon::prelude::*;
 use thiserror::Error;
 
-/// Radii of D in weights that are tried in turn. A wide disc proves more (it is the only solution within), a narrow one
-/// is there for solutions that crowd or lie far out.
+/// The radii of D, in weights, that are tried in turn. A wide disc proves more (it is the only solution within), a
+/// narrow one is for solutions that are close together or far out.
 const RADII: [f64; 4] = [1.0 / (1_u64 << 36) as f64, 1e-15, 1e-20, 1e-25];
 
-/// A solution that moves further than this under refinement, in weights, was none to begin with.
+/// The farthest that a solution may move under refinement, in weights; one that moves further was none to begin with.
 const FARTHEST_MOVE: f64 = 1e-4;
 
-/// Above the rounding error of any one entry of Y A - I, or of Y f, relative to the sum of the terms' magnitudes: one
-/// part is a sum of at most 2 * 16 products and a one, so it errs by at most 34 u / (1 - 34 u) of the sum, and both parts
-/// by sqrt 2 times that, in all less than 49 u < 2^-47.
+/// A bound above the rounding error of any one entry of Y A - I, or of Y f, relative to the sum of the terms'
+/// magnitudes: one part is a sum of at most 2 * 16 products and a one, so it errs by at most 34 u / (1 - 34 u) of the
+/// sum, and both parts by sqrt 2 times that, in all less than 49 u < 2^-47.
 const DOT_ERROR: f64 = 1.0 / (1_u64 << 47) as f64;
 
-/// A solution with its proof: see the module.
+/// A solution with the proof that it exists and is the only one near; see the module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// The solution, refined and rounded to doubles.
@@ -62,32 +66,32 @@ pub struct Certificate {
     /// Every unknown of the exact solution lies within this of `refined`: pivots in units of the scale, rotations
     /// without unit.
     pub radius: f64,
-    /// rho: in the polydisc of this radius, in weights, about the refined point there is no other solution. The weight
-    /// of a pivot w is max(|w|, 1), that of a rotation |T_j|, up to a factor of two.
+    /// The radius rho: in the polydisc of this radius, in weights, about the refined point there is no other
+    /// solution. The weight of a pivot w is max(|w|, 1), that of a rotation |T_j|, up to a factor of two.
     pub alone_within: f64,
-    /// alpha: the proof holds for less than one.
+    /// The contraction constant alpha, less than one: a condition of the proof.
     pub contraction: f64,
-    /// Whether it is proved to be real.
+    /// The reality of the solution, as far as it is proved.
     pub reality: Reality,
-    /// How far refinement moved the solution given, in weights.
+    /// The distance by which refinement moved the solution given, in weights.
     pub moved: f64,
-    /// For each unknown a disc that holds the exact solution.
+    /// For each unknown a disc that contains the exact solution.
     enclosure: [Disc; UNKNOWNS],
 }
 
 impl Certificate {
-    /// Whether the solution is proved real.
+    /// Returns whether the solution is proved real.
     pub fn is_real(&self) -> bool {
         self.reality == Reality::Real
     }
 
-    /// Discs that hold x, y, a, b, x*, y*, a*, b*, T_1 .. T_8 of the exact solution.
+    /// Returns discs that contain x, y, a, b, x*, y*, a*, b*, T_1 .. T_8 of the exact solution.
     pub fn enclosure(&self) -> &[Disc; UNKNOWNS] {
         &self.enclosure
     }
 }
 
-/// Why a solution is not certified. It may be one all the same.
+/// The reason for which a solution is not certified. It may be a solution all the same.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Refused {
     /// Newton's method finds no solution from it.
@@ -96,23 +100,23 @@ pub enum Refused {
     /// Newton's method finds a solution, but so far away that it is another one or the one given was poor.
     #[error("Newton's method ends {moved:.1e} away: that is not the solution given")]
     Moved {
-        /// In weights.
+        /// The distance, in weights.
         moved: f64,
     },
     /// Krawczyk's test fails.
     #[error("no contraction: {residual:.1e} + {contraction:.1e} * {radius:.1e} is not below {radius:.1e}")]
     NotContained {
-        /// rho, the radius of the polydisc in weights; the last one tried.
+        /// The radius rho of the polydisc in weights; the last one tried.
         radius: f64,
-        /// beta, the distance of the midpoint's image from the midpoint.
+        /// The distance beta of the midpoint's image from the midpoint.
         residual: f64,
-        /// alpha, a bound of |I - Y J|.
+        /// The bound alpha of |I - Y J|.
         contraction: f64,
     },
     /// The polydisc allows a rotation of zero, or its radius is no positive number.
     #[error("a polydisc of radius {radius:.1e} is no ground for a proof")]
     Radius {
-        /// In weights.
+        /// The radius, in weights.
         radius: f64,
     },
 }
@@ -126,13 +130,15 @@ pub fn certify(target: &Target, given: &Solution) -> Result<Certificate, Refused
     certify_exact(&target.into(), given, true)
 }
 
-/// The same for many, on all threads of the pool, in the order given: the digits do not depend on the threads.
+/// Certifies many solutions, as [`certify`], on all threads of the pool, in the order given: the digits do not depend
+/// on the threads.
 pub fn certify_all(target: &Target, given: &[Solution]) -> Vec<Result<Certificate, Refused>> {
     let displacements = ExactDisplacements::from(target);
     given.par_iter().map(|solution| certify_exact(&displacements, solution, true)).collect()
 }
 
-/// The same for displacements of any kind, which are taken as exact. Nothing is said of conjugates.
+/// Certifies a solution, as [`certify`], for displacements of any kind, which are taken as exact. Its reality is left
+/// undecided.
 ///
 /// # Errors
 ///
@@ -144,7 +150,8 @@ pub fn certify_displacements(
     certify_exact(&displacements.into(), given, false)
 }
 
-/// The proof alone, without refinement, in the polydisc of `radius` (in weights) about `midpoint`.
+/// Proves existence and uniqueness alone, without refinement, in the polydisc of `radius` (in weights) about
+/// `midpoint`.
 ///
 /// # Errors
 ///
@@ -169,7 +176,7 @@ fn certify_exact(
     prove(displacements, &midpoint, &RADII, real_points).map(|proved| Certificate { moved, ..proved })
 }
 
-/// Krawczyk's test at each radius in turn until one holds.
+/// Applies Krawczyk's test at each radius in turn until one holds.
 fn prove(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -204,7 +211,7 @@ fn prove(
     Err(refusal)
 }
 
-/// rho is positive, and |T_j| > rho s_j for all j.
+/// Returns whether rho is positive, and |T_j| > rho s_j for all j.
 fn no_rotation_is_zero(midpoint: &Midpoint, weights: &[f64; UNKNOWNS], radius: f64) -> bool {
     // The parts of lo are at most 2^-53 of those of hi, so |hi + lo| >= |larger part of hi| / 2 > rho s.
     radius > 0.0
@@ -214,7 +221,7 @@ fn no_rotation_is_zero(midpoint: &Midpoint, weights: &[f64; UNKNOWNS], radius: f
         })
 }
 
-/// At least |S Y R f(m)| in weights: max_i |(Y R f(m))_i|.
+/// Returns an upper bound of |S Y R f(m)| in weights: max_i |(Y R f(m))_i|.
 fn residual_bound(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -237,7 +244,8 @@ fn residual_bound(
     (0..UNKNOWNS).map(|i| Upper::magnitude(near[i]) + spread[i]).fold(Upper::ZERO, Upper::max)
 }
 
-/// At least |I - Y R J S| for every J with entries in the discs of f'(D): the largest sum over a row.
+/// Returns an upper bound of |I - Y R J S| for every J with entries in the discs of f'(D): the largest sum over a
+/// row.
 fn contraction_bound(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -247,7 +255,8 @@ fn contraction_bound(
 ) -> Upper {
     let discs: [Disc; UNKNOWNS] =
         std::array::from_fn(|i| Disc::about(midpoint[i], Upper::exactly(radius * linear.weights[i])));
-    // -I + Y A at the discs' midpoints, and for each row of A what its entries may differ from there.
+    // -I + Y A at the discs' midpoints, and for each row of A a bound of how far its entries may differ from there,
+    // added up.
     let mut defect = -Square::identity();
     let mut spread = [Upper::ZERO; UNKNOWNS];
     for (row, link, j) in equations() {
@@ -276,7 +285,7 @@ fn contraction_bound(
         .fold(Upper::ZERO, Upper::max)
 }
 
-/// What follows once the test holds: the solution lies within `error` (in weights) of the midpoint.
+/// Builds the certificate once the test holds: the solution lies within `error` (in weights) of the midpoint.
 fn certificate(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,

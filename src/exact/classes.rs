@@ -1,4 +1,4 @@
-//! The six images of a solution, and which solutions are images of one another.
+//! The six images of a solution, and the grouping of solutions into classes of images.
 //!
 //! The equations keep their form when the legs change places, (x, a) <-> (y, b), and when a linkage is replaced by a
 //! Roberts cognate,
@@ -7,19 +7,19 @@
 //! (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a),    T_j -> (x T_j + delta_j - a) / (x - a)
 //! ```
 //!
-//! starred alike: a group of order six. All six stand on two of the same three foci a, b, c = (b x - a y) / (x - y). At a
-//! focus a stand two pins, x and in another cognate a - x; their product x (a - x) belongs to the focus. So the set of
-//! the three (focus, product), with their starred twins, tells a class. The foci alone do so in general: linkages that
-//! are mirror images, of foci on a symmetric target's axis, share them.
+//! starred alike: a group of order six. All six have two of the same three foci a, b, c = (b x - a y) / (x - y) as
+//! ground pivots. To a focus a belong two pins, x and in another cognate a - x; their product x (a - x) belongs to
+//! the focus. So the set of the three (focus, product), with their starred twins, identifies a class. The foci alone
+//! do so in general: linkages that are mirror images, of foci on a symmetric target's axis, share them.
 
 use super::target::{Displacements, STEPS, Solution};
 use crate::linkage::Complex;
 
-/// The orders in which three foci can stand.
+/// The permutations of three foci.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 impl Solution {
-    /// The same linkage with its legs named the other way round.
+    /// Returns the same linkage with its legs exchanged.
     pub fn swapped(&self) -> Solution {
         let swap = |[one, other]: [Complex; 2]| [other, one];
         Solution {
@@ -31,8 +31,8 @@ impl Solution {
         }
     }
 
-    /// A Roberts cognate. Three times in a row give the solution again; not finite where a leg or the coupler has no
-    /// length.
+    /// Returns a Roberts cognate. Applied three times it gives the solution again; it is not finite if a leg or the
+    /// coupler has no length.
     pub fn cognate(&self, at: &Displacements) -> Solution {
         let image = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| {
             let coupler = (x - y).inv();
@@ -47,14 +47,14 @@ impl Solution {
         Solution { pins, grounds, pins_starred, grounds_starred, rotations }
     }
 
-    /// The six solutions of the class: this one, its two cognates, and the three with their legs swapped.
+    /// Returns the six solutions of the class: this one, its two cognates, and the three with their legs swapped.
     pub fn images(&self, at: &Displacements) -> [Solution; 6] {
         let first = self.cognate(at);
         let second = first.cognate(at);
         [*self, first, second, self.swapped(), first.swapped(), second.swapped()]
     }
 
-    /// The conjugate solution: of the same target where that is real.
+    /// Returns the conjugate solution, which is one of the same target if that is real.
     pub fn conjugate(&self) -> Solution {
         let conj = |pair: [Complex; 2]| pair.map(|z| z.conj());
         Solution {
@@ -66,7 +66,7 @@ impl Solution {
         }
     }
 
-    /// The solution when delta is multiplied by `by` and delta* by `by_starred`.
+    /// Returns the solution when delta is multiplied by `by` and delta* by `by_starred`.
     pub fn in_other_units(&self, by: Complex, by_starred: Complex) -> Solution {
         Solution {
             pins: self.pins.map(|z| z * by),
@@ -77,14 +77,14 @@ impl Solution {
         }
     }
 
-    /// The three foci, each with its starred twin: the two ground pivots and the third of the cognates.
+    /// Returns the three foci, each with its starred twin: the two ground pivots and the third of the cognates.
     pub fn foci(&self) -> [[Complex; 2]; 3] {
         let third = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| (b * x - a * y) / (x - y);
         let (a, b) = (self.grounds, self.grounds_starred);
         [[a[0], b[0]], [a[1], b[1]], [third(self.pins, a), third(self.pins_starred, b)]]
     }
 
-    /// x (a - x) for the pins x that stand at the foci a, in their order, each with its starred twin.
+    /// Returns x (a - x) for the pins x at the foci a, in the order of the foci, each with its starred twin.
     fn products(&self) -> [[Complex; 2]; 3] {
         let of = |[x, y]: [Complex; 2], [a, b]: [Complex; 2]| {
             let coupler = (x - y).inv();
@@ -95,8 +95,8 @@ impl Solution {
         std::array::from_fn(|i| [one[i], starred[i]])
     }
 
-    /// Whether another solution is an image of this one, to rounding: foci within `tolerance` of one another, each
-    /// against 1 + its size, in the same order the products of the pins within the root of it.
+    /// Returns whether another solution is an image of this one, to rounding: foci within `tolerance` of one another,
+    /// each relative to 1 + its size, and in the same order the products of the pins within the root of it.
     pub fn is_in_class_of(&self, other: &Solution, tolerance: f64) -> bool {
         let (one, two) = (self.foci(), other.foci());
         let (products, others) = (self.products(), other.products());
@@ -105,7 +105,7 @@ impl Solution {
                 (0..2).all(|k| {
                     let (a, b) = (one[i][k], two[order[i]][k]);
                     let (n, m) = (products[i][k], others[order[i]][k]);
-                    // A product's rounding is that of a square of what is subtracted.
+                    // The rounding of a product is that of a square of the numbers subtracted.
                     let scale = 1.0 + n.norm().min(m.norm()) + a.norm_sqr();
                     distance(a, b) <= tolerance && (n - m).norm() <= tolerance.sqrt() * scale
                 })
@@ -113,13 +113,13 @@ impl Solution {
         })
     }
 
-    /// Whether every number is finite.
+    /// Returns whether every number is finite.
     pub fn is_finite(&self) -> bool {
         super::equations::unknowns(self).iter().all(|z| z.re.is_finite() && z.im.is_finite())
     }
 
-    /// How far the solution is from a real linkage: the largest of |x* - conj x| and so on, and of |1 - |T_j||, each
-    /// against 1 + its size.
+    /// Returns the distance of the solution from a real linkage: the largest of |x* - conj x| and so on, relative to
+    /// 1 + its size, and of |1 - |T_j||.
     pub fn imaginary_part(&self) -> f64 {
         let pair = |one: [Complex; 2], starred: [Complex; 2]| {
             (0..2).map(|i| distance(one[i].conj(), starred[i])).fold(0.0, f64::max)
@@ -129,13 +129,13 @@ impl Solution {
     }
 }
 
-/// |one - other| against 1 + the smaller size; NaN counts as far.
+/// Returns |one - other| relative to 1 + the smaller size; infinity in place of NaN.
 fn distance(one: Complex, other: Complex) -> f64 {
     let distance = (one - other).norm() / (1.0 + one.norm().min(other.norm()));
     if distance.is_nan() { f64::INFINITY } else { distance }
 }
 
-/// A number that the images of a solution share and that stays of moderate size when foci go to infinity:
+/// Computes a number that the images of a solution share and that stays of moderate size when foci go to infinity:
 /// sum 1 / (focus - z0) over the foci and their twins, z0 in general position.
 pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
     const POLES: [Complex; 2] =
@@ -143,9 +143,9 @@ pub(super) fn key(foci: &[[Complex; 2]; 3]) -> f64 {
     foci.iter().map(|[a, b]| ((a - POLES[0]).inv() + (b - POLES[1]).inv()).re).sum()
 }
 
-/// Groups of equal classes: for each solution the number of the first one of its class.
+/// Groups solutions by class: returns for each the index of the first one of its class.
 ///
-/// Two are of one class where [`Solution::is_in_class_of`] says so. The answer does not depend on more than the
+/// Two are of one class if [`Solution::is_in_class_of`] returns true. The answer does not depend on more than the
 /// solutions and their order.
 pub fn first_of_class(solutions: &[Solution], tolerance: f64) -> Vec<usize> {
     let keys: Vec<f64> = solutions.iter().map(|solution| key(&solution.foci())).collect();

@@ -3,24 +3,25 @@
 //! For real points (delta*_j = conj(delta_j)) the map
 //!
 //! ```text
-//! sigma: (x, y, a, b, x*, y*, a*, b*, T_j) -> (conj x*, conj y*, conj a*, conj b*, conj x, conj y, conj a, conj b, 1 / conj T_j)
+//! sigma: (x, y, a, b, x*, y*, a*, b*, T_j)
+//!     -> (conj x*, conj y*, conj a*, conj b*, conj x, conj y, conj a, conj b, 1 / conj T_j)
 //! ```
 //!
 //! takes solutions to solutions: it conjugates each equation and swaps its two factors. Its fixed points are the real
 //! linkages: x* = conj(x), .., |T_j| = 1. The exchange of the links, e: (x, a) <-> (y, b), and Roberts' map
 //!
 //! ```text
-//! r: (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a)      T_j -> (x T_j + delta_j - a) / (x - a)
+//! r: (x, a, y, b) -> ((x - a) y / (x - y), (b x - a y) / (x - y), a - x, a)    T_j -> (x T_j + delta_j - a) / (x - a)
 //! ```
 //!
-//! (starred alike) take solutions to the others of their class, and sigma commutes with both. So sigma maps a class to a
-//! class, and if to itself, then as one of the six; being an involution, as the identity or as one of the three exchanges
-//! e, e r, e r^2 = r e. The identity: the six solutions are real. An exchange: a curve that is real, as its class is, drawn by
-//! linkages that are not.
+//! (starred alike) take solutions to the others of their class, and sigma commutes with both. So sigma maps a class
+//! to a class, and if to itself, then as one of the six; being an involution, as the identity or as one of the three
+//! exchanges e, e r, e r^2 = r e. The identity: the six solutions are real. An exchange: a curve that is real, as its
+//! class is, drawn by linkages that are not.
 //!
-//! Let w be the solution, known to lie in an enclosure, and alone in the polydisc D. If the image of the enclosure under
-//! sigma, sigma e, sigma e r or sigma r e lies in D, the image of w is a solution in D, so it is w. If one component of the image is apart
-//! from that component of the enclosure, w is certainly not fixed.
+//! Let w be the solution, known to lie in an enclosure, and to be the only solution in the polydisc D. If the image
+//! of the enclosure under sigma, sigma e, sigma e r or sigma r e lies in D, the image of w is a solution in D, so it
+//! is w. If one component of the image is disjoint from that component of the enclosure, w is certainly not fixed.
 
 use super::discs::{Disc, Upper};
 use super::double_discs::DoubleDisc;
@@ -29,7 +30,8 @@ use super::refinement::Midpoint;
 use super::target::STEPS;
 use crate::linkage::Complex;
 
-/// What conjugation does to a solution: found to rounding in a [`super::Class`], proved in a [`super::Certificate`].
+/// The effect of conjugation on a solution: found to rounding in a [`super::Class`], proved in a
+/// [`super::Certificate`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reality {
     /// Real: a linkage of the plane, and so are its cognates.
@@ -45,7 +47,7 @@ pub enum Reality {
 /// A disc for each unknown.
 type Enclosure = [DoubleDisc; UNKNOWNS];
 
-/// What a map does to the solution, as far as it is proved.
+/// The image of the solution under a map, as far as it is proved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Image {
     Itself,
@@ -53,7 +55,7 @@ enum Image {
     Unknown,
 }
 
-/// The solution lies within `errors` of the midpoint and is alone within `radii`.
+/// Decides the reality of the solution that lies within `errors` of the midpoint and is the only one within `radii`.
 pub(super) fn reality(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -85,7 +87,7 @@ pub(super) fn reality(
     }
 }
 
-/// From discs that hold (image - midpoint).
+/// Compares an image with the solution, from discs that contain (image - midpoint).
 fn image(offsets: &[Disc; UNKNOWNS], errors: &[Upper; UNKNOWNS], radii: &[f64; UNKNOWNS]) -> Image {
     let all = || (0..UNKNOWNS).map(|i| (offsets[i], errors[i], radii[i]));
     if all().all(|(offset, _, radius)| offset.magnitude().get() <= radius) {
@@ -98,17 +100,18 @@ fn image(offsets: &[Disc; UNKNOWNS], errors: &[Upper; UNKNOWNS], radii: &[f64; U
     }
 }
 
-/// e of the discs.
+/// Applies the exchange e of the links to the discs.
 fn exchange(of: &Enclosure) -> Enclosure {
     std::array::from_fn(|i| of[twin(i, 0, true)])
 }
 
-/// The place of an unknown's twin (`starred` = 4) or its own (0), on the other link if these are exchanged.
+/// Returns the index of an unknown's twin (`starred` = 4) or its own (0), on the other link if these are exchanged.
 fn twin(i: usize, starred: usize, exchanged: bool) -> usize {
     if i < PIVOTS { i ^ starred ^ usize::from(exchanged) } else { i }
 }
 
-/// sigma of the discs, or sigma e, less the midpoint.
+/// Applies sigma to the discs, or sigma e, and subtracts the midpoint; `None` if the disc of a rotation cannot be
+/// inverted.
 fn conjugate_offsets(of: &Enclosure, midpoint: &Midpoint, exchanged: bool) -> Option<[Disc; UNKNOWNS]> {
     let mut offsets = [Disc::point(Complex::ZERO); UNKNOWNS];
     for (i, offset) in offsets.iter_mut().enumerate() {
@@ -119,7 +122,7 @@ fn conjugate_offsets(of: &Enclosure, midpoint: &Midpoint, exchanged: bool) -> Op
     Some(offsets)
 }
 
-/// r of the discs; `None` where x = y or x = a cannot be excluded.
+/// Applies Roberts' map r to the discs; `None` if x = y or x = a cannot be excluded.
 fn roberts(displacements: &ExactDisplacements, of: &Enclosure) -> Option<Enclosure> {
     let mut image = *of;
     for first in [0, 4] {

@@ -8,22 +8,22 @@ use crate::linkage::dispatch::vectorised;
 use crate::linkage::lane::{F64x8, LANES};
 use rayon::prelude::*;
 
-/// A solution corrected at fixed displacements.
+/// A solution corrected by Newton's method at fixed displacements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corrected {
-    /// After the last Newton step.
+    /// The solution after the last Newton step.
     pub solution: Solution,
     /// The relative size of the last Newton step.
     pub newton_step: f64,
-    /// The relative size of dz/dt along `velocity`: infinite or huge where the solution is singular.
+    /// The relative size of dz/dt along `velocity`: infinite or huge if the solution is singular.
     pub speed: f64,
-    /// The smallest pivot of the elimination: near rounding where the solution is singular.
+    /// The smallest pivot of the elimination: near rounding if the solution is singular.
     pub pivot: f64,
-    /// The largest modulus of its unknowns.
+    /// The largest modulus of the solution's unknowns.
     pub size: f64,
 }
 
-/// Newton steps at t = 1 of the segment: at most `most`, ended when the last is below 1e-15 for all or grows no more.
+/// Applies `most` Newton steps, at least one, at t = 1 of the segment.
 pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected> {
     let correct = |chunk: &[Solution]| {
         vectorised(|| {

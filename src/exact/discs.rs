@@ -8,9 +8,9 @@
 //! discs. With u = 2^-53 the rounding of the midpoints is covered by
 //!
 //! ```text
-//! |fl(z + w) - (z + w)| <= u |fl(z + w)|                       each part is rounded once; sums do not underflow
-//! |fl(z w) - z w|       <= 4 u |z| |w| + 2^-1022               each part: two products, one difference, so at most
-//!                                                              u (|z||w| + |z||w| (1 + u)^2) + 2^-1073; sqrt 2 for both
+//! |fl(z + w) - (z + w)| <= u |fl(z + w)|                      each part is rounded once; sums do not underflow
+//! |fl(z w) - z w|       <= 4 u |z| |w| + 2^-1022              each part: two products, one difference, so at most
+//!                                                             u (|z||w| + |z||w| (1 + u)^2) + 2^-1073; sqrt 2 for both
 //! ```
 //!
 //! Source: I. Gargantini, P. Henrici, "Circular arithmetic and the determination of polynomial zeros", Numer. Math. 18
@@ -23,7 +23,7 @@ use std::ops::{Add, Mul, Sub};
 /// The unit roundoff, 2^-53.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
-/// At least the exact value that it stands for; never negative.
+/// An upper bound: at least the exact value that it stands for, never negative.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub struct Upper(f64);
 
@@ -31,13 +31,13 @@ impl Upper {
     /// Zero, exactly.
     pub const ZERO: Upper = Upper(0.0);
 
-    /// `value` itself, which is exact; its magnitude if it is negative.
+    /// Returns the bound `value`, which is exact; its magnitude if it is negative.
     #[inline(always)]
     pub const fn exactly(value: f64) -> Self {
         Upper(value.abs())
     }
 
-    /// At least |z|.
+    /// Returns an upper bound of |z|.
     #[inline(always)]
     pub fn magnitude(z: Complex) -> Self {
         let square =
@@ -45,25 +45,25 @@ impl Upper {
         Upper(square.0.sqrt().next_up())
     }
 
-    /// At least |z|.
+    /// Returns an upper bound of |z|.
     #[inline(always)]
     pub fn magnitude_of_double(z: DoubleComplex) -> Self {
         Upper::magnitude(z.to_complex()) + Upper::magnitude(z.rest())
     }
 
-    /// At least the quotient by a positive number that is a lower bound of the divisor.
+    /// Returns an upper bound of the quotient, by a positive number that is a lower bound of the divisor.
     #[inline(always)]
     pub(super) fn over(self, least: f64) -> Self {
         Upper((self.0 / least).next_up())
     }
 
-    /// The larger one; not-a-number wins, as it must not be lost.
+    /// Returns the larger one; NaN wins, as it must not be lost.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         if self.0.is_nan() || self.0 > other.0 { self } else { other }
     }
 
-    /// The bound.
+    /// Returns the bound.
     #[inline(always)]
     pub const fn get(self) -> f64 {
         self.0
@@ -96,25 +96,25 @@ pub struct Disc {
 }
 
 impl Disc {
-    /// The disc of one number.
+    /// Returns the disc of one number, of radius zero.
     #[inline(always)]
     pub fn point(mid: Complex) -> Self {
         Disc { mid, radius: Upper::ZERO }
     }
 
-    /// A disc that contains the disc of `radius` about `mid`.
+    /// Returns a disc that contains the disc of `radius` about `mid`.
     #[inline(always)]
     pub fn about(mid: DoubleComplex, radius: Upper) -> Self {
         Disc { mid: mid.to_complex(), radius: Upper::magnitude(mid.rest()) + radius }
     }
 
-    /// At least |z| for every member z.
+    /// Returns an upper bound of |z| for every member z.
     #[inline(always)]
     pub fn magnitude(&self) -> Upper {
         Upper::magnitude(self.mid) + self.radius
     }
 
-    /// At most |z| for every member z; zero when the disc contains or all but contains zero.
+    /// Returns a lower bound of |z| for every member z; zero when the disc contains or all but contains zero.
     pub(super) fn least_magnitude(&self) -> f64 {
         let square = |x: f64| (x * x).next_down().max(0.0);
         let sum = (square(self.mid.re) + square(self.mid.im)).next_down().max(0.0);
@@ -122,13 +122,13 @@ impl Disc {
         if least.is_finite() { least.next_down().max(0.0) } else { 0.0 }
     }
 
-    /// The disc of the conjugates.
+    /// Returns the disc of the conjugates.
     #[inline(always)]
     pub fn conj(self) -> Self {
         Disc { mid: self.mid.conj(), radius: self.radius }
     }
 
-    /// The disc times a positive power of two.
+    /// Returns the disc times a positive power of two.
     #[inline(always)]
     pub fn times_power_of_two(self, factor: f64) -> Self {
         // Only underflow is inexact: by less than 2^-1073 in both parts together.
@@ -136,9 +136,10 @@ impl Disc {
         Disc { mid: self.mid * factor, radius }
     }
 
-    /// 1/z for every member z; `None` when the disc contains or all but contains zero.
+    /// Returns a disc that contains 1/z for every member z; `None` when the disc contains or all but contains zero.
     ///
-    /// With c near 1/mid and z = mid + e: 1/z - c = (1 - c mid - c e) / z, so |1/z - c| <= (|1 - c mid| + |c| r) / least
+    /// With c near 1/mid and z = mid + e: 1/z - c = (1 - c mid - c e) / z, so |1/z - c| <= (|1 - c mid| + |c| r) /
+    /// least
     /// |z|. The residual is evaluated in discs, so nothing is asked of c.
     pub fn inverse(self) -> Option<Self> {
         let least = self.least_magnitude();
@@ -154,7 +155,7 @@ impl Disc {
         })
     }
 
-    /// Whether the discs have certainly no number in common.
+    /// Returns whether the discs certainly have no number in common.
     pub fn is_disjoint(&self, other: &Disc) -> bool {
         let between = Disc { mid: self.mid, radius: self.radius + other.radius } - Disc::point(other.mid);
         between.least_magnitude() > 0.0
@@ -197,7 +198,7 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
-    /// A disc and a member near its rim, as a double-double: what is left between them is far above 2^-100.
+    /// Generates a disc and a member near its rim, as a double-double: what is left between them is far above 2^-100.
     fn disc_with_member() -> impl Strategy<Value = (Disc, DoubleComplex)> {
         let part = (-1.0..1.0_f64, -12..12_i32).prop_map(|(x, e)| x * 2.0_f64.powi(e));
         (part.clone(), part, prop_oneof![Just(-200), -60..-1_i32], 0.0..TAU).prop_map(
@@ -210,7 +211,7 @@ mod tests {
         )
     }
 
-    /// Whether z lies in the disc, by double-double arithmetic: |z - mid|^2 <= radius^2.
+    /// Returns whether z lies in the disc, by double-double arithmetic: |z - mid|^2 <= radius^2.
     fn holds(disc: Disc, z: DoubleComplex) -> bool {
         let off = z - DoubleComplex::from(disc.mid);
         let square = off.re * off.re + off.im * off.im;

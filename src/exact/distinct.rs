@@ -1,27 +1,28 @@
 //! The proof that certified solutions belong to different classes.
 //!
-//! The three foci of a coupler curve are the ground pivots a, b and that of the third Roberts cognate, c = (b x - a y) /
-//! (x - y). The six solutions of a class (three cognates, two labels each) only permute them: exchanging the links
-//! exchanges a and b, and Roberts' map takes (a, b, c) to (c, a, b). So their symmetric functions
+//! The three foci of a coupler curve are the ground pivots a, b and that of the third Roberts cognate,
+//! c = (b x - a y) / (x - y). The six solutions of a class (three cognates, two labels each) only permute them:
+//! exchanging the links exchanges a and b, and Roberts' map takes (a, b, c) to (c, a, b). So their symmetric
+//! functions
 //!
 //! ```text
 //! a + b + c        a b + b c + c a        a b c        and the starred ones
 //! ```
 //!
-//! are the same at all six. So is the sum over the foci of the products of the two pins that cognates have there, with p =
-//! (x - a) y / (x - y) the pin at c:
+//! are the same at all six. So is the sum over the foci of the products of the two pins that cognates have there,
+//! with p = (x - a) y / (x - y) the pin at c:
 //!
 //! ```text
 //! x (a - x) + y (b - y) + p (c - p)        and the starred one
 //! ```
 //!
-//! It tells apart linkages that are mirror images of one another and have their foci on the axis. Two solutions whose enclosures give disjoint discs for one of these functions belong to
-//! different classes.
+//! It distinguishes linkages that are mirror images of one another and have their foci on the axis. Two solutions
+//! whose enclosures give disjoint discs for one of these functions belong to different classes.
 
 use super::certificate::Certificate;
 use super::discs::Disc;
 
-/// Discs of these eight functions; `None` where x - y may be zero and c is not defined.
+/// Discs of these eight functions; `None` if x - y may be zero, so that c is not defined.
 type Invariants = Option<[Disc; 8]>;
 
 fn invariants(certificate: &Certificate) -> Invariants {
@@ -36,8 +37,8 @@ fn invariants(certificate: &Certificate) -> Invariants {
     Some([s1, s2, s3, s4, t1, t2, t3, t4])
 }
 
-/// The pairs (first < second, in order) that are *not* proved to be of different classes. An empty answer is the proof
-/// that all classes differ.
+/// Returns the pairs (first < second, in order) that are *not* proved to be of different classes. An empty answer is
+/// the proof that all classes differ.
 ///
 /// Sorted along the real part of a + b + c and swept: only pairs whose intervals there overlap are compared further, so
 /// the cost is O(n log n) plus these pairs. A solution whose third focus cannot be bounded is paired with all others.
@@ -65,7 +66,7 @@ pub fn not_proved_distinct(certificates: &[Certificate]) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// An interval that holds the real part of the first invariant.
+/// Returns an interval that contains the real part of the first invariant.
 fn interval(of: &Invariants) -> (f64, f64) {
     let bounds = of.as_ref().map(|[sum, ..]| {
         let (mid, radius) = (sum.mid.re, sum.radius.get());

@@ -1,8 +1,9 @@
 //! Discs with double-double midpoints: enclosures that stay narrow where differences cancel.
 //!
-//! As [`super::discs`], with the rounding of the midpoints below e = [`RELATIVE_ERROR`] an operation: a sum errs by at most
-//! e |z + w|, a product by at most 4 e |z| |w| (two products of parts and their sum, both parts), and by less than 2^-1022
-//! where parts underflow. Twice that covers that the magnitude of the rounded result stands for the exact one.
+//! As [`super::discs`], with the rounding of the midpoints below e = [`RELATIVE_ERROR`] an operation: a sum errs by
+//! at most e |z + w|, a product by at most 4 e |z| |w| (two products of parts and their sum, both parts), and by less
+//! than 2^-1022 where parts underflow. Twice that also covers the use of the rounded result's magnitude in place of
+//! the exact one's.
 
 use super::discs::{Disc, Upper};
 use super::double_double::{DoubleComplex, RELATIVE_ERROR};
@@ -19,22 +20,23 @@ pub struct DoubleDisc {
 }
 
 impl DoubleDisc {
-    /// The disc of one number.
+    /// Returns the disc of one number, of radius zero.
     pub fn point(mid: DoubleComplex) -> Self {
         DoubleDisc { mid, radius: Upper::ZERO }
     }
 
-    /// A disc of doubles around it.
+    /// Returns a disc of doubles that contains it.
     pub fn rounded(&self) -> Disc {
         Disc::about(self.mid, self.radius)
     }
 
-    /// The disc of the conjugates.
+    /// Returns the disc of the conjugates.
     pub fn conj(self) -> Self {
         DoubleDisc { mid: self.mid.conj(), radius: self.radius }
     }
 
-    /// 1/z for every member z; `None` when the disc contains or all but contains zero. As [`Disc::inverse`].
+    /// Returns a disc that contains 1/z for every member z; `None` when the disc contains or all but contains zero.
+    /// As [`Disc::inverse`].
     pub fn inverse(self) -> Option<Self> {
         let least = self.rounded().least_magnitude();
         let one = DoubleComplex::from(Complex::ONE);
@@ -79,7 +81,7 @@ mod tests {
     use super::*;
     use crate::solve::streams::{Stream, stream, uniform};
 
-    /// A disc and a member just within its rim.
+    /// Draws a disc and a member just within its rim.
     fn disc_with_member(stream: &mut Stream) -> (DoubleDisc, DoubleComplex) {
         let mut part = || uniform(stream, -1.0, 1.0) * 2.0_f64.powf(uniform(stream, -9.0, 9.0));
         let mid = DoubleComplex::from(Complex::new(part(), part()))

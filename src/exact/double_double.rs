@@ -19,7 +19,7 @@
 use crate::linkage::Complex;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Above the relative error of any one operation on [`DoubleDouble`]: 2^-100 = 64 u^2.
+/// A bound above the relative error of any one operation on [`DoubleDouble`]: 2^-100 = 64 u^2.
 pub const RELATIVE_ERROR: f64 = 1.0 / (1_u128 << 100) as f64;
 
 /// hi + lo, exactly; |lo| is at most half a unit in the last place of hi.
@@ -27,7 +27,7 @@ pub const RELATIVE_ERROR: f64 = 1.0 / (1_u128 << 100) as f64;
 pub struct DoubleDouble {
     /// The sum rounded to one double.
     pub hi: f64,
-    /// What rounding left over.
+    /// The remainder that rounding left.
     pub lo: f64,
 }
 
@@ -40,7 +40,7 @@ pub struct DoubleComplex {
     pub im: DoubleDouble,
 }
 
-/// a + b = fl(a + b) + error, exactly (Knuth).
+/// Computes a + b = fl(a + b) + error, exactly (Knuth).
 #[inline(always)]
 fn two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
@@ -48,14 +48,14 @@ fn two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { hi, lo: (a - (hi - of_b)) + (b - of_b) }
 }
 
-/// The same where |a| >= |b| or a = 0 (Dekker).
+/// Computes the same if |a| >= |b| or a = 0 (Dekker).
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
     DoubleDouble { hi, lo: b - (hi - a) }
 }
 
-/// a as a sum of two numbers of 26 bits (Veltkamp); |a| < 2^996.
+/// Splits a into a sum of two numbers of 26 bits (Veltkamp); |a| < 2^996.
 #[inline(always)]
 fn split(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
@@ -64,7 +64,7 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// a b = fl(a b) + error, exactly unless the error lies below the smallest double (Dekker).
+/// Computes a b = fl(a b) + error, exactly unless the error lies below the smallest double (Dekker).
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> DoubleDouble {
     let hi = a * b;
@@ -73,31 +73,31 @@ fn two_product(a: f64, b: f64) -> DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// a + b, exactly.
+    /// Returns a + b, exactly.
     #[inline(always)]
     pub fn sum_of(a: f64, b: f64) -> Self {
         two_sum(a, b)
     }
 
-    /// a - b, exactly.
+    /// Returns a - b, exactly.
     #[inline(always)]
     pub fn difference_of(a: f64, b: f64) -> Self {
         two_sum(a, -b)
     }
 
-    /// a b, exactly unless it underflows.
+    /// Returns a b, exactly unless it underflows.
     #[inline(always)]
     pub fn product_of(a: f64, b: f64) -> Self {
         two_product(a, b)
     }
 
-    /// The nearest double.
+    /// Returns the nearest double.
     #[inline(always)]
     pub fn to_f64(self) -> f64 {
         self.hi
     }
 
-    /// The number times a power of two, exactly unless it underflows.
+    /// Returns the number times a power of two, exactly unless it underflows.
     #[inline(always)]
     pub fn times_power_of_two(self, factor: f64) -> Self {
         DoubleDouble { hi: self.hi * factor, lo: self.lo * factor }
@@ -160,25 +160,25 @@ impl std::ops::Div for DoubleDouble {
 }
 
 impl DoubleComplex {
-    /// The nearest complex number of two doubles.
+    /// Returns the nearest complex number of two doubles.
     #[inline(always)]
     pub fn to_complex(self) -> Complex {
         Complex::new(self.re.hi, self.im.hi)
     }
 
-    /// What [`Self::to_complex`] leaves over.
+    /// Returns the remainder that [`Self::to_complex`] leaves.
     #[inline(always)]
     pub fn rest(self) -> Complex {
         Complex::new(self.re.lo, self.im.lo)
     }
 
-    /// The complex conjugate.
+    /// Returns the complex conjugate.
     #[inline(always)]
     pub fn conj(self) -> Self {
         DoubleComplex { re: self.re, im: -self.im }
     }
 
-    /// a - b, exactly.
+    /// Returns a - b, exactly.
     #[inline(always)]
     pub fn difference_of(a: Complex, b: Complex) -> Self {
         DoubleComplex {
@@ -187,7 +187,7 @@ impl DoubleComplex {
         }
     }
 
-    /// The number times a real power of two, exactly unless it underflows.
+    /// Returns the number times a real power of two, exactly unless it underflows.
     #[inline(always)]
     pub fn times_power_of_two(self, factor: f64) -> Self {
         DoubleComplex { re: self.re.times_power_of_two(factor), im: self.im.times_power_of_two(factor) }
@@ -257,7 +257,7 @@ mod tests {
     /// Every double of these tests is a whole multiple of 2^-FRACTION.
     const FRACTION: i32 = 400;
 
-    /// x 2^FRACTION as a whole number, exactly.
+    /// Returns x 2^FRACTION as a whole number, exactly.
     fn whole(x: f64) -> BigInt {
         let bits = x.to_bits();
         let exponent = ((bits >> 52) & 0x7ff) as i32;
@@ -280,12 +280,12 @@ mod tests {
         if x < BigInt::ZERO { -x } else { x }
     }
 
-    /// |found - exact| <= factor u^2 |exact|, all in one unit.
+    /// Returns whether |found - exact| <= factor u^2 |exact|, all in one unit.
     fn within(found: BigInt, exact: BigInt, factor: u32) -> bool {
         (magnitude(found - &exact) << 106) <= magnitude(exact) * factor
     }
 
-    /// Doubles of either sign over 40 binary orders.
+    /// Generates doubles of either sign over 40 binary orders.
     fn double() -> impl Strategy<Value = f64> {
         (-1.0..1.0_f64, -20..20_i32).prop_map(|(x, e)| x * 2.0_f64.powi(e))
     }

@@ -12,9 +12,9 @@
 //! No large terms cancel in this form: it serves links of ten thousand times the points' extent, whose u is large or
 //! whose tau is small, as well as others.
 //!
-//! T_j stands in two equations, one a leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight rows
-//! in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest entry of
-//! one before the elimination.
+//! T_j occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
+//! rows in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest
+//! entry of one before the elimination.
 
 use super::lanes::{ComplexLanes, ORDER, larger, solve};
 use super::target::{Displacements, STEPS, Solution};
@@ -22,16 +22,16 @@ use crate::linkage::Complex;
 use crate::linkage::lane::F64x8;
 use crate::linkage::lane::Lane;
 
-/// Unknowns in all.
+/// The number of unknowns.
 pub const UNKNOWNS: usize = ORDER + STEPS;
-/// Unknowns of one leg: x, u, x*, u*.
+/// The number of unknowns of one leg: x, u, x*, u*.
 pub(super) const LEG: usize = 4;
 
 /// Sixteen numbers, eight paths each: [x, u, x*, u*, y, v, y*, v*, tau_1 .. tau_8] with u = x - a, v = y - b,
 /// tau = T - 1, or their changes.
 pub type Unknowns = [ComplexLanes; UNKNOWNS];
 
-/// The unknowns of a solution in the order of [`Unknowns`].
+/// Returns the unknowns of a solution in the order of [`Unknowns`].
 pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
     let mut all = [Complex::default(); UNKNOWNS];
     for leg in 0..2 {
@@ -46,7 +46,7 @@ pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
     all
 }
 
-/// The solution with these unknowns.
+/// Returns the solution with these unknowns.
 pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
     let pins = |place: usize| [of[place], of[LEG + place]];
     let grounds = |place: usize| [of[place] - of[place + 1], of[LEG + place] - of[LEG + place + 1]];
@@ -59,7 +59,7 @@ pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
     }
 }
 
-/// f of both legs at all points, in the units of the solution squared: `[leg][j]`.
+/// Evaluates f of both legs at all points, in the units of the solution squared: `[leg][j]`.
 pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
     std::array::from_fn(|leg| {
         let (x, a) = (of.pins[leg], of.grounds[leg]);
@@ -71,17 +71,17 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
     })
 }
 
-/// Displacements, eight paths each.
+/// The displacements of eight paths.
 #[derive(Clone, Copy, Debug)]
 pub struct DisplacementLanes {
-    /// delta_j.
+    /// The displacements delta_j.
     pub delta: [ComplexLanes; STEPS],
-    /// delta*_j.
+    /// Their starred twins delta*_j.
     pub starred: [ComplexLanes; STEPS],
 }
 
 impl DisplacementLanes {
-    /// The same in every lane.
+    /// Returns the same displacements in every lane.
     #[inline(always)]
     pub fn splat(of: &Displacements) -> Self {
         DisplacementLanes {
@@ -91,7 +91,7 @@ impl DisplacementLanes {
     }
 }
 
-/// The equations of one point, linearised: f = value + row . d(leg) + p dlog T.
+/// The linearised equation of one leg at one point: f = value + row . d(leg) + p dlog T.
 #[derive(Clone, Copy)]
 struct Linearised {
     row: [ComplexLanes; LEG],
@@ -123,7 +123,7 @@ fn linearised(
     }
 }
 
-/// |re| + |im|.
+/// Returns |re| + |im|.
 #[inline(always)]
 fn size(z: ComplexLanes) -> F64x8 {
     larger(z.re, -z.re) + larger(z.im, -z.im)
@@ -132,8 +132,8 @@ fn size(z: ComplexLanes) -> F64x8 {
 /// Solves the linearised equations; the changes of tau_j are dT_j (not dlog T_j).
 ///
 /// The first right-hand side is Newton's, -f. With R = 2 the second is Davidenko's, -(df/ddelta delta' + df/ddelta*
-/// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so.
-/// With them comes the smallest pivot, squared.
+/// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so. The
+/// smallest pivot, squared, is returned as well.
 #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 pub fn steps<const R: usize>(

@@ -21,13 +21,13 @@ impl ComplexLanes {
     /// Zero in every lane.
     pub const ZERO: ComplexLanes = ComplexLanes { re: F64x8([0.0; LANES]), im: F64x8([0.0; LANES]) };
 
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     #[inline(always)]
     pub fn splat(value: Complex) -> Self {
         ComplexLanes { re: F64x8::splat(value.re), im: F64x8::splat(value.im) }
     }
 
-    /// The number in one lane.
+    /// Returns the number in one lane.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Complex {
         Complex::new(self.re.0[lane], self.im.0[lane])
@@ -40,32 +40,32 @@ impl ComplexLanes {
         self.im.0[lane] = value.im;
     }
 
-    /// |z|^2.
+    /// Returns |z|^2.
     #[inline(always)]
     pub fn norm_sq(self) -> F64x8 {
         self.re * self.re + self.im * self.im
     }
 
-    /// Each lane times a real number.
+    /// Multiplies each lane by a real number.
     #[inline(always)]
     pub fn scale(self, by: F64x8) -> Self {
         ComplexLanes { re: self.re * by, im: self.im * by }
     }
 
-    /// 1 / z; not finite where z = 0.
+    /// Returns 1 / z; not finite if z = 0.
     #[inline(always)]
     pub fn recip(self) -> Self {
         let inverse = self.norm_sq().recip();
         ComplexLanes { re: self.re * inverse, im: -self.im * inverse }
     }
 
-    /// `yes` in the lanes where left >= right, `no` elsewhere.
+    /// Selects `yes` in the lanes with left >= right, `no` elsewhere.
     #[inline(always)]
     pub fn where_at_least(left: F64x8, right: F64x8, yes: Self, no: Self) -> Self {
         ComplexLanes { re: left.at_least(right, yes.re, no.re), im: left.at_least(right, yes.im, no.im) }
     }
 
-    /// `yes` in the lanes where left = right, `no` elsewhere.
+    /// Selects `yes` in the lanes with left = right, `no` elsewhere.
     #[inline(always)]
     pub fn where_equal(left: F64x8, right: F64x8, yes: Self, no: Self) -> Self {
         let mut out = no;
@@ -114,20 +114,20 @@ impl Mul for ComplexLanes {
     }
 }
 
-/// The larger of two real numbers, lane by lane.
+/// Returns the larger of two real numbers, lane by lane.
 #[inline(always)]
 pub fn larger(one: F64x8, other: F64x8) -> F64x8 {
     one.at_least(other, one, other)
 }
 
-/// Rows and columns of the systems that are solved here.
+/// The number of rows, and of columns, of the systems that are solved here.
 pub const ORDER: usize = 8;
 
 /// Solves A x = b for `R` right-hand sides a lane by elimination with row pivoting, each lane with its own pivots.
 ///
 /// `matrix[i][j]` is a_ij and `right[i][r]` is b_i of the r-th side; x_i replaces b_i. A lane whose matrix is
-/// singular gets numbers that are not finite. The answer is the smallest pivot of each lane, squared: with rows whose
-/// largest entry is about one a measure of how far the matrix is from a singular one.
+/// singular gets numbers that are not finite. It returns the smallest pivot of each lane, squared: with rows whose
+/// largest entry is about one, a measure of the distance of the matrix from a singular one.
 #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 pub fn solve<const R: usize>(

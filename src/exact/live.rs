@@ -1,4 +1,5 @@
-//! A target that moves a little: its solutions from those of the target before.
+//! Homotopy path tracking from target to target: the solutions of a target that has moved a little, from those of the
+//! target before.
 //!
 //! A straight path between two real targets crosses the discriminant, where real solutions meet and part. So the
 //! displacements go in two legs through a complex midpoint,
@@ -17,18 +18,18 @@ use super::tracker::{Parameters, Segment};
 use crate::linkage::Complex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A target solved anew from a neighbour's solutions.
+/// The result of solving a target from a neighbour's solutions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved {
-    /// The solutions; of the full solve when it fell back.
+    /// The solutions; those of the full solve if it fell back.
     pub solved: Solved,
-    /// How many classes of the previous target arrived in different classes of this one.
+    /// The number of classes of the previous target that arrived in different classes of this one.
     pub kept: usize,
     /// Whether classes were lost and the target was solved from the start set instead.
     pub fell_back: bool,
 }
 
-/// Follows the classes of `previous` to `target`; solves it from the start set when it lost any.
+/// Tracks the classes of `previous` to `target`; solves the target from the start set if any class was lost.
 pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cancel: &AtomicBool) -> Moved {
     let ratio = previous.target.scale / target.scale;
     // In units of the new target, both ways of measuring give the same equations.
@@ -61,7 +62,8 @@ pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cance
     Moved { solved: solve(target, options, &quiet, cancel), kept, fell_back: true }
 }
 
-/// Long steps for short ways. A path that goes astray on one ends where another does, and is tracked again.
+/// Returns parameters with long steps, for short ways. A path that goes astray on one ends at the end of another
+/// path, and is tracked again.
 fn short(with: &Parameters) -> Parameters {
     Parameters {
         accept: 3.0 * with.accept,
@@ -72,7 +74,7 @@ fn short(with: &Parameters) -> Parameters {
     }
 }
 
-/// Displacements half way, moved off the real ones by as much as the targets differ.
+/// Returns the displacements half way, moved off the real ones by as much as the targets differ.
 fn midpoint(from: &Displacements, to: &Displacements) -> Displacements {
     let differences = || (0..STEPS).map(|j| (to.delta[j] - from.delta[j]).norm());
     let radius = differences().fold(0.0, f64::max);

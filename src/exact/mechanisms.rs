@@ -1,34 +1,34 @@
-//! From a real solution to linkages: the six ways to build one class, each with its motion through the points.
+//! The mechanisms of a real solution: the six ways to build one class, each with its motion through the points.
 //!
 //! A class of solutions is one coupler curve. Three Roberts cognates draw it, and in each of them either of the two
 //! links on the ground can be driven: six mechanisms ([`Solution::cognate`], [`Solution::swapped`]).
 //!
 //! The driven link (x, a) has its pivot at A = P_0 + a and its pin at C_j = P_j + T_j x when the coupler point is at
-//! P_j: the crank angles and the assembly at each point are read off, nothing is searched.
+//! P_j: the crank angles and the assembly at each point follow directly, without a search.
 //!
-//! What keeps a mechanism from running through its points in their order is for the referee to say
-//! ([`crate::task::referee`]). The verdict is one of the mechanism, not of the curve: where the driven link has to
-//! turn back another one may turn on. A class is on one circuit, in order or free of defects if one of its six is.
+//! The referee ([`crate::task::referee`]) finds the defects that keep a mechanism from running through its points in
+//! their order. They are defects of the mechanism, not of the curve: if the driven link has to turn back, that of
+//! another mechanism may turn on. A class is on one circuit, in order or free of defects if one of its six is.
 
 use super::target::{STEPS, Solution, Target};
 use crate::linkage::{AssemblyMode, Complex, FourBar, cross, transmission::angle_opposite};
 use crate::task::referee::judge;
 use crate::task::{Defect, PathTask};
 
-/// How many points.
+/// The number of points.
 pub const POINTS: usize = STEPS + 1;
 
-/// A mechanism passes a point when its coupler point comes within this part of its span of it, divided by
-/// the sine of the transmission angle there: the loop's closure magnifies rounding by that much.
+/// The tolerance for passing a point: the coupler point has to come within this part of the mechanism's span, divided
+/// by the sine of the transmission angle there: the loop's closure magnifies rounding by that much.
 pub const PASSES: f64 = 1e-10;
 
-/// .. and this part of its coordinates more: they are rounded, and the points' own are.
+/// The further tolerance relative to the coordinates: they are rounded, and the points' own are.
 const ROUNDED: f64 = 16.0 * f64::EPSILON;
 
-/// A link shorter than this part of the span is none: what is left of it is rounding.
+/// The length, relative to the span, up to which a link counts as having none: its length is rounding.
 pub const NO_LENGTH: f64 = 1e-9;
 
-/// One of the two links on the ground.
+/// The driven link, one of the two on the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Driven {
     /// The link from a to x.
@@ -40,11 +40,11 @@ pub enum Driven {
 /// One of the six ways to build a class, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// Which cognate: 0 is the solution itself, 1 and 2 follow by [`Solution::cognate`].
+    /// Index of the cognate: 0 is the solution itself, 1 and 2 follow by [`Solution::cognate`].
     pub cognate: usize,
-    /// Which of that cognate's links is the crank.
+    /// The link of that cognate that is the crank.
     pub driven: Driven,
-    /// The linkage; its t1 is that of the first point.
+    /// The linkage; its assembly t1 is that of the first point.
     pub linkage: FourBar,
     /// The crank angle at each point, radians in (-pi, pi].
     pub crank_angles: [f64; POINTS],
@@ -52,32 +52,35 @@ pub struct Mechanism {
     pub assemblies: [AssemblyMode; POINTS],
     /// The largest distance of the coupler point from its point at these positions, in the file's units.
     pub miss: f64,
-    /// The largest of these distances in parts of what a passing mechanism may have there.
+    /// The largest ratio of these distances to the tolerance for passing there.
     pub miss_over_limit: f64,
+    /// The least sine of the transmission angle at the points: near 0 a point lies at a toggle, and rounding decides its
+    /// assembly.
+    pub least_sine: f64,
     /// Whether it passes every point, within [`PASSES`].
     pub passes: bool,
-    /// What the referee finds.
+    /// The defects that the referee finds.
     pub defects: Vec<Defect>,
 }
 
 impl Mechanism {
-    /// Passes all points without being taken apart.
+    /// Returns whether it passes all points without being taken apart.
     pub fn on_one_circuit(&self) -> bool {
         self.passes && !self.defects.iter().any(|d| matches!(d, Defect::Circuit { .. }))
     }
 
-    /// On one circuit, and round it in the order of the points.
+    /// Returns whether it passes all points on one circuit, and round it in their order.
     pub fn in_order(&self) -> bool {
         self.on_one_circuit() && !self.defects.iter().any(|d| matches!(d, Defect::Order { .. }))
     }
 
-    /// On one branch of one circuit, in order.
+    /// Returns whether it passes all points on one branch of one circuit, in order.
     pub fn is_free_of_defects(&self) -> bool {
         self.passes && self.defects.is_empty()
     }
 }
 
-/// The real parts of a solution: what is left where the starred twins are the conjugates.
+/// A real solution: the unknowns that are left if the starred twins are the conjugates.
 #[derive(Clone, Copy)]
 struct Real {
     pins: [Complex; 2],
@@ -86,7 +89,7 @@ struct Real {
 }
 
 impl Real {
-    /// The mean of each unknown and the conjugate of its twin; turns brought to length one.
+    /// Takes the mean of each unknown and the conjugate of its twin, and scales the rotations to modulus one.
     fn of(solution: &Solution) -> Real {
         let mean =
             |z: [Complex; 2], twin: [Complex; 2]| std::array::from_fn(|i| (z[i] + twin[i].conj()) * 0.5);
@@ -97,7 +100,7 @@ impl Real {
         }
     }
 
-    /// The linkage and its positions; `None` where its lengths make none.
+    /// Builds the mechanism with its positions; `None` if its lengths make no linkage.
     fn mechanism(
         &self,
         task: &PathTask,
@@ -133,16 +136,17 @@ impl Real {
             return None;
         }
         let far = pivots.iter().chain(&target.points).map(|z| z.norm()).fold(0.0, f64::max);
-        let (mut miss, mut miss_over_limit) = (0.0_f64, 0.0_f64);
+        let (mut miss, mut miss_over_limit, mut least_sine) = (0.0_f64, 0.0_f64, f64::INFINITY);
         for j in 0..POINTS {
             let Some(joints) = linkage.position_with(crank_angles[j], assemblies[j]).joints() else {
-                (miss, miss_over_limit) = (f64::INFINITY, f64::INFINITY);
+                (miss, miss_over_limit, least_sine) = (f64::INFINITY, f64::INFINITY, 0.0);
                 break;
             };
             let apart = (joints.coupler_point - target.points[j]).norm();
             let diagonal = linkage.diagonal(crank_angles[j]);
             let closure = angle_opposite(diagonal, linkage.coupler(), linkage.follower()).sin();
             miss = miss.max(apart);
+            least_sine = least_sine.min(closure);
             let limit = (PASSES * span + ROUNDED * far) / closure.max(f64::EPSILON.sqrt());
             miss_over_limit = miss_over_limit.max(apart / limit);
         }
@@ -156,6 +160,7 @@ impl Real {
             assemblies,
             miss,
             miss_over_limit,
+            least_sine,
             passes,
             defects,
         };
@@ -163,8 +168,8 @@ impl Real {
     }
 }
 
-/// The six mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer where
-/// one has a link of no length. `task` is the path of the nine points of `target`.
+/// Returns the six mechanisms of a real solution, cognate by cognate, the first link driven before the second; fewer
+/// if one has a link of no length. `task` is the path of the nine points of `target`.
 pub fn mechanisms(task: &PathTask, target: &Target, solution: &Solution) -> Vec<Mechanism> {
     let mut form = *solution;
     let mut list = Vec::with_capacity(6);
@@ -177,8 +182,8 @@ pub fn mechanisms(task: &PathTask, target: &Target, solution: &Solution) -> Vec<
     list
 }
 
-/// The solution that a linkage at its positions is: the way back from a [`Mechanism`], its crank the first link.
-/// `None` where the loop is open at a point.
+/// Computes the solution that belongs to a linkage at its positions, the inverse of building a [`Mechanism`], with
+/// its crank as the first link; `None` if the loop is open at a point.
 pub fn solution_of(
     target: &Target,
     linkage: &FourBar,
@@ -192,7 +197,7 @@ pub fn solution_of(
     let first = joints(0)?;
     let unit = 1.0 / target.scale;
     let relative = |z: Complex| (z - target.points[0]) * unit;
-    // The pins from the coupler point that is there: a miss of rounding is no part of the shape.
+    // The pins are relative to the linkage's own coupler point: a miss by rounding is no part of the shape.
     let pins = [first.crank_pin, first.follower_pin].map(|pin| (pin - first.coupler_point) * unit);
     let grounds = [linkage.crank_pivot(), linkage.follower_pivot()].map(relative);
     let along = first.follower_pin - first.crank_pin;

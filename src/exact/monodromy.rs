@@ -1,10 +1,10 @@
-//! All classes of a target in general position, from nothing: monodromy.
+//! Monodromy: finds all classes of a target in general position, without a start set.
 //!
-//! A random complex four-bar answers some target G. Carried around a closed loop in the space of displacements a
-//! solution of G comes back as a solution of G, as a rule another one; the loops act on the 1442 classes as one orbit.
-//! A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations keep
-//! their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v* D*), and
-//! goes straight back. The six images of a solution move as one, so that one of them is carried for all.
+//! A random complex four-bar solves some target G. Carried around a closed loop in the space of displacements a
+//! solution of G comes back as a solution of G, as a rule another one; the loops act on the 1442 classes as one
+//! orbit. A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations
+//! keep their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v*
+//! D*), and goes straight back. The six images of a solution move as one, so that one of them is carried for all.
 
 use super::classes::first_of_class;
 use super::correction::correct;
@@ -16,27 +16,27 @@ use std::sync::atomic::AtomicBool;
 /// A source of numbers uniform in [0, 1).
 pub type Uniform<'a> = &'a mut dyn FnMut() -> f64;
 
-/// What the loops brought home.
+/// The orbit of a solution under the loops: the result of monodromy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
-    /// The target: complex, in general position.
+    /// The displacements of the target: complex, in general position.
     pub displacements: Displacements,
-    /// One solution a class, in the order in which they were found.
+    /// One solution per class, in the order in which they were found.
     pub solutions: Vec<Solution>,
-    /// Loops that were walked.
+    /// The number of loops tracked.
     pub loops: u32,
-    /// The last loops, in a row, that found nothing new.
+    /// The number of last loops in a row that found nothing new.
     pub idle: u32,
 }
 
-/// When to stop.
+/// The stopping criteria of [`orbit`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// Loops at most.
+    /// The largest number of loops.
     pub loops: u32,
-    /// Loops in a row that find nothing new, after which all is taken to be found.
+    /// The number of loops in a row that find nothing new after which all classes are taken to be found.
     pub idle: u32,
-    /// As many classes are enough, with no idle loops.
+    /// The number of classes that is enough, without idle loops.
     pub enough: usize,
 }
 
@@ -46,17 +46,17 @@ impl Default for Limits {
     }
 }
 
-/// Fewer solutions than this, and a loop may well bring no new one.
+/// The number of solutions below which a loop may well find no new one.
 const FEW: usize = 50;
-/// Classes nearer than this are one.
+/// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-6;
 
-/// A number on a ring of radius 1/2 to 3/2.
+/// Draws a complex number in the ring between the radii 1/2 and 3/2.
 fn ring(uniform: Uniform) -> Complex {
     Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
 }
 
-/// A random four-bar and eight displacements that it answers.
+/// Draws a random complex four-bar and computes eight displacements that it solves.
 ///
 /// With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
 /// R_2 = R_1 + d*: a quadratic in L_1.
@@ -84,19 +84,19 @@ fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
     (displacements, solution)
 }
 
-/// The same in other units: delta -> by delta, delta* -> by_starred delta*.
+/// Returns the displacements in other units: delta -> by delta, delta* -> by_starred delta*.
 fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements {
     Displacements { delta: of.delta.map(|d| d * by), starred: of.starred.map(|d| d * by_starred) }
 }
 
-/// Random displacements of moderate size.
+/// Draws random displacements of moderate size.
 fn random_displacements(uniform: Uniform) -> Displacements {
     Displacements { delta: [(); STEPS].map(|()| ring(uniform)), starred: [(); STEPS].map(|()| ring(uniform)) }
 }
 
-/// Walks loops until `limits` say stop.
+/// Tracks monodromy loops until a limit is reached.
 ///
-/// The first solution is carried from the target that its linkage happens to answer to one of moderate size.
+/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size.
 pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
     let (from, first) = random_answer(uniform);
     let home = random_displacements(uniform);
@@ -122,7 +122,7 @@ pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
         let mut firsts = first_of_class(&orbit.solutions, SAME).into_iter().enumerate();
         orbit.solutions.retain(|_| firsts.next().is_some_and(|(at, first)| at == first));
         orbit.loops += 1;
-        // A loop that carries few solutions tells nothing when it brings no new one.
+        // A loop of few solutions that finds no new one is no sign that all are found.
         let new = orbit.solutions.len() > known;
         orbit.idle = if new || known < FEW { 0 } else { orbit.idle + 1 };
     }

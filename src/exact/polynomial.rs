@@ -16,21 +16,21 @@ use super::target::{Displacements, STEPS, Solution, Target};
 use crate::linkage::Complex;
 use std::ops::{Add, Mul, Sub};
 
-/// Unknowns, and equations: x, y, a, b, their starred twins, T_1 .. T_8.
+/// The number of unknowns, and of equations: x, y, a, b, their starred twins, T_1 .. T_8.
 pub const UNKNOWNS: usize = 16;
-/// The unknowns before T_1.
+/// The number of unknowns before T_1.
 pub const PIVOTS: usize = 8;
 
-/// What can be added, subtracted and multiplied: complex numbers of doubles, of double-doubles, discs.
+/// Numbers that can be added, subtracted and multiplied: complex numbers of doubles, of double-doubles, discs.
 pub trait Ring: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 impl<R: Copy + Add<Output = R> + Sub<Output = R> + Mul<Output = R>> Ring for R {}
 
-/// The displacements without rounding: what a certificate speaks of.
+/// The displacements without rounding, to which a certificate refers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactDisplacements {
-    /// delta_j.
+    /// The displacements delta_j.
     pub delta: [DoubleComplex; STEPS],
-    /// delta*_j.
+    /// Their starred twins delta*_j.
     pub starred: [DoubleComplex; STEPS],
 }
 
@@ -41,8 +41,8 @@ impl From<&Displacements> for ExactDisplacements {
 }
 
 impl From<&Target> for ExactDisplacements {
-    /// The difference of two doubles is a double-double, and the scale is a power of two: nothing is rounded. (A part
-    /// below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
+    /// Computes the displacements without rounding: the difference of two doubles is a double-double, and the scale
+    /// is a power of two. (A part below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
     fn from(target: &Target) -> Self {
         let factor = target.scale.recip();
         let delta = std::array::from_fn(|j| {
@@ -52,14 +52,14 @@ impl From<&Target> for ExactDisplacements {
     }
 }
 
-/// The unknowns in a row: x, y, a, b, x*, y*, a*, b*, T_1 .. T_8.
+/// Returns the unknowns as an array: x, y, a, b, x*, y*, a*, b*, T_1 .. T_8.
 pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
     let [[x, y], [a, b], [xs, ys], [as_, bs]] = [of.pins, of.grounds, of.pins_starred, of.grounds_starred];
     let pivots = [x, y, a, b, xs, ys, as_, bs];
     std::array::from_fn(|i| if i < PIVOTS { pivots[i] } else { of.rotations[i - PIVOTS] })
 }
 
-/// The inverse of [`unknowns`].
+/// Returns the solution with these unknowns: the inverse of [`unknowns`].
 pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
     Solution {
         pins: [of[0], of[1]],
@@ -70,20 +70,20 @@ pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
     }
 }
 
-/// Which unknowns the equation of link 0 (x, a) or 1 (y, b) at point j is about: p, g, p*, g*, T.
+/// Returns the indices of the unknowns in the equation of link 0 (x, a) or 1 (y, b) at point j: p, g, p*, g*, T.
 #[inline(always)]
 pub fn columns(link: usize, j: usize) -> [usize; 5] {
     [link, 2 + link, 4 + link, 6 + link, PIVOTS + j]
 }
 
-/// f at one link and point.
+/// Evaluates f at one link and point.
 #[inline(always)]
 pub fn value<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
     let (l, m) = (p * t + (delta - g), ps + (starred - gs) * t);
     l * m - t * ((p - g) * (ps - gs))
 }
 
-/// df/dp, df/dg, df/dp*, df/dg*, df/dT at one link and point.
+/// Evaluates df/dp, df/dg, df/dp*, df/dg*, df/dT at one link and point.
 #[inline(always)]
 pub fn derivatives<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> [R; 5] {
     let (reach, reach_starred) = (delta - g, starred - gs);
@@ -145,7 +145,7 @@ mod tests {
             )
         }
 
-        /// |z| <= bound.
+        /// Returns whether |z| <= bound.
         fn is_within(&self, bound: f64) -> bool {
             let square = self.0.times(&self.0).plus(&self.1.times(&self.1), 1);
             square.plus(&Dyadic::of(bound).times(&Dyadic::of(bound)), -1).0 <= BigInt::ZERO

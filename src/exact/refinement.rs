@@ -20,19 +20,19 @@ pub(super) type Midpoint = [DoubleComplex; UNKNOWNS];
 /// A matrix of the sixteen equations and unknowns.
 pub(super) type Square = SMatrix<Complex, UNKNOWNS, UNKNOWNS>;
 
-/// No unknown may be larger than 2^100, no rotation smaller than 2^-100: no product then overflows, and what underflows
-/// is less than [`UNDERFLOW`].
+/// The largest magnitude of an unknown, 2^100, and the inverse of the smallest one of a rotation: no product then
+/// overflows, and what underflows is less than [`UNDERFLOW`].
 const LARGEST: f64 = (1_u128 << 100) as f64;
-/// Above all that a residual can lose by underflow: each of fewer than 2^10 operations loses less than 2^-1070, which
-/// later products multiply by less than 2^400.
+/// A bound above all that a residual can lose by underflow: each of fewer than 2^10 operations loses less than
+/// 2^-1070, which later products multiply by less than 2^400.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE * LARGEST * LARGEST * LARGEST * LARGEST;
-/// Newton steps at most.
+/// The largest number of Newton steps.
 const MOST_STEPS: usize = 12;
-/// Steps below this, in weights, are the last rounding of a double-double.
+/// The size of a step, in weights, below which it is the last rounding of a double-double.
 const FINISHED: f64 = 1e-29;
-/// An inverse is good enough to be used again once a step is below this.
+/// The size of a step below which the inverse is good enough to be used again.
 const SETTLED: f64 = 1e-9;
-/// A solution is refined when its last step is below this.
+/// The last step, in weights, below which a solution counts as refined.
 const CONVERGED: f64 = 1e-16;
 
 /// A solution after Newton's method in double-double.
@@ -43,11 +43,11 @@ pub struct Refined {
     /// The largest component of the last Newton step, in weights: relative to max(|w_i|, 1) for pivots and to |T_j| for
     /// rotations, up to a factor of two.
     pub last_step: f64,
-    /// How far the solution moved from the one given, in the same weights.
+    /// The distance of the solution from the one given, in the same weights.
     pub moved: f64,
 }
 
-/// Why Newton's method found no solution.
+/// The reason for which Newton's method found no solution.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NotRefined {
     /// An unknown is not finite, above 1e30, or a rotation is below 1e-30.
@@ -66,8 +66,9 @@ pub enum NotRefined {
 
 /// Refines a solution by Newton's method with double-double residuals.
 ///
-/// For any complex displacements, which are taken as exact. About 20 digits are right afterwards, and [`Solution`] holds
-/// the first 16 of them, unless the Jacobian is singular to doubles. Nothing is proved: see [`super::certificate`].
+/// The displacements are any complex numbers, taken as exact. About 20 digits are right afterwards, and [`Solution`]
+/// holds the first 16 of them, unless the Jacobian is singular to doubles. Nothing is proved: see
+/// [`super::certificate`].
 ///
 /// # Errors
 ///
@@ -81,7 +82,7 @@ pub fn refine(displacements: &Displacements, given: &Solution) -> Result<Refined
     Ok(Refined { solution: solution(&midpoint.map(DoubleComplex::to_complex)), last_step, moved })
 }
 
-/// The refined solution and its last step in weights.
+/// Applies Newton's method; returns the refined solution and its last step in weights.
 pub(super) fn newton(
     displacements: &ExactDisplacements,
     given: &[Complex; UNKNOWNS],
@@ -114,11 +115,11 @@ pub(super) fn newton(
 
 /// The scaled Jacobian's inverse at a point, in doubles, with its scaling.
 pub(super) struct Linearisation {
-    /// s_i, powers of two.
+    /// The weights s_i, powers of two.
     pub(super) weights: [f64; UNKNOWNS],
-    /// R, powers of two: row 8 link + j.
+    /// The row scales R, powers of two: row 8 link + j.
     pub(super) rows: [f64; UNKNOWNS],
-    /// Y, near the inverse of A = R J S.
+    /// The matrix Y, near the inverse of A = R J S.
     pub(super) inverse: Square,
 }
 
@@ -153,7 +154,7 @@ impl Linearisation {
         }
     }
 
-    /// Y R f(m).
+    /// Computes Newton's step Y R f(m), in weights.
     fn step(&self, displacements: &ExactDisplacements, midpoint: &Midpoint) -> [Complex; UNKNOWNS] {
         let residual = residuals(displacements, midpoint);
         let mut step = [Complex::ZERO; UNKNOWNS];
@@ -167,12 +168,12 @@ impl Linearisation {
     }
 }
 
-/// (row, link, j), row = 8 link + j.
+/// Iterates over the equations as (row, link, j), row = 8 link + j.
 pub(super) fn equations() -> impl Iterator<Item = (usize, usize, usize)> {
     (0..UNKNOWNS).map(|row| (row, row / STEPS, row % STEPS))
 }
 
-/// f(m), each component within [`residual_error`] of the exact one.
+/// Computes f(m), each component within [`residual_error`] of the exact one.
 pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint) -> Midpoint {
     std::array::from_fn(|row| {
         let (link, j) = (row / STEPS, row % STEPS);
@@ -180,12 +181,12 @@ pub(super) fn residuals(displacements: &ExactDisplacements, midpoint: &Midpoint)
     })
 }
 
-/// A bound of |computed f - f| at one row of [`residuals`].
+/// Returns a bound of |computed f - f| at one row of [`residuals`].
 ///
-/// With e = [`RELATIVE_ERROR`]: a complex sum errs by at most e times its own magnitude, a complex product by 4 e times
-/// the product of magnitudes. With every difference replaced by the sum of magnitudes, L and M err by at most (1 + 4 + 1)
-/// e, their product by (6 + 6 + 4) e, T (U V) by (1 + 1 + 4 + 4) e, and f by (16 + 1) e of their majorants, but for
-/// terms in e^2; 32 e covers these as well.
+/// With e = [`RELATIVE_ERROR`]: a complex sum errs by at most e times its own magnitude, a complex product by 4 e
+/// times the product of magnitudes. With every difference replaced by the sum of magnitudes, L and M err by at most
+/// (1 + 4 + 1) e, their product by (6 + 6 + 4) e, T (U V) by (1 + 1 + 4 + 4) e, and f by (16 + 1) e of their
+/// majorants, but for terms in e^2; 32 e covers these as well.
 pub(super) fn residual_error(
     displacements: &ExactDisplacements,
     midpoint: &Midpoint,
@@ -199,7 +200,7 @@ pub(super) fn residual_error(
     Upper::exactly(32.0 * RELATIVE_ERROR) * majorant + Upper::exactly(UNDERFLOW)
 }
 
-/// s_i, once every unknown is in range.
+/// Computes the weights s_i, once every unknown is in range.
 pub(super) fn weights(midpoint: &Midpoint) -> Result<[f64; UNKNOWNS], NotRefined> {
     let mut weights = [1.0; UNKNOWNS];
     for (i, weight) in weights.iter_mut().enumerate() {

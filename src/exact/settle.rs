@@ -1,4 +1,5 @@
-//! The paths of all classes: tracked together, lost ones again and again, each end judged.
+//! Homotopy path tracking of all classes: all paths are tracked together, lost ones again in further rounds, and each
+//! end is classified.
 
 use super::careful::{Followed, follow};
 use super::certificate::{Certificate, Refused, certify_displacements};
@@ -14,15 +15,15 @@ use crate::linkage::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a path came to.
+/// The classified end of a path.
 #[expect(clippy::large_enum_variant, reason = "nearly every path ends in an isolated solution")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fate {
     /// An isolated solution.
     Isolated(Class),
-    /// Infinity, a singular solution or a family of them.
+    /// An end at infinity, in a singular solution or in a family of them.
     Singular,
-    /// Lost on the way.
+    /// A path lost on the way.
     Lost,
 }
 
@@ -32,17 +33,17 @@ pub(super) struct Fates {
     pub(super) again: usize,
 }
 
-/// Solutions whose Newton step is larger are refined in double-double before they are compared.
+/// The relative Newton step above which a solution is refined in double-double before it is compared.
 const ROUGH: f64 = 1e-11;
-/// An isolated solution's last Newton step is at most this.
+/// The largest last Newton step of an isolated solution.
 const CONVERGED: f64 = 1e-9;
-/// Speeds, relative to the solution and over the whole path, above which an end counts as singular.
+/// The speed, relative to the solution and over the whole path, above which an end counts as singular.
 const SINGULAR_SPEED: f64 = 1e9;
-/// Paths that stop in the last part of their way have met the end's singularity, not one of the way.
+/// The last part of the way, in t: a path that stops in it has met a singularity of the end, not one of the way.
 const NEAR_THE_END: f64 = 1e-3;
-/// Classes nearer than this are one.
+/// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-8;
-/// The fate of one end.
+/// Classifies the end of one path.
 fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
     match end.ending {
         Ending::Cancelled => return Fate::Lost,
@@ -68,14 +69,14 @@ fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
     Fate::Isolated(Class { solution, reality: Reality::Complex, newton_step, speed: corrected.speed })
 }
 
-/// Rounds in which the open paths, once they are few, are followed in double-double: one from each cognate.
+/// Rounds in which the open paths, once they are few, are tracked in double-double: one from each cognate.
 const CAREFUL_ROUNDS: std::ops::RangeInclusive<u32> = 2..=4;
-/// So few: one path takes as long as a hundred in lanes.
+/// The largest number of open paths that are tracked in double-double: one takes as long as a hundred in lanes.
 const CAREFUL_FEW: usize = 32;
 /// As [`SINGULAR_SPEED`], in double-double.
 const CAREFUL_SINGULAR_SPEED: f64 = 1e13;
 
-/// The fate of an end in double-double.
+/// Classifies the end of a path in double-double.
 fn careful_fate(end: &Followed) -> Fate {
     match end.ending {
         Ending::Cancelled => Fate::Lost,
@@ -92,8 +93,8 @@ fn careful_fate(end: &Followed) -> Fate {
     }
 }
 
-/// Tracks `starts` along the segment; lost and coinciding paths again, more carefully, from other images, and lost ones
-/// in the end around what was in their way.
+/// Tracks `starts` along the segment; lost and coinciding paths are tracked again, more carefully, from other images,
+/// and from the third round on those that met an obstacle take a detour ([`track_around`]).
 pub(super) fn settle(
     starts: &[Solution],
     along: &Segment,
@@ -104,7 +105,8 @@ pub(super) fn settle(
     let mut fates = vec![Fate::Lost; starts.len()];
     let mut open: Vec<usize> = (0..starts.len()).collect();
     let mut obstructed = vec![false; starts.len()];
-    // Paths whose solution was rough though of moderate size: where two of them stay together it is a double one.
+    // Paths whose solution was inaccurate though of moderate size: if two of them stay together, it is a double
+    // solution.
     let mut rough = vec![false; starts.len()];
     let mut again = 0;
     for round in 0..=options.retries {
@@ -160,19 +162,20 @@ pub(super) fn settle(
     Fates { fates, again }
 }
 
-/// Below this size an isolated solution has not lost many digits.
+/// The size below which an isolated solution has not lost many digits.
 const MODERATE: f64 = 1e3;
 
-/// As many singular ends may well be obstacles close to the end; a target in special position has more of them.
+/// The number of singular ends that may well be obstacles close to the end; a target in special position has more of
+/// them.
 const FEW: usize = 8;
-/// More singular ends than this are no accidents of tracking: they are not tracked again.
+/// The largest number of singular ends that may be accidents of tracking; more are not tracked again.
 const MANY: usize = 400;
-/// Newton steps on arrival.
+/// The number of Newton steps on arrival.
 const CORRECTIONS: usize = 2;
 
-/// Through t = 1/2 + i e instead of straight, e small and another one each round: around a place close to the straight
-/// path where the solution is all but infinite. Should a branch point lie between the two routes, the path ends where
-/// another one does, which shows.
+/// Tracks paths through t = 1/2 + i e instead of straight, with e small and different in each round: a detour around
+/// a place close to the straight path where the solution is all but infinite. If a branch point lies between the two
+/// routes, the path ends at the end of another one, and the two are found to coincide.
 fn track_around(
     starts: &[Solution],
     along: &Segment,
@@ -189,7 +192,7 @@ fn track_around(
     let mut ends = track(starts, &Segment { from: along.from, to: middle }, with, cancel);
     let arrived: Vec<usize> = (0..ends.len()).filter(|&at| ends[at].ending == Ending::Arrived).collect();
     for end in &mut ends {
-        // Where the first leg stopped counts as its half of the way.
+        // The first leg is half of the way, so its t counts half.
         end.ending = match end.ending {
             Ending::Stalled { t } => Ending::Stalled { t: 0.5 * t },
             Ending::OutOfSteps { t } => Ending::OutOfSteps { t: 0.5 * t },
@@ -204,11 +207,11 @@ fn track_around(
     ends
 }
 
-/// How far from the straight path the first way around leads, in t.
+/// The distance of the first detour from the straight path, in t.
 const ASIDE: f64 = 0.005;
 
-/// Where few classes are missing: all paths once more on a wide detour, which permutes the ends; classes that only it
-/// finds take the place of paths that were lost, singular or second in their class.
+/// Tracks all paths once more on a wide detour, which permutes the ends, if few classes are missing; classes that
+/// only the detour finds take the place of paths that were lost, singular or second in their class.
 pub(super) fn complete(
     ends: &mut Fates,
     starts: &[Solution],
@@ -243,11 +246,11 @@ pub(super) fn complete(
     ends.again = starts.len();
 }
 
-/// The round whose way around is a wide one: t = 1/2 + 0.32 i.
+/// The number of a round whose detour is wide: t = 1/2 + 0.32 i.
 const WIDE: u32 = 8;
 
-/// As [`first_of_class`]; what seems one class to rounding is two where certificates tell them
-/// apart.
+/// Returns for each solution the index of the first one of its class, as [`first_of_class`]; solutions that are of
+/// one class to rounding are of two if their certificates prove them distinct.
 pub(super) fn firsts(
     solutions: &[Solution],
     certify: impl Fn(&Solution) -> Result<Certificate, Refused>,
@@ -265,8 +268,8 @@ pub(super) fn firsts(
     first
 }
 
-/// Paths that another round may help: lost ones, those that share a class, and those that seemed to end in singular
-/// solutions, when they are few, or not too many after the first round.
+/// Returns the paths that another round may help: lost ones, those that share a class, and those that seemed to end
+/// in singular solutions, when they are few, or not too many after the first round.
 fn unsettled(fates: &[Fate], round: u32, at: &Displacements) -> Vec<usize> {
     let mut open: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Lost).collect();
     let singular: Vec<usize> = (0..fates.len()).filter(|&path| fates[path] == Fate::Singular).collect();
@@ -287,7 +290,7 @@ fn unsettled(fates: &[Fate], round: u32, at: &Displacements) -> Vec<usize> {
     open
 }
 
-/// The isolated solutions with the numbers of their paths.
+/// Iterates over the isolated solutions with the indices of their paths.
 pub(super) fn isolated(fates: &[Fate]) -> impl Iterator<Item = (usize, &Class)> {
     fates.iter().enumerate().filter_map(|(path, fate)| match fate {
         Fate::Isolated(class) => Some((path, class)),

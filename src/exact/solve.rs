@@ -1,4 +1,5 @@
-//! All classes of a target: from the start set along straight paths, lost ones again and again, the ends judged.
+//! The solver for all classes of a target: tracks straight paths from the start set, tracks lost ones again, and
+//! classifies the ends.
 
 use super::certificate::certify;
 use super::classes::key;
@@ -10,13 +11,13 @@ use super::tracker::{Parameters, Segment};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What a caller may choose.
+/// The options of [`solve`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Of the first round of tracking.
+    /// The parameters of the first round of tracking.
     pub parameters: Parameters,
-    /// Further rounds, each with tighter tolerances and from another image of the start, for paths that were lost and
-    /// for those that ended together.
+    /// The number of further rounds, each with tighter tolerances and from another image of the start, for paths that
+    /// were lost and for those that ended together.
     pub retries: u32,
 }
 
@@ -29,32 +30,32 @@ impl Default for Options {
 /// One class of six solutions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Class {
-    /// One of the six.
+    /// One of the six solutions.
     pub solution: Solution,
-    /// What is real about it.
+    /// The reality of the class, found to rounding.
     pub reality: Reality,
-    /// Relative size of the last Newton step: what rounding leaves unsure.
+    /// Relative size of the last Newton step: the uncertainty that rounding leaves.
     pub newton_step: f64,
     /// Relative speed of the solution as the target comes in along the path: large near a singularity.
     pub speed: f64,
 }
 
-/// What became of the paths. `tracked = finite + singular + failed`, `finite = distinct + duplicates`,
+/// The census of the paths: `tracked = finite + singular + failed`, `finite = distinct + duplicates`,
 /// `distinct = real + curve_only + complex`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Census {
-    /// Paths, one a class of the start set.
+    /// Paths tracked, one per class of the start set.
     pub tracked: usize,
-    /// Ended in an isolated solution.
+    /// Paths that ended in an isolated solution.
     pub finite: usize,
-    /// Ended at infinity, in a singular or double solution, or in one of a family.
+    /// Paths that ended at infinity, in a singular or double solution, or in one of a family.
     pub singular: usize,
-    /// Were lost on the way, and again in every further round.
+    /// Paths that were lost on the way, and again in every further round.
     pub failed: usize,
-    /// Classes.
+    /// Distinct classes.
     pub distinct: usize,
-    /// Paths that ended in the class of an earlier one: astray, or, on a special target, in the same linkage with another
-    /// rotation at a point that its curve passes twice.
+    /// Paths that ended in the class of an earlier one: astray, or, on a special target, in the same linkage with
+    /// another rotation at a point that its curve passes twice.
     pub duplicates: usize,
     /// Paths that were tracked more than once.
     pub again: usize,
@@ -62,46 +63,46 @@ pub struct Census {
     pub real: usize,
     /// Classes with a real curve and a complex linkage.
     pub curve_only: usize,
-    /// The others.
+    /// Classes with neither.
     pub complex: usize,
 }
 
-/// What may be said of the list of classes.
+/// The completeness of the list of classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Completeness {
-    /// As many distinct classes as a target in general position has.
+    /// All: as many distinct classes as a target in general position has.
     Complete,
     /// Paths ended at infinity or in singular solutions, and none was lost: the target is not in general position and
     /// has fewer isolated solutions. Paths that stay together in spite of all rounds are counted as duplicates here:
     /// they end in multiple solutions.
     NonGeneric {
-        /// Distinct isolated classes that were found; no claim that there are no more.
+        /// The number of distinct isolated classes that were found; no claim that there are no more.
         isolated: usize,
     },
     /// Paths were lost or ended together: so many classes may be missing.
     Incomplete {
-        /// Failed and duplicate paths.
+        /// The number of failed and duplicate paths.
         missing: usize,
     },
-    /// Stopped before the end.
+    /// The solve was stopped before the end.
     Cancelled,
 }
 
-/// All that was found of a target.
+/// The result of solving a target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solved {
     /// The target.
     pub target: Target,
     /// Real linkages first, then real curves, then the rest; within each by a number that the class determines.
     pub classes: Vec<Class>,
-    /// What became of the paths.
+    /// The census of the paths.
     pub census: Census,
-    /// Stopped before the end.
+    /// Whether the solve was stopped before the end.
     pub cancelled: bool,
 }
 
 impl Solved {
-    /// What may be said of the list.
+    /// Returns the completeness of the list.
     pub fn completeness(&self) -> Completeness {
         let census = &self.census;
         if self.cancelled {
@@ -118,8 +119,9 @@ impl Solved {
 
 /// Solves a target from the embedded start set, on the threads of the current rayon pool.
 ///
-/// `progress` hears how many paths have ended for good, of how many; it is called from several threads. When `cancel`
-/// is set the answer holds what was found by then. Otherwise the answer depends on target and options alone.
+/// `progress` is called with the number of paths that have ended for good and the number of all paths, from several
+/// threads. When `cancel` is set the answer holds what was found by then. Otherwise the answer depends on target and
+/// options alone.
 pub fn solve(
     target: &Target,
     options: &Options,
@@ -138,8 +140,8 @@ pub fn solve(
     judged(target, &ends, false)
 }
 
-/// Where the target is not in general position an end counts as isolated if one of its cognates is proved to be: what
-/// looks isolated to rounding may be a multiple solution.
+/// Classifies an end of a target that is not in general position: it counts as isolated if it or one of its cognates
+/// is proved to be, as an end that looks isolated to rounding may be a multiple solution.
 fn proved(target: &Target, end: Fate) -> Fate {
     let Fate::Isolated(class) = end else { return end };
     let proof = |solution: &Solution| certify(target, solution).ok().map(|proof| proof.refined);
@@ -150,7 +152,7 @@ fn proved(target: &Target, end: Fate) -> Fate {
     }
 }
 
-/// Distinct classes, what is real about them, and the census.
+/// Computes the distinct classes, their reality, and the census.
 pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     let finite: Vec<Class> = isolated(&ends.fates).map(|(_, class)| *class).collect();
     let solutions: Vec<Solution> = finite.iter().map(|class| class.solution).collect();
@@ -180,11 +182,11 @@ pub(super) fn judged(target: &Target, ends: &Fates, cancelled: bool) -> Solved {
     Solved { target: *target, classes, census, cancelled }
 }
 
-/// Solutions nearer to a real linkage than this are real: rounding after refinement is far below it, pairs of nearly
-/// equal solutions are further apart.
+/// The distance from a real linkage up to which a solution is real: rounding after refinement is far below it, pairs
+/// of nearly equal solutions are further apart.
 const REAL: f64 = 1e-8;
 
-/// What is real about a solution of a real target, to rounding: [`super::conjugation`] proves it.
+/// Determines the reality of a solution of a real target, to rounding; [`super::conjugation`] proves it.
 fn reality(of: &Solution) -> Reality {
     if of.imaginary_part() <= REAL {
         Reality::Real

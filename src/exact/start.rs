@@ -4,7 +4,7 @@
 //! root) and Newton's method restores full precision. `cargo run --release --example nine-point-start-set -- FILE`
 //! makes it anew from nothing (see [`super::monodromy`]).
 //!
-//! | bytes | what (little endian) |
+//! | bytes | content (little endian) |
 //! |---|---|
 //! | 0..4 | "LWNP" |
 //! | 4..8 | version, u32: 1 |
@@ -23,10 +23,11 @@ use crate::linkage::Complex;
 use std::sync::OnceLock;
 use thiserror::Error;
 
-/// Classes of a target in general position: 8652 solutions (Wampler, Morgan & Sommese 1992) over the six images.
+/// The number of classes of a target in general position: 8652 solutions (Wampler, Morgan & Sommese 1992) over the
+/// six images.
 pub const CLASSES: usize = 1442;
 
-/// The embedded file.
+/// The bytes of the embedded file.
 pub const EMBEDDED: &[u8] = include_bytes!("start-set.bin");
 
 const MAGIC: &[u8; 4] = b"LWNP";
@@ -35,38 +36,38 @@ const HEADER: usize = 16;
 const PIVOTS: usize = HEADER + 32 * 8;
 const ENTRY: usize = 2 * ORDER * 4;
 
-/// Solutions of one target, a start for paths to any other.
+/// The start solutions for homotopy path tracking: solutions of one target, from which paths lead to any other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartSet {
-    /// The target.
+    /// The displacements of the target.
     pub displacements: Displacements,
-    /// One solution a class.
+    /// One solution per class.
     pub solutions: Vec<Solution>,
 }
 
-/// Why bytes are no start set.
+/// The reason for which bytes are no start set.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum StartSetError {
-    /// They do not begin as such a file does.
+    /// The bytes do not begin as such a file does.
     #[error("this is no nine-point start set of version {VERSION}")]
     Header,
-    /// Too few bytes or too many.
+    /// The number of bytes is wrong.
     #[error("a start set of {classes} classes has {wanted} bytes, not {found}")]
     Length {
-        /// As the header says.
+        /// The number of classes in the header.
         classes: usize,
-        /// Bytes for them.
+        /// The number of bytes for these classes.
         wanted: usize,
-        /// Bytes that are there.
+        /// The number of bytes found.
         found: usize,
     },
-    /// An entry is no solution, and Newton's method makes none of it.
+    /// An entry is no solution, and Newton's method does not converge from it to one.
     #[error("entry {0} of the start set is no solution")]
     Entry(usize),
 }
 
 impl StartSet {
-    /// The embedded set, read once. A test holds that the file is whole.
+    /// Returns the embedded set, which is read once. A test checks that the file is whole.
     ///
     /// # Panics
     /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
@@ -75,7 +76,7 @@ impl StartSet {
         SET.get_or_init(|| StartSet::built_in(EMBEDDED))
     }
 
-    /// The set within the program.
+    /// Reads the set within the program.
     fn built_in(bytes: &[u8]) -> StartSet {
         match StartSet::parse(bytes) {
             Ok(set) => set,
@@ -83,6 +84,8 @@ impl StartSet {
         }
     }
 
+    /// Reads the bytes of a start set and corrects its solutions by Newton's method.
+    ///
     /// # Errors
     ///
     /// When the bytes are no such file or an entry is no solution.
@@ -123,8 +126,8 @@ impl StartSet {
         }
     }
 
-    /// How many classes of this set the other has not, both being sets of the same target; their own duplicates count
-    /// as well.
+    /// Returns the number of classes of this set that the other does not have, both being sets of the same target;
+    /// duplicates within this set count as well.
     pub fn distinct_from(&self, other: &StartSet) -> usize {
         let all: Vec<Solution> = other.solutions.iter().chain(&self.solutions).copied().collect();
         let others = other.solutions.len();
@@ -141,7 +144,7 @@ impl StartSet {
         new
     }
 
-    /// The file's bytes.
+    /// Returns the bytes of the file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         for word in [VERSION, self.solutions.len() as u32, 0] {
@@ -161,14 +164,15 @@ impl StartSet {
     }
 }
 
-/// Classes nearer than this are one.
+/// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-7;
 
-/// From single precision, a few steps are enough.
+/// The number of Newton steps: from single precision, a few are enough.
 const NEWTON_STEPS: usize = 5;
 
-/// The T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with alpha = delta_j - a,
-/// beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to being one is taken.
+/// Computes the T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with
+/// alpha = delta_j - a, beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to
+/// being one is taken.
 pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     let mut answer = pivots;
     for j in 0..STEPS {
@@ -196,7 +200,7 @@ pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     answer
 }
 
-/// The largest |f| of the sixteen equations.
+/// Returns the largest |f| of the sixteen equations.
 pub fn largest_residual(of: &Solution, at: &Displacements) -> f64 {
     residuals(of, at).iter().flatten().map(|f| f.norm()).fold(0.0, f64::max)
 }

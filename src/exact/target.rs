@@ -1,4 +1,4 @@
-//! What is asked (nine points) and what answers it (a solution of the sixteen equations).
+//! The problem, nine precision points, and its answer, a solution of the sixteen equations.
 
 use crate::linkage::Complex;
 use thiserror::Error;
@@ -6,64 +6,65 @@ use thiserror::Error;
 /// The number of precision points beyond the first.
 pub const STEPS: usize = 8;
 
-/// delta_j = P_j - P_0 and their starred twins, j = 1 .. 8: all that the equations know of a target. Only real points
-/// have delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
+/// delta_j = P_j - P_0 and their starred twins, j = 1 .. 8: the equations depend on nothing else of a target. Only
+/// real points have delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Displacements {
-    /// delta_j.
+    /// The displacements delta_j.
     pub delta: [Complex; STEPS],
-    /// delta*_j.
+    /// Their starred twins delta*_j.
     pub starred: [Complex; STEPS],
 }
 
-/// Nine precision points, scaled by a power of two so that the farthest from the first is at a distance above 1/2 and at
-/// most 1.
+/// Nine precision points, scaled by a power of two so that the farthest from the first is at a distance above 1/2 and
+/// at most 1.
 ///
-/// A power of two, so that scaling rounds nothing: what is proved of the scaled points holds for the points as given.
+/// As the scale is a power of two, scaling rounds nothing: a proof for the scaled points holds for the points as
+/// given.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
     /// The points as given, in the order in which the path passes them.
     pub points: [Complex; STEPS + 1],
-    /// Length units of the points that are one unit of a [`Solution`]: the least power of two that is not below
+    /// The length, in units of the points, of one unit of a [`Solution`]: the least power of two that is not below
     /// max_j |P_j - P_0|.
     pub scale: f64,
     /// (P_j - P_0) / scale, rounded.
     pub displacements: Displacements,
 }
 
-/// Why nine points are no target.
+/// The reason for which nine points are no target.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum TargetError {
     /// A coordinate is not a finite number.
     #[error("point {point} is not finite")]
     NotFinite {
-        /// Its number, from one.
+        /// Number of the point, from one.
         point: usize,
     },
     /// The points lie too far apart, or too near to each other, for the numbers of a computer.
     #[error("the points extend over {size:e}; it must be between 1e-200 and 1e200")]
     Extent {
-        /// max_j |P_j - P_0|.
+        /// The extent max_j |P_j - P_0|.
         size: f64,
     },
     /// Two points coincide to rounding (closer than 1e-12 of the scale): the equations then have whole families of
     /// solutions.
     #[error("points {first} and {second} coincide")]
     Coincident {
-        /// The number of one, from one.
+        /// Number of the first point, from one.
         first: usize,
-        /// The number of the other.
+        /// Number of the second point, from one.
         second: usize,
     },
 }
 
-/// Points closer than this, in units of the scale, are one point.
+/// The distance, relative to the extent, within which two points count as one.
 const COINCIDENT: f64 = 1e-12;
 
 /// Between these extents neither a square nor its inverse leaves the range of a double.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
-/// The least power of two that is not below a positive normal number.
+/// Returns the least power of two that is not below a positive normal number.
 pub(super) fn power_of_two_above(x: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     let below = f64::from_bits(x.to_bits() & EXPONENT);
@@ -71,9 +72,12 @@ pub(super) fn power_of_two_above(x: f64) -> f64 {
 }
 
 impl Target {
+    /// Creates the target of nine points, in the order in which the path passes them.
+    ///
     /// # Errors
     ///
-    /// When a coordinate is not finite, two points coincide, or the points extend over more than 1e200 or less than 1e-200.
+    /// When a coordinate is not finite, two points coincide, or the points extend over more than 1e200 or less than
+    /// 1e-200.
     pub fn new(points: [Complex; STEPS + 1]) -> Result<Self, TargetError> {
         for (at, point) in points.iter().enumerate() {
             if !(point.re.is_finite() && point.im.is_finite()) {
@@ -104,11 +108,11 @@ pub struct Solution {
     pub pins: [Complex; 2],
     /// The ground pivots a of x and b of y.
     pub grounds: [Complex; 2],
-    /// x*, y*.
+    /// The starred twins x*, y* of the pins.
     pub pins_starred: [Complex; 2],
-    /// a*, b*.
+    /// The starred twins a*, b* of the ground pivots.
     pub grounds_starred: [Complex; 2],
-    /// T_j, the rotation of the coupler from the first point to point j.
+    /// The rotations T_j: that of the coupler from the first point to point j.
     pub rotations: [Complex; STEPS],
 }
 

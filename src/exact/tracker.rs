@@ -1,13 +1,15 @@
-//! Paths of solutions while the displacements move along a straight line: predictor, corrector, step control.
+//! Homotopy path tracking of solutions while the displacements move along a straight line: predictor, corrector, step
+//! control.
 //!
 //! ```text
 //! F(z(t), delta(t)) = 0,    delta(t) = (1 - t) from + t to,    0 <= t <= 1,    the twins alike
 //! ```
 //!
 //! One step: the polynomial through the last three (z, dz/dt), degree five, is continued to t + h; two full Newton
-//! steps e_1, e_2 correct it; dz/dt comes out of the elimination of the second. The step stands when e_1 is small and
-//! e_2 much smaller still. The next h follows from e_1 ~ h^6. Eight paths go abreast, each with its own t and h; a
-//! lane whose path has ended takes the next one. What becomes of a path depends on that path alone.
+//! steps e_1, e_2 correct it; dz/dt comes out of the elimination of the second. The step is accepted when e_1 is
+//! small and e_2 much smaller still. The next h follows from e_1 ~ h^6. Eight paths are tracked side by side, each
+//! with its own t and h; a lane whose path has ended takes the next one. The result of a path depends on that path
+//! alone.
 
 use super::equations::{DisplacementLanes, UNKNOWNS, Unknowns, solution, steps, unknowns};
 use super::lanes::{ComplexLanes, ORDER};
@@ -17,22 +19,23 @@ use crate::linkage::dispatch::vectorised;
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// What decides whether a step stands and how long the next one is.
+/// The parameters of the step control: the acceptance and length of steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
-    /// The first Newton step of an accepted step is at most this, relative to the unknowns.
+    /// The largest first Newton step of an accepted step, relative to the unknowns.
     pub accept: f64,
-    /// The second is at most this part of the first.
+    /// The largest ratio of the second Newton step to the first.
     pub contraction: f64,
     /// The first Newton step that the step control aims at.
     pub aim: f64,
-    /// The first step, and the longest one, in t.
+    /// The length of the first step, in t.
     pub first_step: f64,
-    /// See there.
+    /// The length of the longest step, in t.
     pub longest_step: f64,
-    /// A path whose step falls below this part of what is left of it, or below 1e-13, has met a singularity.
+    /// The shortest step, relative to the rest of the path: a path whose step falls below it, or below 1e-13, has met
+    /// a singularity.
     pub shortest_step: f64,
-    /// Steps, accepted or not, after which a path is given up.
+    /// The number of steps, accepted or not, after which a path is given up.
     pub most_steps: u32,
 }
 
@@ -51,7 +54,8 @@ impl Default for Parameters {
 }
 
 impl Parameters {
-    /// For paths that were lost, or came too near one another, at the tolerances before: `round` = 1, 2, ..
+    /// Returns tighter parameters for paths that were lost, or came too near one another, at the tolerances before:
+    /// `round` = 1, 2, ..
     pub fn tightened(&self, round: u32) -> Parameters {
         let factor = 0.05_f64.powi(round as i32);
         Parameters {
@@ -69,61 +73,61 @@ impl Parameters {
 /// A straight line in the space of displacements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// t = 0.
+    /// The displacements at t = 0.
     pub from: Displacements,
-    /// t = 1.
+    /// The displacements at t = 1.
     pub to: Displacements,
 }
 
-/// How a path ended.
+/// The reason for which a path ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
-    /// At t = 1.
+    /// The path arrived at t = 1.
     Arrived,
     /// Its steps became too short at `t`.
     Stalled {
-        /// There.
+        /// The t that the path reached.
         t: f64,
     },
     /// Too many steps; it got as far as `t`.
     OutOfSteps {
-        /// There.
+        /// The t that the path reached.
         t: f64,
     },
-    /// Someone asked for the end.
+    /// The caller cancelled the tracking.
     Cancelled,
 }
 
 /// The end of one path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tracked {
-    /// How it ended.
+    /// The reason for which it ended.
     pub ending: Ending,
-    /// Where.
+    /// The solution at its end.
     pub solution: Solution,
-    /// Steps, accepted or not.
+    /// The number of steps, accepted or not.
     pub steps: u32,
 }
 
-/// Nodes that the predictor remembers.
+/// The number of nodes that the predictor remembers.
 pub(super) const NODES: usize = 3;
 
-/// What the predictor knows of eight paths, the newest node first.
+/// The predictor's data of eight paths, the newest node first.
 struct State {
     values: [Unknowns; NODES],
     tangents: [Unknowns; NODES],
-    /// Where the nodes are.
+    /// The values of t at the nodes.
     t: [[f64; NODES]; LANES],
-    /// How many of them there are.
+    /// The number of nodes.
     nodes: [usize; LANES],
-    /// The next step.
+    /// The length of the next step, in t.
     h: [f64; LANES],
     steps: [u32; LANES],
-    /// The path in each lane.
+    /// The index of the path in each lane.
     path: [Option<usize>; LANES],
 }
 
-/// Weights of values and tangents that continue the Hermite polynomial through `nodes` to t.
+/// Computes the weights of values and tangents that continue the Hermite polynomial through `nodes` to t.
 #[inline(always)]
 pub(super) fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]) {
     let (mut of_value, mut of_tangent) = ([0.0; NODES], [0.0; NODES]);
@@ -143,8 +147,8 @@ pub(super) fn continuation(t: f64, nodes: &[f64]) -> ([f64; NODES], [f64; NODES]
     (of_value, of_tangent)
 }
 
-/// The relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR), with T_j in place of tau_j.
-/// Not finite where a step is not.
+/// Computes the relative change, lane by lane, squared: the sum of |dz_i|^2 / (|z_i|^2 + FLOOR), with T_j in place of
+/// tau_j. It is not finite if a step is not.
 #[inline(always)]
 pub(super) fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
     let one = ComplexLanes::splat(Complex::ONE);
@@ -156,7 +160,7 @@ pub(super) fn change_sq(step: &Unknowns, of: &Unknowns) -> F64x8 {
     sum
 }
 
-/// Unknowns below the root of this are not asked for relative accuracy.
+/// The square of the size below which the change of an unknown is not measured relative to it.
 const FLOOR: f64 = 1e-4;
 
 impl State {
@@ -186,7 +190,7 @@ impl State {
         self.path[lane] = Some(path);
     }
 
-    /// The point that the next step predicts, and its t.
+    /// Predicts the point of the next step; returns it with its t.
     #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
     #[inline(always)]
     fn predicted(&self) -> (Unknowns, [f64; LANES]) {
@@ -211,7 +215,7 @@ impl State {
         (z, to)
     }
 
-    /// Takes the new node in the lanes where `keep` is one.
+    /// Stores the new node in the lanes where `keep` is one.
     #[inline(always)]
     fn remember(&mut self, keep: F64x8, z: &Unknowns, tangent: &Unknowns) {
         let half = F64x8([0.5; LANES]);
@@ -228,7 +232,8 @@ impl State {
         solution(&std::array::from_fn(|i| self.values[0][i].get(lane)))
     }
 
-    /// Judges a lane's step and chooses the next: whether the step stands, and how the path ended if it did.
+    /// Accepts or rejects a lane's step and chooses the next; returns whether it was accepted, and the ending if the
+    /// path ended.
     fn judge(&mut self, lane: usize, to: f64, e: [f64; 2], with: &Parameters) -> (bool, Option<Ending>) {
         let t = &mut self.t[lane];
         self.steps[lane] += 1;
@@ -269,10 +274,11 @@ impl State {
     }
 }
 
-/// A second Newton step below this needs not be smaller than the first: near infinity rounding keeps both at this level.
+/// The size below which a second Newton step need not be smaller than the first: near infinity rounding keeps both at
+/// this level.
 const ROUNDING: f64 = 1e-6;
 
-/// Displacements and their velocity at each lane's t.
+/// Computes the displacements at each lane's t.
 #[inline(always)]
 fn displaced(from: &DisplacementLanes, velocity: &DisplacementLanes, t: F64x8) -> DisplacementLanes {
     let mut at = *from;
@@ -290,9 +296,10 @@ pub(super) fn velocity(along: &Segment) -> Displacements {
     }
 }
 
-/// Tracks every start along the segment on the threads of the current pool; the answers in the order of the starts.
+/// Tracks every start along the segment on the threads of the current pool; returns the ends in the order of the
+/// starts.
 ///
-/// Deterministic: a path's digits do not depend on threads or lanes. When `cancel` is set the rest is
+/// Deterministic: a path's digits do not depend on threads or lanes. Once `cancel` is set, the remaining paths end as
 /// [`Ending::Cancelled`].
 pub fn track(starts: &[Solution], along: &Segment, with: &Parameters, cancel: &AtomicBool) -> Vec<Tracked> {
     let next = AtomicUsize::new(0);
@@ -312,7 +319,7 @@ pub fn track(starts: &[Solution], along: &Segment, with: &Parameters, cancel: &A
     all
 }
 
-/// One thread's eight lanes: takes paths until none is left.
+/// Tracks paths in the eight lanes of one thread until none is left.
 #[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
 #[inline(always)]
 fn worker(

@@ -1,11 +1,11 @@
-//! The cut list: what to make of which size, and where the holes are.
+//! The cut list: the sizes of the plates and the places of their holes.
 
 use super::model::Model;
 use crate::plates::{Placement, Plate};
 use crate::report::csv::written;
 use crate::report::text::cell;
 
-/// One row a plate and pair of its holes.
+/// The columns; there is one row for each plate and pair of its holes.
 const COLUMNS: [&str; 10] = [
     "plate",
     "holes",
@@ -19,7 +19,7 @@ const COLUMNS: [&str; 10] = [
     "area_mm2",
 ];
 
-/// The distances of each pair of distinct holes: names and millimetres.
+/// Returns the names of each pair of distinct holes with their distance in millimetres.
 fn distances(plate: &Plate) -> Vec<(String, String, f64)> {
     let holes = plate.distinct_holes();
     let mut pairs = Vec::new();
@@ -31,13 +31,13 @@ fn distances(plate: &Plate) -> Vec<(String, String, f64)> {
     pairs
 }
 
-/// Length and width of the piece of stock: along the line of the first two holes, and across it.
+/// Returns the length and width of the piece of stock: along the line of the first two holes, and across it.
 fn size(plate: &Plate) -> [f64; 2] {
     let [low, high] = plate.bounds();
     [high.re - low.re, high.im - low.im]
 }
 
-/// What is left of the plate when its holes are cut.
+/// Returns the area of the plate without its holes.
 fn area(model: &Model<'_>, plate: &Plate) -> f64 {
     let hole = std::f64::consts::PI * (0.5 * model.hole).powi(2);
     plate.area() - hole * plate.distinct_holes().len() as f64
@@ -47,7 +47,7 @@ fn number(value: f64) -> String {
     format!("{value:.3}")
 }
 
-/// How many pins join the plates, and whether P has a hole of its own.
+/// Returns the number of pins that join the plates, and whether P has a hole of its own.
 fn pins(model: &Model<'_>) -> (usize, bool) {
     let linkage = &model.linkage;
     let joined = |holes: &[(String, crate::linkage::Complex)]| {
@@ -59,7 +59,7 @@ fn pins(model: &Model<'_>) -> (usize, bool) {
     (2 + ground.distinct_holes().len(), !joined(&coupler.distinct_holes()))
 }
 
-/// The list as text.
+/// Returns the list as text.
 pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let mut out = format!("Cut list: {}\n{}\n\n", model.heading(), crate::generator::mark());
     let thickness = number(model.thickness);
@@ -100,7 +100,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     out
 }
 
-/// The list as CSV, a row for each pair of holes of a plate.
+/// Returns the list as CSV, one row for each pair of holes of a plate.
 pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let rows = plates.iter().flat_map(|(plate, _)| {
         let holes = plate.distinct_holes();

@@ -1,4 +1,4 @@
-//! What is drawn in DXF: the skeleton for a sketch in a CAD program, the plates for a cutter.
+//! The DXF drawings: the skeleton for a sketch in a CAD program, and the plates for a cutter.
 
 use super::dxf::Drawing;
 use super::model::Model;
@@ -7,7 +7,7 @@ use crate::linkage::{Complex, Joints};
 use crate::plates::{Link, Placement, Plate};
 use crate::report::text::exact;
 
-/// Links as lines, the coupler curve, joints as circles of the hole's diameter, target points.
+/// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points.
 pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
     let mut drawing = Drawing::new(&[("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)]);
     let (a, b) = (model.linkage.crank_pivot(), model.linkage.follower_pivot());
@@ -37,7 +37,7 @@ fn straight(points: &[Complex]) -> Vec<(Complex, f64)> {
     points.iter().map(|p| (*p, 0.0)).collect()
 }
 
-/// A plate's layer.
+/// Returns the name of a plate's layer.
 fn layer(link: Link) -> &'static str {
     match link {
         Link::Ground => "GROUND",
@@ -47,7 +47,7 @@ fn layer(link: Link) -> &'static str {
     }
 }
 
-/// Each plate on its own layer: one closed contour, holes as true circles, both moved by half the kerf.
+/// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let colours = [8, 1, 5, 3];
     let layers: Vec<(&str, u8)> = plates.iter().map(|(plate, _)| layer(plate.link)).zip(colours).collect();

@@ -1,4 +1,4 @@
-//! A DXF document of AutoCAD 2000 (AC1015): the tables and blocks that readers ask for, entities in model space.
+//! A DXF document of AutoCAD 2000 (AC1015): the tables and blocks that readers require, and entities in model space.
 //!
 //! Source of the group codes: Autodesk, "AutoCAD 2000 DXF Reference" (1999). Lengths are millimetres
 //! (`$INSUNITS` = 4); text is ASCII, other characters as `\U+XXXX`.
@@ -6,7 +6,7 @@
 use crate::linkage::Complex;
 use std::fmt::Write;
 
-/// Handles of the fixed objects; entities and layers count on from [`FIRST_FREE`].
+/// Handles of the fixed objects; those of entities and layers follow from [`FIRST_FREE`].
 const MODEL_SPACE: u32 = 0x1F;
 const PAPER_SPACE: u32 = 0x1B;
 const FIRST_FREE: u32 = 0x100;
@@ -20,7 +20,7 @@ pub(super) struct Drawing {
     high: Complex,
 }
 
-/// Pairs of group code and value.
+/// Pairs of group code and value, as text.
 #[derive(Default)]
 struct Tags(String);
 
@@ -30,7 +30,7 @@ impl Tags {
     }
 
     fn number(&mut self, code: u16, value: f64) {
-        // Never with an exponent, the shortest that reads back the same; -0 is 0.
+        // Never with an exponent; the shortest text that reads back as the same number; -0 is written as 0.
         self.text(code, &format!("{}", value + 0.0));
     }
 
@@ -42,14 +42,14 @@ impl Tags {
         self.text(code, &format!("{value:X}"));
     }
 
-    /// A point at codes 10, 20, 30 (or 11, 21, 31).
+    /// Writes a point at codes 10, 20, 30 (or 11, 21, 31).
     fn point(&mut self, code: u16, at: Complex) {
         self.number(code, at.re);
         self.number(code + 10, at.im);
         self.number(code + 20, 0.0);
     }
 
-    /// A table's entry with its classes.
+    /// Writes a table's entry with its classes.
     fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
         self.text(0, kind);
         self.handle(if kind == "DIMSTYLE" { 105 } else { 5 }, handle);
@@ -75,7 +75,7 @@ impl Tags {
 }
 
 impl Drawing {
-    /// An empty drawing with layers of a name and a colour (AutoCAD's index).
+    /// Returns an empty drawing with layers, each with a name and a colour (AutoCAD's index).
     pub(super) fn new(layers: &[(&'static str, u8)]) -> Self {
         Drawing {
             layers: layers.to_vec(),
@@ -101,7 +101,7 @@ impl Drawing {
         self.high = Complex::new(self.high.re.max(at.re), self.high.im.max(at.im));
     }
 
-    /// A segment.
+    /// Draws a line segment.
     pub(super) fn line(&mut self, layer: &str, from: Complex, to: Complex) {
         self.entity("LINE", layer, "AcDbLine");
         self.entities.point(10, from);
@@ -110,7 +110,7 @@ impl Drawing {
         self.hold(to);
     }
 
-    /// A circle.
+    /// Draws a circle.
     pub(super) fn circle(&mut self, layer: &str, centre: Complex, radius: f64) {
         self.entity("CIRCLE", layer, "AcDbCircle");
         self.entities.point(10, centre);
@@ -120,14 +120,14 @@ impl Drawing {
         self.hold(centre + reach);
     }
 
-    /// A point.
+    /// Draws a point.
     pub(super) fn point(&mut self, layer: &str, at: Complex) {
         self.entity("POINT", layer, "AcDbPoint");
         self.entities.point(10, at);
         self.hold(at);
     }
 
-    /// A polyline of vertices, each with the bulge of what follows it.
+    /// Draws a polyline of vertices, each with the bulge of the segment after it.
     pub(super) fn polyline(&mut self, layer: &str, vertices: &[(Complex, f64)], closed: bool) {
         self.entity("LWPOLYLINE", layer, "AcDbPolyline");
         self.entities.whole(90, vertices.len() as i64);
@@ -142,7 +142,7 @@ impl Drawing {
         }
     }
 
-    /// The whole document; remarks are foreign text on one line each.
+    /// Returns the whole document; remarks are foreign text, written on one line each.
     pub(super) fn document(self, remarks: &[String]) -> String {
         let mut out = Tags::default();
         for remark in remarks {
@@ -247,7 +247,7 @@ impl Drawing {
         out.text(0, "ENDSEC");
     }
 
-    /// The view that a program opens the drawing with: all of it.
+    /// Writes the view with which a program opens the drawing: all of it.
     fn view(&self, out: &mut Tags) {
         let size = self.high - self.low;
         let (centre, height) = if size.re >= 0.0 {
@@ -334,7 +334,7 @@ fn objects(out: &mut Tags) {
     out.text(0, "ENDSEC");
 }
 
-/// Text on one line as DXF of 2000 has it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.
+/// Returns text on one line as DXF of 2000 writes it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.
 fn ascii(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut units = [0u16; 2];

@@ -1,4 +1,4 @@
-//! The formats, and which settings each takes.
+//! The export formats, and the settings that each accepts.
 
 use crate::generator::FileKind;
 
@@ -23,25 +23,25 @@ pub enum Format {
     Toml,
     /// The linkage as JSON.
     Json,
-    /// Hole distances and sizes of each plate, to read.
+    /// Hole distances and sizes of each plate, as text.
     CutList,
-    /// The same for a spreadsheet.
+    /// Hole distances and sizes of each plate, as CSV for a spreadsheet.
     CutListCsv,
-    /// A picture.
+    /// A picture (PNG).
     #[cfg(feature = "images")]
     Png,
-    /// The linkage in motion.
+    /// An animation of the linkage (GIF).
     #[cfg(feature = "images")]
     Gif,
 }
 
-/// A word that names no format of this build.
+/// The error that a word is not the name of a format of this build.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnknownFormat {
-    /// No such format.
+    /// There is no such format.
     #[error("there is no format {0:?}: choose from {list}", list = Format::list())]
     Unknown(String),
-    /// A format that was left out when the program was built.
+    /// The format was left out when the program was built.
     #[error("this build writes no {0} files: install linkwright with `--features images`")]
     NotBuilt(String),
 }
@@ -66,7 +66,7 @@ impl Format {
         Format::Gif,
     ];
 
-    /// Its name on the command line.
+    /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Format::Svg => "svg",
@@ -87,7 +87,7 @@ impl Format {
         }
     }
 
-    /// Whether the file is text, which may go to standard output.
+    /// Returns whether the file is text, which may go to standard output.
     pub fn is_text(self) -> bool {
         match self {
             #[cfg(feature = "images")]
@@ -96,7 +96,7 @@ impl Format {
         }
     }
 
-    /// The kind of its files.
+    /// Returns the kind of its files.
     pub fn kind(self) -> FileKind {
         match self {
             Format::Svg | Format::SvgPlates => FileKind::Svg,
@@ -114,7 +114,7 @@ impl Format {
         }
     }
 
-    /// The settings that mean something for it.
+    /// Returns the names of the settings that apply to it.
     pub fn settings(self) -> &'static [&'static str] {
         match self {
             Format::Svg | Format::Dxf => &["scale", "unit", "hole_mm", "crank_deg", "samples"],
@@ -137,7 +137,7 @@ impl Format {
         }
     }
 
-    /// The names of all formats, separated by commas.
+    /// Returns the names of all formats, separated by commas.
     pub fn list() -> String {
         Format::ALL.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ")
     }

@@ -1,4 +1,4 @@
-//! Pictures: the linkage over its coupler curve and target, still as PNG, in motion as GIF.
+//! Pictures of the linkage with its coupler curve and target: still as PNG, animated as GIF.
 
 use super::model::Model;
 use super::settings::{Refusal, Settings};
@@ -14,20 +14,20 @@ const COUPLER: Rgb = [0xd6, 0xdf, 0xe8];
 const CURVE: Rgb = [0xc0, 0x39, 0x2b];
 const TARGET: Rgb = [0x24, 0x71, 0xa3];
 
-/// The longer side of a still picture and of an animation, pixels.
+/// The longer side of a still picture and of an animation, in pixels.
 const STILL_PX: usize = 1000;
 const MOVING_PX: usize = 480;
-/// Pictures of a turn, each of this many hundredths of a second.
+/// The number of frames of a turn, and the time of each in hundredths of a second.
 const FRAMES: usize = 90;
 const DELAY: u16 = 4;
-/// Around the drawing, in parts of its longer side.
+/// The margin around the drawing, as a fraction of its longer side.
 const ROOM: f64 = 0.06;
 
 fn failed(what: &str) -> Refusal {
     Refusal::new(format!("the picture cannot be written: {what}"), "choose another size_px")
 }
 
-/// A still picture.
+/// Draws a still picture as PNG.
 pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
     let joints = model.pose(settings)?;
     let sheet = Sheet::around(model, &[joints], settings.size_px.unwrap_or(STILL_PX));
@@ -37,9 +37,10 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     Ok(with_software(bytes))
 }
 
-/// A PNG with its generator in a chunk `tEXt`, "Software" (PNG 1.2, 4.2.3), behind the header `IHDR`.
+/// Returns a PNG with the name of its generator in a chunk `tEXt`, "Software" (PNG 1.2, 4.2.3), after the header
+/// `IHDR`.
 fn with_software(mut png: Vec<u8>) -> Vec<u8> {
-    /// Signature (8 bytes) and header: length, type, 13 bytes, check sum.
+    /// The length of the signature (8 bytes) and the header: length, type, 13 bytes, check sum.
     const HEADER: usize = 8 + 4 + 4 + 13 + 4;
     let mut typed = b"tEXt".to_vec();
     typed.extend(format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION")).bytes());
@@ -54,7 +55,7 @@ fn with_software(mut png: Vec<u8>) -> Vec<u8> {
     png
 }
 
-/// The check sum of ISO 3309, as PNG has it (annex D of its specification).
+/// Returns the check sum of ISO 3309, as PNG uses it (annex D of its specification).
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(
@@ -64,7 +65,7 @@ fn crc32(bytes: &[u8]) -> u32 {
     })
 }
 
-/// A turn of the motion, endlessly.
+/// Draws a turn of the motion as GIF, repeated endlessly.
 pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
     let ((angle, assembly), start) = model.start()?;
     let curve = CouplerCurve::through(&model.linkage, angle, assembly, 8);
@@ -104,15 +105,15 @@ pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     Ok(bytes)
 }
 
-/// Where the plane lies on the picture.
+/// The map from the plane to the picture.
 struct Sheet {
     low: Complex,
     high: Complex,
-    /// Pixels a millimetre.
+    /// The scale, in pixels per millimetre.
     scale: f64,
     width: u32,
     height: u32,
-    /// The longer side in pixels: line widths are parts of it.
+    /// The longer side, in pixels: line widths are fractions of it.
     side: f32,
 }
 
@@ -168,7 +169,7 @@ impl Sheet {
         }
     }
 
-    /// What does not move: coupler curve and target.
+    /// Draws the parts that do not move: coupler curve and target.
     fn background(&self, model: &Model<'_>) -> Result<Pixmap, Refusal> {
         let mut picture = Pixmap::new(self.width, self.height).ok_or_else(|| failed("it is too large"))?;
         picture.fill(Color::from_rgba8(PAPER[0], PAPER[1], PAPER[2], 255));
@@ -182,7 +183,7 @@ impl Sheet {
         Ok(picture)
     }
 
-    /// The links and joints of a position.
+    /// Draws the links and joints of a position.
     fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, joints: &Joints) {
         let (a, b) = (model.linkage.crank_pivot(), model.linkage.follower_pivot());
         let Joints { crank_pin: c, follower_pin: d, coupler_point: p } = *joints;
@@ -214,7 +215,7 @@ fn paint(colour: Rgb) -> Paint<'static> {
     paint
 }
 
-/// The colours of an animation: each of the drawing's fading into the paper, which edges that are smoothed need.
+/// Returns the colours of an animation: the drawing's colours and their mixtures with the paper's, for smoothed edges.
 fn palette() -> Vec<Rgb> {
     const STEPS: i32 = 24;
     let mut colours = vec![PAPER];
@@ -222,7 +223,7 @@ fn palette() -> Vec<Rgb> {
         for step in 1..=STEPS {
             let mixed = |i: usize| {
                 let (from, to) = (i32::from(PAPER[i]), i32::from(colour[i]));
-                // Between two bytes it is a byte.
+                // A value between two bytes fits into a byte.
                 (from + (to - from) * step / STEPS) as u8
             };
             colours.push([mixed(0), mixed(1), mixed(2)]);
@@ -231,7 +232,7 @@ fn palette() -> Vec<Rgb> {
     colours
 }
 
-/// The nearest colours of a palette; what was asked before is remembered.
+/// A search for the nearest colours of a palette, which remembers earlier results.
 struct Nearest {
     palette: Vec<Rgb>,
     known: std::collections::BTreeMap<Rgb, u8>,
@@ -264,7 +265,7 @@ mod tests {
     #[test]
     fn the_check_sum_is_that_of_the_standard() {
         assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
-        // The end of every PNG.
+        // The last chunk of every PNG.
         assert_eq!(crc32(b"IEND"), 0xae42_6082);
     }
 }

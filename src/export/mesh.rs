@@ -1,31 +1,32 @@
-//! A plate as a closed body: its outline and holes as polygons, pulled up by the thickness.
+//! A plate as a closed mesh of triangles: its outline and holes as polygons, extruded by the thickness.
 //!
-//! Top and bottom are one triangulation of the outline less the holes (the ear-clipping of the `earcut` crate), the
-//! sides stand on the polygons' edges, so that each edge of the body belongs to two triangles that run through it in
-//! opposite directions. [`Mesh::is_closed`] checks that for every body that is made.
+//! Top and bottom are one triangulation of the outline without the holes (the ear-clipping of the `earcut` crate), and
+//! the sides are on the polygons' edges, so that each edge of the body belongs to two triangles that run through it in
+//! opposite directions. [`Mesh::is_closed`] checks that for every body.
 
 use crate::linkage::{Complex, cross};
 use crate::plates::{Edge, Placement, Plate};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-/// Corners of triangles, counter-clockwise from outside.
+/// A triangle mesh; the corners of each triangle are counter-clockwise seen from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Mesh {
-    /// In single precision, as every reader of STL keeps them.
+    /// The vertices, in single precision, as every reader of STL keeps them.
     pub(super) vertices: Vec<[f32; 3]>,
     pub(super) triangles: Vec<[usize; 3]>,
 }
 
-/// Phases of the polygons of holes, in parts of a side, such that no two corners lie on one level; another is tried
-/// where points in line leave a triangulation that is not closed.
+/// The phases of the polygons of holes, as fractions of a side, chosen so that no two corners have the same height; the
+/// next one is tried if collinear points lead to a triangulation that is not closed.
 const PHASES: [f64; 4] = [0.291, 0.137, 0.413, 0.067];
-/// The phase of each next hole differs by this.
+/// The difference between the phases of successive holes.
 const STAGGER: f64 = 0.019;
 
 impl Mesh {
-    /// A plate of a thickness with round holes, standing on z = 0; `chord` is how far arcs may lie from their
-    /// polygons. `None` where no closed body was found (holes that leave the plate).
+    /// Returns the mesh of a plate of a thickness with round holes, with its lower side at z = 0; `chord` is the
+    /// largest distance between arcs and their polygons. `None` if no closed body was found (holes that leave the
+    /// plate).
     pub(super) fn of(
         (plate, at): (&Plate, &Placement),
         hole: f64,
@@ -63,7 +64,7 @@ impl Mesh {
         for triangle in corners.chunks_exact(3) {
             let [i, j, k] = [triangle[0], triangle[1], triangle[2]];
             let at = |i: usize| Complex::new(flat[i][0], flat[i][1]);
-            // Upward whatever the triangulation's own direction.
+            // Upward, whatever the direction of the triangulation.
             let [i, j, k] = if cross(at(j) - at(i), at(k) - at(i)) < 0.0 { [i, k, j] } else { [i, j, k] };
             triangles.push([total + i, total + j, total + k]);
             triangles.push([i, k, j]);
@@ -82,7 +83,7 @@ impl Mesh {
         mesh.is_closed().then_some(mesh)
     }
 
-    /// Whether every edge is run through once in each direction, by triangles that have an area.
+    /// Returns whether every edge is run through once in each direction, by triangles that have an area.
     pub(super) fn is_closed(&self) -> bool {
         let mut edges: BTreeMap<(usize, usize), i32> = BTreeMap::new();
         for &[i, j, k] in &self.triangles {
@@ -94,7 +95,7 @@ impl Mesh {
             && self.triangles.iter().all(|triangle| self.normal(*triangle) != [0.0; 3])
     }
 
-    /// The unit normal of a triangle; zeros for one without area.
+    /// Returns the unit normal of a triangle; zeros for one without area.
     pub(super) fn normal(&self, triangle: [usize; 3]) -> [f64; 3] {
         let [p, q, r] = triangle.map(|i| self.vertices[i].map(f64::from));
         let u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
@@ -105,7 +106,7 @@ impl Mesh {
     }
 }
 
-/// How many sides a circle's polygon needs so that it lies within `chord` of it: r (1 - cos(pi/n)) <= chord.
+/// Returns the number of sides with which a circle's polygon lies within `chord` of it: r (1 - cos(pi/n)) <= chord.
 fn sides(radius: f64, chord: f64) -> usize {
     const FEWEST: f64 = 24.0;
     const MOST: f64 = 720.0;
@@ -113,7 +114,7 @@ fn sides(radius: f64, chord: f64) -> usize {
     (PI / angle).ceil().clamp(FEWEST, MOST) as usize
 }
 
-/// An outline as a polygon.
+/// Returns an outline as a polygon.
 fn polygon(edges: &[Edge], radius: f64, chord: f64) -> Vec<Complex> {
     let n = sides(radius, chord) as f64;
     let mut points = Vec::new();

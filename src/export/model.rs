@@ -1,4 +1,4 @@
-//! The linkage in millimetres, with every size of its plates decided.
+//! The linkage in millimetres, with all sizes of its plates.
 
 use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
@@ -8,17 +8,17 @@ use crate::record::Unit;
 use crate::report::scene::{circuits_through, middle_position};
 use crate::report::text::{brief, exact};
 
-/// The longest link of a file in millimetres: from a hundredth of a millimetre to ten kilometres.
+/// The allowed longest link in millimetres: from a hundredth of a millimetre to ten kilometres.
 const LONGEST_MM: std::ops::RangeInclusive<f64> = 1e-2..=1e7;
-/// The largest coordinate: a millionth of a millimetre is above its rounding.
+/// The largest allowed coordinate: here, a millionth of a millimetre is still above the rounding.
 const FARTHEST_MM: f64 = 1e9;
-/// A hole where a unit is given and the linkage leaves room for it.
+/// The default diameter of a hole, if a unit is given and the linkage has room for it.
 const HOLE_MM: f64 = 4.0;
-/// A hole where no unit is given, in parts of the longest link.
+/// The default diameter of a hole if no unit is given, as a fraction of the longest link.
 const HOLE_SHARE: f64 = 1.0 / 40.0;
-/// A hole at most, in parts of the distance of the nearest two.
+/// The largest default diameter of a hole, as a fraction of the distance of the nearest two.
 const HOLE_BESIDE: f64 = 1.0 / 3.0;
-/// Chord error in parts of a hole: 0.01 mm at 4 mm.
+/// The chord error as a fraction of a hole's diameter: 0.01 mm at 4 mm.
 const CHORD_SHARE: f64 = 1.0 / 400.0;
 
 /// A subject in millimetres.
@@ -26,10 +26,10 @@ pub(super) struct Model<'a> {
     pub(super) subject: &'a Subject,
     /// The linkage in millimetres.
     pub(super) linkage: FourBar,
-    /// One unit of the file, at this scale.
+    /// The length of one unit of the file in millimetres, at this scale.
     pub(super) mm_per_unit: f64,
     pub(super) target: Vec<Complex>,
-    /// Every circuit that is used: P along it, closed.
+    /// The closed paths of P along every circuit that is used.
     pub(super) curves: Vec<Vec<Complex>>,
     pub(super) hole: f64,
     pub(super) margin: f64,
@@ -110,7 +110,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// What was assumed and matters for a format, a sentence each.
+    /// Returns the assumptions that matter for a format, one sentence each.
     pub(super) fn notes(&self, format: Format) -> Vec<String> {
         let matters = |key: &&'static str| format.settings().contains(key);
         let (unit, sizes): (Vec<_>, Vec<_>) =
@@ -123,7 +123,8 @@ impl<'a> Model<'a> {
         notes
     }
 
-    /// `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`: foreign text, cleaned.
+    /// Returns a heading such as `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`; foreign text in
+    /// it is cleaned.
     pub(super) fn heading(&self) -> String {
         format!(
             "{}, {}, lengths in mm, 1 in the file is {} mm",
@@ -133,8 +134,8 @@ impl<'a> Model<'a> {
         )
     }
 
-    /// The position that is drawn: at the crank angle that is set, else at the first target point that is
-    /// reached, else in the middle of the motion.
+    /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
+    /// is reached, otherwise in the middle of the motion.
     pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
         if let Some(angle) = settings.crank_deg {
             let joints = self.linkage.position(angle.to_radians()).joints();
@@ -158,7 +159,7 @@ impl<'a> Model<'a> {
         self.start().map(|(_, joints)| joints)
     }
 
-    /// Crank angle (radians), assembly and joints where drawings start.
+    /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
     pub(super) fn start(&self) -> Result<((f64, AssemblyMode), Joints), Refusal> {
         let middle = middle_position(&self.linkage);
         let mut tried = self.subject.positions.iter().copied().chain([middle]);
@@ -173,7 +174,7 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// The four plates as they are meant to be, each with its place in the layout (with room for the kerf).
+    /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf).
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
         if let Some(refusal) = &self.crowded {
             return Err(refusal.clone());
@@ -189,18 +190,18 @@ impl<'a> Model<'a> {
         Ok(placed.collect())
     }
 
-    /// The outline of a plate as the tool's centre follows it: grown by half the kerf.
+    /// Returns the outline of a plate along which the tool's centre moves: grown by half the kerf.
     pub(super) fn cut(&self, plate: &Plate) -> Plate {
         plate.with_radius(plate.radius + 0.5 * self.kerf)
     }
 
-    /// The radius of a hole as the tool's centre follows it.
+    /// Returns the radius of a hole along which the tool's centre moves.
     pub(super) fn cut_hole(&self) -> f64 {
         0.5 * (self.hole - self.kerf)
     }
 }
 
-/// A unit in millimetres.
+/// Returns the length of a unit in millimetres.
 fn millimetres(unit: Unit) -> f64 {
     match unit {
         Unit::Mm => 1.0,
@@ -210,7 +211,7 @@ fn millimetres(unit: Unit) -> f64 {
     }
 }
 
-/// The unit of the file, or the one that is set where it has none.
+/// Returns the unit of the file, or that of the settings if the file has none.
 pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<Unit>, Refusal> {
     match (subject.unit, settings.unit) {
         (Some(own), Some(set)) if own != set => Err(Refusal::about(
@@ -223,7 +224,7 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
     }
 }
 
-/// A linkage that many times as large.
+/// Returns a linkage with all lengths multiplied by a factor.
 pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
     let p = linkage.natural_coordinates();
     let parameters = NaturalCoordinates {
@@ -274,7 +275,7 @@ fn too_far(settings: &Settings) -> Refusal {
     )
 }
 
-/// The distance of the nearest two holes of one plate that are two, and which they are.
+/// Returns the distance of the nearest two distinct holes of one plate, and their names.
 fn nearest_holes(linkage: &FourBar) -> (f64, String) {
     let mut nearest = (f64::INFINITY, String::new());
     for plate in Plate::all(linkage, 0.0) {
@@ -291,10 +292,10 @@ fn nearest_holes(linkage: &FourBar) -> (f64, String) {
     nearest
 }
 
-/// The largest number of two digits that is no larger.
+/// Returns the largest number of two significant digits that is not larger than a value.
 fn rounded_down(value: f64) -> f64 {
     let exponent = value.log10().floor() as i32 - 1;
-    // A little above, so that 0.3 is not taken for 0.29999.
+    // Slightly increased, so that 0.3 is not taken for 0.29999.
     let digits = (value / 10f64.powi(exponent) * (1.0 + 1e-12)).floor();
     format!("{digits}e{exponent}").parse().unwrap_or(value)
 }

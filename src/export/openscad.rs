@@ -1,11 +1,11 @@
-//! An OpenSCAD script: every length a parameter, the plates laid out or put together at a crank angle.
+//! An OpenSCAD script: every length is a parameter, the plates are laid out or assembled at a crank angle.
 
 use super::model::Model;
 use super::settings::{Refusal, Settings};
 use crate::generator::mark;
 use crate::report::text::exact;
 
-/// The script. Foreign text stands in a comment on one line, cleaned of everything that would end it.
+/// Returns the script. Foreign text is in a comment on one line, cleaned of everything that would end the comment.
 pub(super) fn script(model: &Model<'_>, settings: &Settings) -> Result<String, Refusal> {
     let layout = model.plates()?;
     let ((angle, assembly), _) = model.start()?;
@@ -47,7 +47,7 @@ pub(super) fn script(model: &Model<'_>, settings: &Settings) -> Result<String, R
     Ok(out)
 }
 
-/// What does the work; equations 10 to 18 of Romero (2016) give D and P.
+/// The part of the script that draws; equations 10 to 18 of Romero (2016) give D and P.
 const BODY: &str = r#"
 A = [Ax, Ay];
 B = [Bx, By];

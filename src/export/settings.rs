@@ -1,28 +1,28 @@
-//! `--set KEY=VALUE` of exports.
+//! Settings of exports: `--set KEY=VALUE`.
 
 use super::Format;
 use crate::record::Unit;
 use crate::toml_text::nearest;
 
-/// Why an export is refused.
+/// The reason why an export is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct Refusal {
-    /// The setting that it is about, as it was typed.
+    /// The setting at fault, as it was typed.
     pub setting: Option<(String, String)>,
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub help: String,
 }
 
 impl Refusal {
-    /// A refusal that is about no single setting.
+    /// Returns a refusal that is not about a single setting.
     pub(super) fn new(message: impl Into<String>, help: impl Into<String>) -> Self {
         Refusal { setting: None, message: message.into(), help: help.into() }
     }
 
-    /// A refusal about a setting, which is shown as it was typed where it was.
+    /// Returns a refusal about a setting, which is shown as it was typed, if it was.
     pub(super) fn about(
         settings: &Settings,
         key: &str,
@@ -34,46 +34,47 @@ impl Refusal {
     }
 }
 
-/// What can be set. What is absent follows from the linkage; lengths are millimetres of the finished file.
+/// The settings of an export. The default of an absent setting follows from the linkage; lengths are in millimetres of
+/// the finished file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// How many times as large; 1 by default.
+    /// The factor by which the linkage is scaled; 1 by default.
     pub scale: Option<f64>,
-    /// What lengths are in, where the file does not say.
+    /// The unit of the lengths, if the file has none.
     pub unit: Option<Unit>,
-    /// The diameter of every hole.
+    /// The diameter of every hole, in mm.
     pub hole_mm: Option<f64>,
-    /// From a hole's edge to the edge of the plate.
+    /// The distance from a hole's edge to the edge of the plate, in mm.
     pub margin_mm: Option<f64>,
-    /// The width that the cutting tool takes away: outlines grow by half of it, holes shrink.
+    /// The width of the cut that the tool takes away, in mm: outlines grow by half of it, holes shrink.
     pub kerf_mm: Option<f64>,
-    /// The thickness of the material.
+    /// The thickness of the material, in mm.
     pub thickness_mm: Option<f64>,
-    /// The least distance between plates that are laid out.
+    /// The least distance between plates that are laid out, in mm.
     pub gap_mm: Option<f64>,
-    /// How far a round edge may lie beside the polygon that stands for it.
+    /// The largest distance between a round edge and the polygon that replaces it, in mm.
     pub chord_mm: Option<f64>,
-    /// The crank angle of drawings, degrees from the x axis.
+    /// The crank angle of drawings, in degrees from the x axis.
     pub crank_deg: Option<f64>,
-    /// Points of the coupler curve.
+    /// The number of points of the coupler curve.
     pub samples: Option<usize>,
-    /// Crank angles of a cycle.
+    /// The number of crank angles of a cycle.
     pub positions: Option<usize>,
-    /// The speed of the crank.
+    /// The angular velocity of the crank, in rad/s.
     pub omega_rad_s: Option<f64>,
-    /// The longer side of a picture.
+    /// The longer side of a picture, in pixels.
     pub size_px: Option<usize>,
-    /// Pictures of a turn.
+    /// The number of frames of a turn.
     pub frames: Option<usize>,
-    /// As they were typed.
+    /// The settings as they were typed.
     typed: Vec<(String, String)>,
 }
 
 impl Settings {
-    /// Settings from pairs of key and value; the last of equal keys counts.
+    /// Returns the settings of pairs of key and value; the last of equal keys counts.
     ///
     /// # Errors
-    /// [`Refusal`] for a key that the format does not take and for a value that is none.
+    /// [`Refusal`] for a key that the format does not accept and for an invalid value.
     pub fn parse(format: Format, pairs: &[(String, String)]) -> Result<Self, Refusal> {
         let mut settings = Settings { typed: pairs.to_vec(), ..Settings::default() };
         for (key, value) in pairs {
@@ -124,23 +125,23 @@ impl Settings {
         Ok(())
     }
 
-    /// The scale, 1 where none is set.
+    /// Returns the scale, 1 if none is set.
     pub fn scale(&self) -> f64 {
         self.scale.unwrap_or(1.0)
     }
 
-    /// Points of the coupler curve: half a degree of the crank apart by default.
+    /// Returns the number of points of the coupler curve: half a degree of the crank apart by default.
     pub fn samples(&self) -> usize {
         self.samples.unwrap_or(crate::linkage::coupler_curve::DEFAULT_SAMPLES)
     }
 
-    /// Crank angles of a cycle: a degree apart by default.
+    /// Returns the number of crank angles of a cycle: one degree apart by default.
     pub fn positions(&self) -> usize {
         self.positions.unwrap_or(360)
     }
 }
 
-/// What a number may be.
+/// The allowed range of a number.
 #[derive(Clone, Copy, PartialEq)]
 enum Range {
     Positive,
@@ -148,7 +149,7 @@ enum Range {
     Any,
 }
 
-/// The largest number that a setting takes.
+/// The largest number that a setting accepts.
 const LARGEST: f64 = 1e9;
 
 fn number(key: &str, value: &str, range: Range) -> Result<f64, (String, String)> {
@@ -162,7 +163,7 @@ fn number(key: &str, value: &str, range: Range) -> Result<f64, (String, String)>
         let comma = value.contains(',').then_some(", with a decimal point instead of the comma");
         return wrong(format!("`{key}` is not a number: {value}{}", comma.unwrap_or_default()));
     };
-    // So that NaN is out of every range.
+    // Written so that NaN is out of every range.
     let good = number.abs() <= LARGEST
         && match range {
             Range::Positive => number >= 1.0 / LARGEST,

@@ -1,5 +1,5 @@
-//! STL as text: one solid a plate, laid out side by side on z = 0, in millimetres. A text STL has no comments: the mark
-//! of the generator stands behind the first solid's name.
+//! STL as text: one solid for each plate, laid out side by side on z = 0, in millimetres. A text STL has no comments:
+//! the mark of the generator follows the first solid's name.
 
 use super::mesh::Mesh;
 use super::model::Model;
@@ -8,7 +8,7 @@ use crate::generator::mark;
 use crate::plates::{Placement, Plate};
 use std::fmt::Write;
 
-/// The plates as solids.
+/// Returns the plates as solids.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result<String, Refusal> {
     let mut out = String::new();
     for (plate, at) in plates {
@@ -35,7 +35,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
 }
 
 fn numbers(v: [f32; 3]) -> String {
-    // -0 is 0.
+    // -0 is written as 0.
     let [x, y, z] = v.map(|x| x + 0.0);
     format!("{x} {y} {z}")
 }

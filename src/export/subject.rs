@@ -1,4 +1,4 @@
-//! What is exported: a linkage with what is known of its target.
+//! The subject of an export: a linkage with the known facts about its target.
 
 use crate::linkage::{AssemblyMode, FourBar};
 use crate::linkage_file::LinkageFile;
@@ -11,9 +11,9 @@ use crate::report::text::clean;
 pub struct Subject {
     /// The name of its problem or file: foreign text.
     pub name: String,
-    /// What it is, in words: `candidate 2 of 5`.
+    /// A short description of the linkage: `candidate 2 of 5`.
     pub standing: String,
-    /// What its lengths are in.
+    /// The unit of its lengths.
     pub unit: Option<Unit>,
     /// The linkage.
     pub linkage: FourBar,
@@ -21,12 +21,12 @@ pub struct Subject {
     pub target: Vec<[f64; 2]>,
     /// Whether the target is a closed curve.
     pub closed: bool,
-    /// Crank angle (radians) and assembly at each target point.
+    /// The crank angle (radians) and assembly at each target point.
     pub positions: Vec<(f64, AssemblyMode)>,
 }
 
 impl Subject {
-    /// A candidate of a record.
+    /// Returns the subject of a candidate of a record.
     pub fn of_candidate(record: &Record, candidate: &Candidate) -> Self {
         let path = &record.problem.resolved.task.path;
         let angles = candidate.crank_deg.iter().map(|angle| angle.to_radians());
@@ -44,7 +44,7 @@ impl Subject {
         }
     }
 
-    /// A linkage without a run.
+    /// Returns the subject of a linkage without a run.
     pub fn of_linkage(file: &LinkageFile) -> Self {
         Subject {
             name: file.name.clone(),
@@ -57,13 +57,13 @@ impl Subject {
         }
     }
 
-    /// The name on one line, without anything that commands a terminal; never empty.
+    /// Returns the name on one line, without characters that act on a terminal; never empty.
     pub fn title(&self) -> String {
         let name = clean(&self.name);
         if name.is_empty() { "unnamed".to_owned() } else { name }
     }
 
-    /// The name as a linkage file may have it.
+    /// Returns the name in a form that is legal in a linkage file.
     pub fn legal_name(&self) -> String {
         name::legal(&self.name, "linkage")
     }

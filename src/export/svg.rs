@@ -1,4 +1,4 @@
-//! SVG in true millimetres: width and height in mm, one unit of the view box a millimetre, y turned down.
+//! SVG drawings in true millimetres: width and height in mm, one unit of the view box a millimetre, y turned down.
 
 use super::model::Model;
 use crate::linkage::{Complex, Joints};
@@ -10,7 +10,7 @@ const LINKS: &str = "#34495e";
 const CURVE: &str = "#c0392b";
 const TARGET: &str = "#2471a3";
 
-/// A page of the plane.
+/// A page: a rectangle of the plane with its drawing.
 struct Page {
     low: Complex,
     high: Complex,
@@ -18,7 +18,7 @@ struct Page {
 }
 
 impl Page {
-    /// The box of the points and `room` around it.
+    /// Returns an empty page around the points with a margin `room`.
     fn around(points: impl IntoIterator<Item = Complex>, room: f64) -> Self {
         let (mut low, mut high) =
             (Complex::new(f64::INFINITY, f64::INFINITY), Complex::new(f64::NEG_INFINITY, f64::NEG_INFINITY));
@@ -34,7 +34,7 @@ impl Page {
         self.high - self.low
     }
 
-    /// `x y` on the page.
+    /// Returns the coordinates `x y` on the page.
     fn at(&self, p: Complex) -> String {
         format!("{} {}", mm(p.re - self.low.re), mm(self.high.im - p.im))
     }
@@ -64,7 +64,7 @@ impl Page {
                 Edge::Line { to, .. } => {
                     let _ = write!(data, "L{}", self.at(to));
                 }
-                // At most half a turn, counter-clockwise, which stays so for the eye when y is turned down.
+                // At most half a turn, counter-clockwise, which it also looks like after y is turned down.
                 Edge::Arc { from, to, centre, .. } => {
                     let r = mm((from - centre).norm());
                     let _ = write!(data, "A{r} {r} 0 0 0 {}", self.at(to));
@@ -85,7 +85,7 @@ impl Page {
         self.push(&format!(r#"<text x="{x}" y="{y}">{}</text>"#, xml(text)));
     }
 
-    /// The whole document: foreign text is escaped here.
+    /// Returns the whole document; foreign text is escaped here.
     fn document(self, title: &str, description: &str) -> String {
         let size = self.size();
         let (width, height) = (mm(size.re), mm(size.im));
@@ -105,14 +105,14 @@ impl Page {
     }
 }
 
-/// Millimetres to a millionth of a micrometre, without an exponent.
+/// Returns a length in millimetres with nine decimals at most, without an exponent.
 fn mm(x: f64) -> String {
     let text = format!("{x:.9}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Skeleton, coupler curve, joints and target.
+/// Draws the skeleton, coupler curve, joints and target.
 pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     let linkage = &model.linkage;
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
@@ -164,7 +164,7 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     page.document(&model.subject.title(), &model.heading())
 }
 
-/// The plates side by side, each in its own group.
+/// Draws the plates side by side, each in its own group.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let corners = plates.iter().flat_map(|(plate, at)| model.cut(plate).bounds().map(|corner| at.of(corner)));
     let corners: Vec<Complex> = corners.collect();

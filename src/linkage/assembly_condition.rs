@@ -1,15 +1,15 @@
-//! Whether a four-bar can be assembled at a crank angle: the seed's condition and the one that is needed.
+//! Assembly conditions of a four-bar at a crank angle: Romero's necessary condition and the sufficient one.
 //!
 //! With s = |CB| and the projections (N. N. Romero Nunez 2016, equations 12 and 16)
 //!
 //! ```text
 //! l1 = (b^2 + s^2 - c^2)/(2 s)      l2 = (d^2 + b^2 - e^2)/(2 b)
 //! condition (20):        (b^2 + d^2)/(l1^2 + l2^2) >= 1         necessary only
-//! what is needed:        b^2 >= l1^2   and   d^2 >= l2^2        the triangles C-D-B and C-D-P both close
+//! sufficient as well:    b^2 >= l1^2   and   d^2 >= l2^2        the triangles C-D-B and C-D-P both close
 //! ```
 //!
-//! (20) adds the two inequalities, so that a generous coupler triangle pays for a loop that does not close.
-//! Where they differ: A = (0, 0), B = (5, 0), a = 1, b = c = 2, d = e = 5 at 180 degrees has s = 6, l1 = 3,
+//! (20) adds the two inequalities, so that slack in the coupler triangle can hide a loop that does not close. An
+//! example in which they differ: A = (0, 0), B = (5, 0), a = 1, b = c = 2, d = e = 5 at 180 degrees has s = 6, l1 = 3,
 //! l2 = 1: (4 + 25)/(9 + 1) = 2.9, and no loop, for b^2 - l1^2 = -5.
 
 use super::{Complex, FLAT_TOLERANCE, FourBar};
@@ -21,11 +21,11 @@ pub struct AssemblyCondition {
     pub l1: f64,
     /// l2, along C -> D from C to the foot of P (equation 16).
     pub l2: f64,
-    /// (b^2 + d^2)/(l1^2 + l2^2), the left side of (20); `None` where l1 = l2 = 0 (it holds then).
+    /// (b^2 + d^2)/(l1^2 + l2^2), the left side of (20); `None` if l1 = l2 = 0 (it holds then).
     pub ratio: Option<f64>,
-    /// b^2 - l1^2 = h1^2, an area: negative where coupler and follower do not meet.
+    /// b^2 - l1^2 = h1^2, an area: negative if coupler and follower do not meet.
     pub loop_gap: f64,
-    /// d^2 - l2^2 = h2^2, an area: negative where no triangle C-D-P exists.
+    /// d^2 - l2^2 = h2^2, an area: negative if no triangle C-D-P exists.
     pub triangle_gap: f64,
     /// Whether the triangle C-D-B closes: b^2 - l1^2 >= 0, down to -[`FLAT_TOLERANCE`] b^2.
     pub loop_closes: bool,
@@ -35,15 +35,15 @@ pub struct AssemblyCondition {
 }
 
 impl AssemblyCondition {
-    /// Both conditions from s = |CB| and the lengths b, c, d, e.
+    /// Computes both conditions from s = |CB| and the lengths b, c, d, e.
     ///
-    /// `None` where s or b is zero (l1 or l2 is undefined: C on B, or no coupler), where a length is
-    /// negative or no finite number, and where a square overflows.
+    /// `None` if s or b is zero (l1 or l2 is undefined: C on B, or no coupler), if a length is negative or no finite
+    /// number, or if a square overflows.
     pub fn of_lengths(s: f64, b: f64, c: f64, d: f64, e: f64) -> Option<Self> {
         if !(s > 0.0 && b > 0.0 && c >= 0.0 && d >= 0.0 && e >= 0.0) {
             return None;
         }
-        // Factored, so that a flat triangle is told to the last digit.
+        // Factored, so that a flat triangle is recognised to the last digit.
         let l1 = (s + (b - c) * (b + c) / s) / 2.0;
         let l2 = (b + (d - e) * (d + e) / b) / 2.0;
         let loop_gap = (b - l1) * (b + l1);
@@ -66,20 +66,20 @@ impl AssemblyCondition {
         })
     }
 
-    /// Condition (20) as the seed has it: necessary, not sufficient. Where the triangles are flat
-    /// it may fail by rounding; [`AssemblyCondition::sufficient`] takes them as flat.
+    /// Returns whether condition (20) holds as Romero states it: necessary, not sufficient. If the triangles are flat
+    /// it may fail by rounding; [`AssemblyCondition::sufficient`] has a tolerance for them.
     pub fn necessary(&self) -> bool {
         self.ratio.is_none_or(|ratio| ratio >= 1.0)
     }
 
-    /// Whether both triangles close: the linkage can be assembled at this distance.
+    /// Returns whether both triangles close, so that the linkage can be assembled at this distance.
     pub fn sufficient(&self) -> bool {
         self.loop_closes && self.triangle_closes
     }
 }
 
 impl FourBar {
-    /// Both conditions at a crank angle, radians; `None` where C lies on B or the angle is no number.
+    /// Computes both conditions at a crank angle, radians; `None` if C lies on B or the angle is no number.
     ///
     /// ```
     /// # use linkwright::linkage::*;

@@ -10,7 +10,7 @@
 //! | the second, at B | B, G | B - (1-z) w3, G + (1-z) w2 | -(1-z) w3, (1-z) w4, (1-z) w2 | B - (1-z) w3 + w4 |
 //!
 //! Every link of a cognate is a link of the original, turned and scaled by a constant: it turns *in step* with
-//! it, at a constant phase. Of the two links on the ground the input is the one that turns fully where exactly
+//! it, at a constant phase. Of the two links on the ground the input is the one that turns fully if exactly
 //! one does; otherwise the first cognate is driven at A (in step with the coupler) and the second at G (in
 //! step with the original's crank, so that it keeps the timing):
 //!
@@ -28,7 +28,7 @@
 //! - P on D (z = 1): the second has no links and G = B; of the first, crank and coupler have changed places.
 //! - P on the line C-D (z real): G lies on the line A-B, all is well.
 //! - A parallelogram (b = g, c = a, uncrossed): its coupler does not turn, so that the link in step with it
-//!   stands still and the cognates are kites held in their folded position. The first cognate then has its
+//!   does not turn either and the cognates are kites held in their folded position. The first cognate then has its
 //!   driven pin on its other pivot: its position is undetermined, or by rounding arbitrary, for its follower
 //!   turns freely about G, the centre of the original's curve.
 //! - Coincident pivots (g = 0): G is there too, and all three turn as rigid wholes.
@@ -42,25 +42,25 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// A moving link of the original linkage, as a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OriginalLink {
-    /// A -> C.
+    /// The crank, A -> C.
     Crank,
-    /// C -> D.
+    /// The coupler, C -> D.
     Coupler,
-    /// B -> D.
+    /// The follower, B -> D.
     Follower,
 }
 
-/// Which link of the original a link of the cognate turns in step with.
+/// The phase relation between a link of the cognate and the link of the original with which it turns in step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InStep {
     /// The link of the original.
     pub with: OriginalLink,
-    /// The angle of the cognate's link less that of the original's, radians in (-pi, pi]; constant. Where it
-    /// is meant as a vector: crank A' -> C', coupler C' -> D', follower B' -> D'.
+    /// The angle of the cognate's link less that of the original's, radians in (-pi, pi]; constant. The cognate's links
+    /// are taken as the vectors crank A' -> C', coupler C' -> D', follower B' -> D'.
     pub phase: f64,
 }
 
-/// Which pivot of the original a cognate stands on; its other pivot is G.
+/// The fixed pivot that a cognate shares with the original; its other pivot is G.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SharedPivot {
     /// A: the first cognate.
@@ -69,7 +69,7 @@ pub enum SharedPivot {
     Follower,
 }
 
-/// Why there is no cognate.
+/// The reason why there is no cognate.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CognateError {
     /// The coupler point lies on the pin of the shared side, and the cognate's links have no length.
@@ -78,10 +78,10 @@ pub enum CognateError {
     /// The original is open at the crank angle that the cognate was asked for.
     #[error("the linkage does not close at a crank angle of {crank_deg} degrees")]
     Open {
-        /// Degrees.
+        /// The crank angle of the original, degrees.
         crank_deg: f64,
     },
-    /// A length or coordinate of the cognate is beyond what a linkage may have.
+    /// A length or coordinate of the cognate is outside the range allowed for a linkage.
     #[error("the cognate is no linkage: {0}")]
     Linkage(#[from] LinkageError),
 }
@@ -91,13 +91,13 @@ pub enum CognateError {
 pub struct Cognate {
     /// The pivot that it shares with the original.
     pub shared: SharedPivot,
-    /// The cognate. Its t1 is that of the position that it was asked for.
+    /// The cognate as a four-bar; its t1 is that of the position for which it was computed.
     pub linkage: FourBar,
-    /// What its crank turns in step with.
+    /// The link of the original with which the cognate's crank turns in step.
     pub crank: InStep,
-    /// What its coupler turns in step with.
+    /// The link of the original with which the cognate's coupler turns in step.
     pub coupler: InStep,
-    /// What its follower turns in step with.
+    /// The link of the original with which the cognate's follower turns in step.
     pub follower: InStep,
     original: FourBar,
     /// Its links in the order (crank, coupler, follower), as factors of the original's.
@@ -105,17 +105,17 @@ pub struct Cognate {
 }
 
 impl Cognate {
-    /// The linkage that it is a cognate of.
+    /// Returns the original linkage.
     pub fn original(&self) -> FourBar {
         self.original
     }
 
-    /// The crank angle (radians) and t1 of the cognate at the position of the original with the crank angle
+    /// Computes the crank angle (radians) and t1 of the cognate at the position of the original with the crank angle
     /// `crank_angle` and the assembly `assembly`, from the actual joints.
     ///
-    /// The angle is `crank_angle` plus the phase where the two cranks turn in step, full turns included, and
-    /// in (-pi, pi] otherwise. At a toggle of the cognate both t1 are right within rounding. `None` where the
-    /// original is open or undetermined.
+    /// The angle is `crank_angle` plus the phase if the two cranks turn in step, full turns included, and in (-pi, pi]
+    /// otherwise. At a toggle of the cognate both t1 are right within rounding. `None` if the original is open or
+    /// undetermined.
     ///
     /// ```
     /// # use linkwright::linkage::*;
@@ -150,18 +150,18 @@ impl Cognate {
 }
 
 impl FourBar {
-    /// G = A + z (B - A), the third pivot, which both cognates share.
+    /// Returns G = A + z (B - A), the third pivot, which both cognates share.
     pub fn cognate_pivot(&self) -> Complex {
         self.crank_pivot() + self.coupler_ratio() * (self.follower_pivot() - self.crank_pivot())
     }
 
-    /// The two cognates, [at A, at B], as the module describes; each is told by its nine parameters, and its
-    /// t1 belongs to a position in the middle of the original's input range (90 degrees from the ground line
-    /// where the input turns fully). Another circuit or branch: [`FourBar::cognates_at`].
+    /// Computes the two cognates, [at A, at B], as the module describes. The t1 of each belongs to a position in the
+    /// middle of the original's input range (90 degrees from the ground line if the input turns fully). For another
+    /// circuit or branch see [`FourBar::cognates_at`].
     ///
     /// # Errors
-    /// [`CognateError`] for each one that does not exist; [`CognateError::Open`] for a linkage that cannot be
-    /// joined at all.
+    /// [`CognateError`] for each one that does not exist; [`CognateError::Open`] for a linkage that cannot be assembled
+    /// at all.
     pub fn cognates(&self) -> [Result<Cognate, CognateError>; 2] {
         let middle = match self.mobility().input {
             InputRange::One(arc) | InputRange::Two([arc, _]) => arc.middle,
@@ -170,11 +170,11 @@ impl FourBar {
         self.cognates_at(middle)
     }
 
-    /// The two cognates, [at A, at B], whose t1 belongs to the original's position at `crank_angle` (radians)
+    /// Computes the two cognates, [at A, at B], whose t1 belongs to the original's position at `crank_angle` (radians)
     /// with its own t1.
     ///
     /// # Errors
-    /// As [`FourBar::cognates`]; [`CognateError::Open`] where the original does not close there.
+    /// As [`FourBar::cognates`]; [`CognateError::Open`] if the original does not close there.
     pub fn cognates_at(&self, crank_angle: f64) -> [Result<Cognate, CognateError>; 2] {
         [SharedPivot::Crank, SharedPivot::Follower].map(|shared| self.cognate(shared, crank_angle))
     }

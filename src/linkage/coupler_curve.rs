@@ -1,15 +1,15 @@
 //! The coupler curve of a circuit: samples, length, and the distance from a point.
 //!
-//! A circuit is run through by one parameter tau in [0, 2 pi): the crank angle itself where the input turns
-//! fully, psi of [`InputArc`](super::InputArc) where it rocks (there t1 = sign cos tau, so that both branches
-//! and their toggles are passed smoothly).
+//! A circuit is parametrised by tau in [0, 2 pi): the crank angle itself if the input turns fully, psi of
+//! [`InputArc`](super::InputArc) if it rocks (there t1 = sign cos tau, so that both branches and their toggles are
+//! passed smoothly).
 
 use super::dispatch::vectorised;
 use super::lane::LANES;
 use super::{AssemblyMode, Circuit, Complex, FourBar, Mobility, dot, length};
 use std::f64::consts::TAU;
 
-/// How many samples a full circuit gets when nothing else is asked: 0.5 degrees apart.
+/// Default number of samples of a full circuit: 0.5 degrees apart.
 pub const DEFAULT_SAMPLES: usize = 720;
 
 /// The coupler curve of one circuit.
@@ -18,9 +18,9 @@ pub struct CouplerCurve {
     linkage: FourBar,
     mobility: Mobility,
     circuit: Circuit,
-    /// P at tau = 2 pi i / n; `None` where the loop is open (only within rounding of a toggle).
+    /// P at tau = 2 pi i / n; `None` if the loop is open (only within rounding of a toggle).
     samples: Vec<Option<Complex>>,
-    /// The same as columns of x and y, infinitely far away where the loop is open: a loop over them becomes vector
+    /// The samples as columns of x and y, infinitely far away if the loop is open: a loop over them becomes vector
     /// instructions.
     columns: [Vec<f64>; 2],
     /// The largest distance between neighbouring samples.
@@ -30,16 +30,16 @@ pub struct CouplerCurve {
 /// The nearest point of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// The parameter of the circuit.
+    /// The parameter tau of the circuit at the nearest point.
     pub parameter: f64,
-    /// The point.
+    /// The nearest point of the curve.
     pub point: Complex,
-    /// Its distance.
+    /// Its distance from the given point.
     pub distance: f64,
 }
 
 impl CouplerCurve {
-    /// The curve of the circuit that holds the given position, with `samples` samples (at least 8).
+    /// Samples the curve of the circuit that holds the given position, with `samples` samples (at least 8).
     pub fn through(linkage: &FourBar, crank_angle: f64, assembly: AssemblyMode, samples: usize) -> Self {
         let mobility = linkage.mobility();
         let circuit = mobility.branch(crank_angle, assembly).circuit;
@@ -56,7 +56,7 @@ impl CouplerCurve {
         curve
     }
 
-    /// The crank angle and the assembly at a parameter of the circuit.
+    /// Returns the crank angle and the assembly mode at a parameter of the circuit.
     pub fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
         match self.mobility.arc(self.circuit) {
             None => (parameter, self.linkage.assembly()),
@@ -64,24 +64,24 @@ impl CouplerCurve {
         }
     }
 
-    /// P at a parameter of the circuit; `None` where the loop is open.
+    /// Computes P at a parameter of the circuit; `None` if the loop is open.
     pub fn point_at(&self, parameter: f64) -> Option<Complex> {
         let (crank_angle, assembly) = self.position_at(parameter);
         self.linkage.position_with(crank_angle, assembly).joints().map(|j| j.coupler_point)
     }
 
-    /// The sampled points in the order of the parameter.
+    /// Iterates over the sampled points in the order of the parameter.
     pub fn points(&self) -> impl Iterator<Item = Complex> + '_ {
         self.samples.iter().flatten().copied()
     }
 
-    /// The length of the closed curve, as the sum of the chords between samples.
+    /// Computes the length of the closed curve, as the sum of the chords between samples.
     pub fn length(&self) -> f64 {
         let points: Vec<Complex> = self.points().collect();
         (0..points.len()).map(|i| length(points[(i + 1) % points.len()] - points[i])).sum()
     }
 
-    /// The distance between two samples; 0 where one of them is open.
+    /// Returns the distance between two samples; 0 if one of them is open.
     fn chord(&self, i: usize, j: usize) -> f64 {
         match (self.samples[i], self.samples[j]) {
             (Some(p), Some(q)) => length(p - q),
@@ -89,10 +89,11 @@ impl CouplerCurve {
         }
     }
 
-    /// The nearest point of the curve; `None` for a curve without a point.
+    /// Computes the nearest point of the curve; `None` for a curve without a point.
     ///
-    /// Every sample that is a local minimum of the distance and could still win (its distance less the
-    /// longest chord next to it is below the best) is refined by golden section between its neighbours.
+    /// Every sample that is a local minimum of the distance and could still be the nearest (its distance less the
+    /// longest chord next to it is below the best) is refined by successive interpolation, or by golden section if that
+    /// fails, between its neighbours.
     pub fn nearest(&self, to: Complex) -> Option<Nearest> {
         let n = self.samples.len();
         let mut coarse = vec![0.0; n];
@@ -140,20 +141,21 @@ impl CouplerCurve {
         nearest
     }
 
-    /// The local minimum of the distance over [middle - step, middle + step] by successive interpolation: the vector
-    /// P - T is interpolated by a quadratic through the last three positions, whose nearest point to T is the next one.
-    /// Interpolating the vector instead of its square keeps all digits where the curve passes through T.
+    /// Finds the local minimum of the distance over [middle - step, middle + step] by successive interpolation: the
+    /// vector P - T is interpolated by a quadratic through the last three positions, whose nearest point to T is the
+    /// next one. Interpolating the vector instead of its square keeps all digits where the curve passes through T.
     ///
-    /// `around`: P at middle, middle - step and middle + step. `None` where that leaves the interval, ends at no minimum
-    /// or does not settle: on corners, at toggles, between two minima.
+    /// `around`: P at middle, middle - step and middle + step. `None` if the search leaves the interval, ends at no
+    /// minimum or does not settle: on corners, at toggles, between two minima.
     fn interpolated(
         &self,
         to: Complex,
         [middle, step]: [f64; 2],
         around: [Option<Complex>; 3],
     ) -> Option<Nearest> {
-        // A last step of 1e-9 rad leaves an error of its square and less. Steps below 1e-6 that no longer shrink are
-        // rounding of the differences; what they leave of the distance is their square too.
+        // After a last step of 1e-9 rad the parameter's error is smaller still, and next to a minimum the distance differs
+        // by its square. Steps below 1e-6 that no longer shrink are rounding of the differences, in proportion to the
+        // distance: their square is rounding of the distance too.
         const SETTLED: f64 = 1e-9;
         const ROUNDING: f64 = 1e-6;
         const ROUNDS: usize = 12;
@@ -179,7 +181,7 @@ impl CouplerCurve {
         None
     }
 
-    /// Golden section on the squared distance over [middle - step, middle + step].
+    /// Minimises the squared distance over [middle - step, middle + step] by golden section.
     fn refine(&self, to: Complex, middle: f64, step: f64) -> Option<Nearest> {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
         // 0.618^60 of a step is below the rounding of the parameter.
@@ -209,11 +211,11 @@ impl CouplerCurve {
     }
 }
 
-/// How far from its first place the quadratic through three places (t, r) is nearest to r = 0, near that place; `None`
-/// where two of them are one, or where its distance has no minimum there.
+/// Computes the shift s from the first of three places (t, r) to the point at which the quadratic through them is
+/// nearest to r = 0, near that place; `None` if two of the places are one, or if the distance has no minimum there.
 ///
-/// r(t0 + s) = r0 + v s + w s^2 with divided differences v and w; Newton's method on the derivative of |r|^2 / 2, which is
-/// r . (v + 2 w s).
+/// r(t0 + s) = r0 + v s + w s^2 with divided differences v and w; Newton's method on the derivative of |r|^2 / 2, which
+/// is r . (v + 2 w s).
 fn nearest_of_quadratic([(t0, r0), (t1, r1), (t2, r2)]: [(f64, Complex); 3]) -> Option<f64> {
     const ROUNDS: usize = 6;
     if t0 == t1 || t0 == t2 || t1 == t2 {
@@ -243,7 +245,7 @@ mod tests {
     use super::*;
     use crate::solve::streams::{stream, uniform};
 
-    /// Linkages of each type, and one near a change point.
+    /// Returns linkages of each type, and one near a change point.
     fn linkages() -> Vec<FourBar> {
         let shapes = [
             ([4.0, 2.0, 5.0, 5.0], [2.5, 4.3]),
@@ -261,8 +263,8 @@ mod tests {
         shapes.into_iter().map(linkage).collect()
     }
 
-    /// Distances agree within this part of 1 + themselves: next to a change point the curve all but has a corner, and an
-    /// error of 1e-8 in the parameter shows there.
+    /// Tolerance of a distance, as a part of 1 + the distance: next to a change point the curve all but has a corner,
+    /// and an error of 1e-8 in the parameter shows there.
     const WITHIN: f64 = 1e-11;
 
     #[test]
@@ -299,8 +301,10 @@ mod tests {
         for linkage in linkages() {
             let angle = linkage.mobility().arc(Circuit { index: 0 }).map_or(0.3, |arc| arc.middle);
             let curve = CouplerCurve::through(&linkage, angle, AssemblyMode::Plus, DEFAULT_SAMPLES);
-            for _ in 0..400 {
-                let Some(to) = curve.point_at(uniform(draws, 0.0, TAU)) else { continue };
+            let points: Vec<Complex> =
+                (0..400).filter_map(|_| curve.point_at(uniform(draws, 0.0, TAU))).collect();
+            assert!(points.len() >= 396, "{}", points.len());
+            for to in points {
                 let distance = curve.nearest(to).expect("a curve").distance;
                 assert!(distance <= 1e-12, "{to} {distance:e}");
             }

@@ -26,7 +26,7 @@ pub fn vectorised<R>(f: impl FnOnce() -> R) -> R {
     f()
 }
 
-/// The name of the instruction set that [`vectorised`] uses on this machine.
+/// Returns the name of the instruction set that [`vectorised`] uses on this machine.
 pub fn instruction_set() -> &'static str {
     #[cfg(target_arch = "x86_64")]
     {

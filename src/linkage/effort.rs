@@ -1,9 +1,10 @@
-//! Counts positions of linkages between two questions about a stop, in this crate's own tests; elsewhere it does nothing.
+//! Counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does
+//! nothing.
 //!
-//! A search that is stopped ends as soon as it asks. What it may do between two questions is bounded in positions of the
-//! linkage: a number that does not depend on the machine.
+//! A stopped search ends at its next check. Its work between two checks is bounded in positions of the linkage, a
+//! number that does not depend on the machine.
 
-/// So many positions are about to be computed on this thread.
+/// Records that so many positions are about to be computed on this thread.
 #[inline(always)]
 pub(crate) fn computed(positions: usize) {
     #[cfg(test)]
@@ -12,7 +13,7 @@ pub(crate) fn computed(positions: usize) {
     let _ = positions;
 }
 
-/// The question whether to stop is asked on this thread. Whether a test wants the answer to be yes.
+/// Records a check for a stop on this thread and returns whether a test demands the stop.
 #[inline(always)]
 pub(crate) fn is_stopped_by_a_test() -> bool {
     #[cfg(test)]
@@ -25,14 +26,14 @@ pub(crate) fn is_stopped_by_a_test() -> bool {
 pub(crate) mod counted {
     use std::cell::Cell;
 
-    /// The counts of this thread.
+    /// Counters of this thread.
     #[derive(Clone, Copy, Debug, Default)]
     pub(crate) struct Counts {
-        /// Questions so far.
+        /// Number of checks so far.
         pub asked: u64,
-        /// The most positions between two of them, before the stop.
+        /// Largest number of positions between two checks, before the stop.
         pub most: u64,
-        /// Positions since the stop.
+        /// Number of positions since the stop.
         pub after: u64,
         since: u64,
         stop_at: Option<u64>,
@@ -77,12 +78,12 @@ pub(crate) mod counted {
         counts.is_stopped()
     }
 
-    /// Begins anew; from the question `stop_at` on the answer is yes.
+    /// Resets the counters; from check number `stop_at` on the search is to stop.
     pub(crate) fn begin(stop_at: Option<u64>) {
         COUNTS.with(|cell| cell.set(Counts { stop_at, ..Counts::default() }));
     }
 
-    /// The counts since the last beginning.
+    /// Returns the counts since the last call of [`begin`].
     pub(crate) fn counts() -> Counts {
         COUNTS.with(Cell::get)
     }

@@ -1,4 +1,4 @@
-//! How the coupler point moves when a parameter or the crank angle changes.
+//! Gradient of the coupler point by the linkage's parameters and by the crank angle.
 //!
 //! With unit vectors u along C -> D and v along B -> D, the two distance constraints give
 //!
@@ -7,7 +7,7 @@
 //! dP = dC + u dz + i u Z dtheta3,                              Z = coupler offset in the coupler's frame
 //! ```
 //!
-//! <v, i u> is the sine of the transmission angle: at a toggle there is no gradient, and none is made up.
+//! <v, i u> is the sine of the transmission angle: at a toggle there is no gradient, and none is returned.
 
 use super::{AssemblyMode, Complex, FourBar, dot, turned};
 
@@ -15,7 +15,7 @@ use super::{AssemblyMode, Complex, FourBar, dot, turned};
 /// correct digit in a gradient there.
 pub const TOGGLE_SINE: f64 = 1e-12;
 
-/// dP by each parameter: the shape (coupler point in the coupler's frame) and the crank angle.
+/// Gradient of P: dP by each parameter of the shape (coupler point in the coupler's frame) and by the crank angle.
 ///
 /// Columns of `shape`: Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,10 +26,10 @@ pub struct ShapeGradient {
     pub crank_angle: Complex,
 }
 
-/// The frame of one closed position, from which gradients are built.
+/// Unit vectors along the moving links at one closed position, from which gradients are built.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    /// e^{i phi}.
+    /// e^{i phi}, the unit vector from A to C.
     pub crank: Complex,
     /// u, the unit vector from C to D.
     pub coupler: Complex,
@@ -37,7 +37,7 @@ pub struct Frame {
     pub follower: Complex,
 }
 
-/// The gradient in a frame; `None` at a toggle.
+/// Computes the gradient in a frame; `None` at a toggle.
 ///
 /// `crank` = a, `coupler` = b, `offset` = Z.
 #[inline]
@@ -69,7 +69,7 @@ pub fn shape_gradient(frame: &Frame, crank: f64, coupler: f64, offset: Complex) 
 }
 
 impl FourBar {
-    /// The unit vectors along crank, coupler and follower at a closed position; `None` where the loop is open.
+    /// Computes the unit vectors along crank, coupler and follower at a closed position; `None` if the loop is open.
     pub fn frame(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<Frame> {
         let joints = self.position_with(crank_angle, assembly).joints()?;
         Some(Frame {
@@ -79,11 +79,11 @@ impl FourBar {
         })
     }
 
-    /// dP by the nine natural coordinates (Ax, Ay, Bx, By, a, b, c, d, e) and by the crank angle.
+    /// Computes dP by the nine natural coordinates (Ax, Ay, Bx, By, a, b, c, d, e) and by the crank angle.
     ///
-    /// From the shape's gradient by coupler_x = (d^2 + b^2 - e^2)/(2b) and
-    /// coupler_y = t2 sqrt(d^2 - coupler_x^2). `None` where the loop is open, at a toggle, and where P lies
-    /// on the line C-D (there coupler_y has no derivative by b, d and e).
+    /// It follows from the shape's gradient with coupler_x = (d^2 + b^2 - e^2)/(2b) and coupler_y = t2 sqrt(d^2 -
+    /// coupler_x^2). `None` if the loop is open, at a toggle, and if P lies on the line C-D (there coupler_y has no
+    /// derivative by b, d and e).
     pub fn gradient(&self, crank_angle: f64) -> Option<([Complex; 9], Complex)> {
         let frame = self.frame(crank_angle, self.assembly())?;
         let offset = self.coupler_offset();

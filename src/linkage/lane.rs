@@ -1,4 +1,4 @@
-//! The arithmetic that the position solver is written in, once: one `f64` or eight of them side by side.
+//! SIMD lanes: the arithmetic of the position solver, written once for one `f64` and for eight of them side by side.
 //!
 //! Every operation is a single IEEE-754 operation a lane (no fused multiply-add), so eight lanes give the
 //! very bits that one lane gives. The eight-lane type is a plain array: the compiler turns its loops into
@@ -6,24 +6,24 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// How many values [`F64x8`] holds.
+/// Number of values in an [`F64x8`].
 pub const LANES: usize = 8;
 
 /// One number or several numbers that take part in the same calculation.
 pub trait Lane:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
-    /// The same number in every lane.
+    /// Returns the same number in every lane.
     fn splat(value: f64) -> Self;
-    /// 1 / self.
+    /// Returns 1 / self.
     fn recip(self) -> Self;
-    /// Square root; NaN below zero.
+    /// Returns the square root; NaN below zero.
     fn sqrt(self) -> Self;
-    /// The larger of self and zero; zero for NaN.
+    /// Returns the larger of self and zero; zero for NaN.
     fn positive_part(self) -> Self;
-    /// The smaller of the two numbers; `other` where self is NaN.
+    /// Returns the smaller of the two numbers; `other` if self is NaN.
     fn min(self, other: Self) -> Self;
-    /// `yes` where self >= limit, `no` elsewhere and where self is NaN.
+    /// Returns `yes` in the lanes with self >= limit, `no` in the others and if self is NaN.
     fn at_least(self, limit: Self, yes: Self, no: Self) -> Self;
 }
 
@@ -60,7 +60,7 @@ impl Lane for f64 {
 pub struct F64x8(pub [f64; LANES]);
 
 impl F64x8 {
-    /// The eight numbers that start at `slice[at]`.
+    /// Loads the eight numbers that start at `slice[at]`.
     ///
     /// # Panics
     /// When fewer than eight are left.
@@ -80,7 +80,7 @@ impl F64x8 {
         slice[at..at + LANES].copy_from_slice(&self.0);
     }
 
-    /// The sum of the lanes, always added in the same order (halves, then quarters, then the pair).
+    /// Returns the sum of the lanes, always added in the same order (halves, then quarters, then the pair).
     #[inline(always)]
     pub fn sum(self) -> f64 {
         let l = self.0;

@@ -1,4 +1,5 @@
-//! The seeds' other ways to a position, as reference solvers beside the natural coordinates of `position.rs`.
+//! Loop-closure methods of position analysis from the literature, as reference solvers beside the natural coordinates
+//! of `position.rs`.
 //!
 //! All three close the same loop, C + b e^{i theta3} = B + c e^{i theta4} (De Castro, equations 2 and 3):
 //!
@@ -21,14 +22,14 @@
 
 use super::{AssemblyMode, Complex, FLAT_TOLERANCE, FourBar, Joints, cross};
 
-/// |Ax - d| at and below which the algebraic method gives no answer, as a part of s = |CB|: its error grows
-/// with (s/(Ax - d))^2, here to 1e8 times that of the other methods, and half the digits are gone.
+/// Largest |Ax - d|, as a part of s = |CB|, at which the algebraic method gives no answer: its error grows with
+/// (s/(Ax - d))^2, here to 1e8 times that of the other methods, and half the digits are gone.
 pub const ALGEBRAIC_SINGULAR: f64 = 1e-4;
 
 /// One position that closes the loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoopRoot {
-    /// t1: which of the two positions it is. At a toggle, where they meet, the first root is called Plus.
+    /// t1, the assembly mode of the position. At a toggle, where the two positions meet, the first root has Plus.
     pub assembly: AssemblyMode,
     /// C, D and P.
     pub joints: Joints,
@@ -36,11 +37,11 @@ pub struct LoopRoot {
     pub coupler_angle: f64,
     /// theta4 = arg(D - B), radians in (-pi, pi].
     pub follower_angle: f64,
-    /// The larger of ||D - C| - b| and ||D - B| - c|, a length: how well the loop closes.
+    /// The closure error: the larger of ||D - C| - b| and ||D - B| - c|, a length.
     pub residual: f64,
 }
 
-/// Why a formula has no answer although the linkage may have one.
+/// The singularity of a formula that has no answer although the linkage may have a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Singularity {
     /// The crank pin lies straight over or under the follower pivot, seen along the ground line: Ax = d
@@ -51,19 +52,19 @@ pub enum Singularity {
     CrankPinOnFollowerPivot,
 }
 
-/// What a closed-form method answers.
+/// Result of a closed-form method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoopRoots {
     /// The two positions, t1 = +1 first; equal at a toggle.
     Closed([LoopRoot; 2]),
     /// No position closes the loop (or the crank angle is no number).
     Open,
-    /// The formula cannot say.
+    /// The formula is singular and decides nothing.
     Singular(Singularity),
 }
 
 impl LoopRoots {
-    /// The position of one assembly.
+    /// Returns the position with the given assembly mode, if the loop closes.
     pub fn root(self, assembly: AssemblyMode) -> Option<LoopRoot> {
         match self {
             LoopRoots::Closed([plus, minus]) => {
@@ -74,31 +75,32 @@ impl LoopRoots {
     }
 }
 
-/// Which arctangent equations 4 and 5 are read with.
+/// Form of the arctangent in equations 4 and 5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arctangent {
     /// atan2: the quadrant is that of numerator and denominator.
     TwoArguments,
-    /// Of the quotient, as printed: angles in [-90, 90] degrees only. It cycles or settles on false points
-    /// (De Castro's example 2.1 at 90 degrees: 63.43, 63.43). For demonstration.
+    /// Arctangent of the quotient, as printed: angles in [-90, 90] degrees only. The iteration then cycles or settles
+    /// on false points (De Castro's example 2.1 at 90 degrees: 63.43, 63.43). For demonstration.
     OfQuotient,
 }
 
-/// How the iteration is run.
+/// Options of the fixed-point iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IterationOptions {
-    /// The first theta3, radians. A start on the line C-B stays on it: see [`IterationVerdict::FalsePoint`].
+    /// Start value of theta3, radians. A start on the line C-B stays on it: see [`IterationVerdict::FalsePoint`].
     pub start_coupler_angle: f64,
-    /// The step of theta3, radians, that counts as standing still; raised to 4 eps where it is less.
+    /// Largest step of theta3, radians, that counts as converged; raised to 4 eps if it is less.
     pub tolerance: f64,
-    /// The most rounds of equations 4 and 5.
+    /// Maximum number of rounds of equations 4 and 5.
     pub iterations: u32,
-    /// How the arctangent is read.
+    /// Form of the arctangent.
     pub arctangent: Arctangent,
 }
 
 impl Default for IterationOptions {
-    /// theta3 = 1 radian (an angle that seldom lies on the line C-B), 1e-12 radians, 10,000 rounds, atan2.
+    /// Returns the defaults: start at theta3 = 1 radian (an angle that seldom lies on the line C-B), tolerance 1e-12
+    /// radians, 10,000 rounds, atan2.
     fn default() -> Self {
         IterationOptions {
             start_coupler_angle: 1.0,
@@ -109,7 +111,7 @@ impl Default for IterationOptions {
     }
 }
 
-/// What became of the iteration. With L = a + b + c + |AB|:
+/// Outcome of the fixed-point iteration. With L = a + b + c + |AB|:
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IterationVerdict {
     /// The step is within the tolerance and the loop closes within tolerance L.
@@ -120,31 +122,31 @@ pub enum IterationVerdict {
     FalsePoint,
     /// theta3 came back to an earlier value, within the tolerance, while still moving.
     Cycling,
-    /// Neither within the rounds that were allowed: next to a toggle it is slow.
+    /// No such result within the allowed rounds: next to a toggle the iteration is slow.
     NotConverged,
-    /// A vector of zero length came up, or the crank angle or the start is no number: there is no angle.
+    /// A vector without a direction: its length is zero, or the crank angle or the start is no number.
     NoDirection,
 }
 
-/// A run of the iteration: its verdict and where it stood at the end.
+/// A run of the fixed-point iteration: its outcome and its last values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iteration {
-    /// What became of it.
+    /// The outcome of the run.
     pub verdict: IterationVerdict,
     /// The last theta3, radians.
     pub coupler_angle: f64,
     /// The last theta4, radians.
     pub follower_angle: f64,
-    /// Rounds of equations 4 and 5.
+    /// Number of rounds of equations 4 and 5.
     pub iterations: u32,
     /// The last step of theta3, radians; infinite before the first.
     pub step: f64,
-    /// |C + b e^{i theta3} - B - c e^{i theta4}|, a length: how far the loop is from closing.
+    /// The closure error |C + b e^{i theta3} - B - c e^{i theta4}|, a length.
     pub residual: f64,
 }
 
 impl Iteration {
-    /// The position, where the iteration converged to one.
+    /// Returns the position if the iteration converged to one.
     pub fn root(&self) -> Option<LoopRoot> {
         match self.verdict {
             IterationVerdict::Converged(root) => Some(root),
@@ -170,7 +172,7 @@ impl FourBar {
         }
     }
 
-    /// Both positions by Norton's algebra (4.2d to 4.2g), in the frame with A at the origin and B at (d, 0).
+    /// Computes both positions by Norton's algebra (4.2d to 4.2g), in the frame with A at the origin and B at (d, 0).
     ///
     /// ```text
     /// S = (a^2 - b^2 + c^2 - d^2)/(2 (Ax - d))       P = Ay^2/(Ax - d)^2 + 1
@@ -179,12 +181,11 @@ impl FourBar {
     /// theta3 = atan2(By - Ay, Bx - Ax)               theta4 = atan2(By, Bx - d)
     /// ```
     ///
-    /// In these equations A and B are the pins (C and D here), d is the ground. P, Q and the quotient of By
-    /// stand as they are meant: the chapter's MATLAB lines misplace two parentheses, and (4.2g) needs atan2.
+    /// In these equations A and B are the pins (C and D here), d is the ground. P, Q and the quotient of By are written
+    /// as they are meant: the chapter's MATLAB lines misplace two parentheses, and (4.2g) needs atan2.
     ///
-    /// Singular where Ax = d, a limit of the method and not of the linkage; next to it the answer is off by
-    /// (s/(Ax - d))^2 times what the module states. Open where Q^2 - 4 P R < 0, beyond rounding and
-    /// [`FLAT_TOLERANCE`].
+    /// Singular if Ax = d, a limit of the method and not of the linkage; next to it the error is (s/(Ax - d))^2 times
+    /// the bound in the module's documentation. Open if Q^2 - 4 P R < 0, beyond rounding and [`FLAT_TOLERANCE`].
     pub fn close_by_algebra(&self, crank_angle: f64) -> LoopRoots {
         let ground_direction = Complex::from_polar(1.0, self.ground_angle());
         let (a, b, c, d) = (self.crank(), self.coupler(), self.follower(), self.ground());
@@ -220,22 +221,22 @@ impl FourBar {
             let follower_pin = self.crank_pivot() + ground_direction * Complex::new(bx, by);
             self.loop_root(crank_pin, follower_pin, assembly)
         };
-        // The larger By lies left of C -> B where that points to +x: where Ax < d.
+        // The larger By lies left of C -> B if that points to +x, which is so if Ax < d.
         let left = if over < 0.0 { 1.0 } else { -1.0 };
         LoopRoots::Closed([at(left, AssemblyMode::Plus), at(-left, AssemblyMode::Minus)])
     }
 
-    /// Both positions by complex numbers: the quadratic in t = e^{i theta4} of the UTP chapter.
+    /// Computes both positions by complex numbers: the quadratic in t = e^{i theta4} of the UTP chapter.
     ///
     /// ```text
     /// Z = d e^{i theta1} - a e^{i theta2}                            (= B - C)
     /// conj(Z) c t^2 + (Z conj(Z) + c^2 - b^2) t + Z c = 0,           s = e^{i theta3} = (Z + c t)/b
     /// ```
     ///
-    /// It uses conj(s) = 1/s and conj(t) = 1/t (of Z that is false: the slide's note lost its bar). Where the
-    /// loop closes the discriminant m^2 - 4 c^2 |Z|^2, m = |Z|^2 + c^2 - b^2, is not positive and both roots
-    /// have modulus 1; where it is positive (beyond rounding and [`FLAT_TOLERANCE`]) the moduli are not 1
-    /// and the loop is open. Singular where Z = 0.
+    /// It uses conj(s) = 1/s and conj(t) = 1/t (of Z that is false: the slide's note lost its bar). If the loop closes,
+    /// the discriminant m^2 - 4 c^2 |Z|^2, m = |Z|^2 + c^2 - b^2, is not positive and both roots have modulus 1; if it
+    /// is positive (beyond rounding and [`FLAT_TOLERANCE`]), the moduli are not 1 and the loop is open. It is singular
+    /// if Z = 0.
     pub fn close_by_complex_numbers(&self, crank_angle: f64) -> LoopRoots {
         let (b, c) = (self.coupler(), self.follower());
         let crank_pin = self.crank_pin_at(crank_angle);
@@ -262,18 +263,18 @@ impl FourBar {
         LoopRoots::Closed([at(1.0, AssemblyMode::Plus), at(-1.0, AssemblyMode::Minus)])
     }
 
-    /// One position by De Castro's fixed-point iteration (equations 4 and 5), from a first theta3.
+    /// Computes one position by De Castro's fixed-point iteration (equations 4 and 5), from a first theta3.
     ///
     /// ```text
     /// theta4 = arg(C + b e^{i theta3} - B)       (4)
     /// theta3 = arg(B + c e^{i theta4} - C)       (5)
     /// ```
     ///
-    /// arg is atan2 (or, to see what the printed arctan does, [`Arctangent::OfQuotient`]). Near a position
-    /// each round takes the error times cos^2(theta3 - theta4): slow next to a toggle, and a step delta leaves
-    /// an error of delta/sin^2(theta3 - theta4). A small step is no proof: the line C-B holds fixed points
-    /// that close nothing, which the verdict tells by the residual. Both positions attract; which one is
-    /// reached depends on the start and is reported, whatever the linkage's own t1.
+    /// arg is atan2 (or, to see the effect of the printed arctan, [`Arctangent::OfQuotient`]). Near a position each
+    /// round takes the error times cos^2(theta3 - theta4): slow next to a toggle, and a step delta leaves an error of
+    /// delta/sin^2(theta3 - theta4). A small step is no proof of closure: the line C-B holds fixed points at which the
+    /// loop is open, and the residual tells them apart. Both positions attract; the one that is reached depends on the
+    /// start and is reported, whatever the linkage's own t1.
     pub fn close_by_iteration(&self, crank_angle: f64, options: &IterationOptions) -> Iteration {
         let (b, c) = (self.coupler(), self.follower());
         let crank_pin = self.crank_pin_at(crank_angle);
@@ -330,7 +331,7 @@ impl FourBar {
     }
 }
 
-/// e^{i angle} of a vector; `None` where it has no direction.
+/// Returns e^{i angle} of a vector; `None` if it has no direction.
 fn direction(vector: Complex, arctangent: Arctangent) -> Option<Complex> {
     let norm = vector.norm();
     if !(norm > 0.0 && norm.is_finite()) {

@@ -1,23 +1,24 @@
-//! What a four-bar can do: its type, how far its input turns, and its circuits, branches and toggles.
+//! Mobility of a four-bar: its type by Grashof, the range of its input, and its circuits, branches and toggles.
 //!
 //! Grashof (1883): with the shortest link s, the longest l and the others p, q, some link turns fully
 //! relative to its neighbours exactly when p + q - s - l >= 0. Circuits and branches are those of Chase and
-//! Mirth (1993): a circuit is what can be reached without taking the linkage apart, a branch is what can be
-//! reached without passing a toggle (a position where coupler and follower are in line).
+//! Mirth (1993): a circuit is the set of positions that can be reached without taking the linkage apart, a branch
+//! the part of it that can be reached without passing a toggle (a position in which coupler and follower are in
+//! line).
 //!
-//! | input | circuits | branches in each | told by |
+//! | input | circuits | branches in each | identified by |
 //! |---|---|---|---|
 //! | turns fully (crank-rocker, double-crank) | 2 | 1 | circuit: t1 |
 //! | rocks, Grashof (rocker-crank, double-rocker) | 2 | 2 | circuit: input arc; branch: t1 |
 //! | rocks, non-Grashof (triple-rocker) | 1 | 2 | branch: t1 |
-//! | change point | as its input range says, the circuits meet in the flat position | | |
+//! | change point | by its input range; the circuits meet in the flat position | | |
 
 use super::{AssemblyMode, FourBar};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// A linkage whose |Grashof margin| is at most this part of its longest link is a change point: it can lie
-/// flat within rounding, and which way it leaves that position is not decided by its lengths.
+/// Largest |Grashof margin| of a change point, as a part of its longest link: such a linkage can lie flat within
+/// rounding, and its lengths do not decide which way it leaves that position.
 pub const CHANGE_POINT_TOLERANCE: f64 = 1e-9;
 
 /// The types of four-bars, told by which link is the shortest where the Grashof margin is positive.
@@ -51,7 +52,7 @@ impl LinkageType {
         LinkageType::ChangePoint,
     ];
 
-    /// The name in files: `crank-rocker`.
+    /// Returns the name in files: `crank-rocker`.
     pub fn name(self) -> &'static str {
         match self {
             LinkageType::CrankRocker => "crank-rocker",
@@ -63,7 +64,7 @@ impl LinkageType {
         }
     }
 
-    /// Whether a motor on the crank can turn through.
+    /// Returns whether the input turns fully, so that a motor can drive it.
     pub fn input_turns_fully(self) -> bool {
         matches!(self, LinkageType::CrankRocker | LinkageType::DoubleCrank)
     }
@@ -75,22 +76,22 @@ impl std::fmt::Display for LinkageType {
     }
 }
 
-/// A stretch of crank angles that the input can reach, between two toggles.
+/// An interval of crank angles that the input can reach, between two toggles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InputArc {
-    /// The middle, radians from the x axis.
+    /// The crank angle in the middle, radians from the x axis.
     pub middle: f64,
-    /// Half its width, radians.
+    /// Half the width of the arc, radians.
     pub half_width: f64,
 }
 
 impl InputArc {
-    /// The crank angle at the parameter psi of the circuit: phi = middle + half_width sin psi.
+    /// Returns the crank angle at the parameter psi of the circuit: phi = middle + half_width sin psi.
     pub fn crank_angle(&self, psi: f64) -> f64 {
         self.middle + self.half_width * psi.sin()
     }
 
-    /// The parameter psi in (-pi, pi] of a crank angle and an assembly: t1 = sign cos psi.
+    /// Returns the parameter psi in (-pi, pi] of a crank angle and an assembly mode: t1 = sign cos psi.
     pub fn parameter(&self, crank_angle: f64, assembly: AssemblyMode) -> f64 {
         let psi = (self.offset(crank_angle) / self.half_width).clamp(-1.0, 1.0).asin();
         match assembly {
@@ -100,29 +101,29 @@ impl InputArc {
         }
     }
 
-    /// The crank angle less the middle, brought to [-pi, pi].
+    /// Returns the crank angle less the middle, brought to [-pi, pi].
     pub fn offset(&self, crank_angle: f64) -> f64 {
         wrapped(crank_angle - self.middle)
     }
 }
 
-/// How far the input can turn.
+/// The range of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InputRange {
-    /// Through the full turn.
+    /// The full turn.
     Full,
-    /// Back and forth on one arc.
+    /// One arc, back and forth.
     One(InputArc),
-    /// Back and forth on one of two arcs, mirror images about the ground line: [left of it, right of it].
+    /// One of two arcs, back and forth, mirror images about the ground line: [left of it, right of it].
     Two([InputArc; 2]),
-    /// Not at all: the links cannot be joined.
+    /// No position: the links cannot be assembled.
     None,
 }
 
 /// A circuit: the positions that are reached without taking the linkage apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Circuit {
-    /// 0 or 1.
+    /// Index of the circuit, 0 or 1.
     pub index: u8,
 }
 
@@ -131,20 +132,20 @@ pub struct Circuit {
 pub struct Branch {
     /// The circuit.
     pub circuit: Circuit,
-    /// The assembly that holds on the branch.
+    /// The assembly mode on the branch.
     pub assembly: AssemblyMode,
 }
 
 /// A position in which coupler and follower are in line, where two branches of a circuit meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Toggle {
-    /// Radians from the x axis.
+    /// The crank angle, radians from the x axis.
     pub crank_angle: f64,
     /// The circuit it belongs to.
     pub circuit: Circuit,
 }
 
-/// An angle brought to (-pi, pi].
+/// Brings an angle to (-pi, pi].
 pub fn wrapped(angle: f64) -> f64 {
     let turned = angle - TAU * (angle / TAU).round();
     if turned <= -PI { turned + TAU } else { turned }
@@ -153,22 +154,22 @@ pub fn wrapped(angle: f64) -> f64 {
 /// Type, margin and input range of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mobility {
-    /// The type; `None` where the links cannot be joined at all.
+    /// The type; `None` if the links cannot be assembled at all.
     pub linkage_type: Option<LinkageType>,
-    /// p + q - s - l, a length.
+    /// The Grashof margin p + q - s - l, a length.
     pub grashof_margin: f64,
-    /// How far the input turns.
+    /// The range of the input.
     pub input: InputRange,
 }
 
-/// The Grashof margin p + q - s - l of four link lengths.
+/// Returns the Grashof margin p + q - s - l of four link lengths.
 pub fn grashof_margin(links: [f64; 4]) -> f64 {
     let mut sorted = links;
     sorted.sort_by(f64::total_cmp);
     (sorted[1] - sorted[0]) + (sorted[2] - sorted[3])
 }
 
-/// The type of the links ground, crank, coupler, follower; `None` where they cannot be joined.
+/// Returns the type of the links ground, crank, coupler, follower; `None` if they cannot be assembled.
 pub fn linkage_type(links: [f64; 4]) -> Option<LinkageType> {
     let longest = links.into_iter().fold(0.0, f64::max);
     let others = links.iter().sum::<f64>() - longest;
@@ -192,17 +193,17 @@ pub fn linkage_type(links: [f64; 4]) -> Option<LinkageType> {
 }
 
 impl FourBar {
-    /// p + q - s - l with the shortest link s, the longest l, the others p and q.
+    /// Returns the Grashof margin p + q - s - l, with the shortest link s, the longest l, the others p and q.
     pub fn grashof_margin(&self) -> f64 {
         grashof_margin(self.links())
     }
 
-    /// The type; `None` where the links cannot be joined.
+    /// Returns the type; `None` if the links cannot be assembled.
     pub fn linkage_type(&self) -> Option<LinkageType> {
         linkage_type(self.links())
     }
 
-    /// Type, margin and input range.
+    /// Computes type, margin and input range.
     pub fn mobility(&self) -> Mobility {
         let linkage_type = self.linkage_type();
         Mobility {
@@ -212,7 +213,7 @@ impl FourBar {
         }
     }
 
-    /// theta in [0, pi] from the ground line at which |CB| = s, by half angles (exact near 0 and pi); s
+    /// Computes theta in [0, pi] from the ground line at which |CB| = s, by half angles (exact near 0 and pi); s
     /// outside [|g-a|, g+a] gives the nearer end.
     fn crank_from_ground(&self, s: f64) -> f64 {
         super::transmission::angle_opposite(s, self.ground(), self.crank())
@@ -248,12 +249,12 @@ impl FourBar {
 }
 
 impl Mobility {
-    /// Whether the input turns fully.
+    /// Returns whether the input turns fully.
     pub fn input_turns_fully(&self) -> bool {
         self.input == InputRange::Full
     }
 
-    /// How many circuits the linkage has.
+    /// Returns the number of circuits of the linkage.
     pub fn circuits(&self) -> u8 {
         match self.input {
             InputRange::None => 0,
@@ -264,7 +265,7 @@ impl Mobility {
         }
     }
 
-    /// How many branches each circuit has.
+    /// Returns the number of branches of each circuit.
     pub fn branches_per_circuit(&self) -> u8 {
         match self.input {
             InputRange::None => 0,
@@ -273,7 +274,7 @@ impl Mobility {
         }
     }
 
-    /// The arc that a circuit's input moves on; `None` where it turns fully or cannot move.
+    /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
     pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
         match self.input {
             InputRange::One(arc) => Some(arc),
@@ -282,7 +283,7 @@ impl Mobility {
         }
     }
 
-    /// The branch of a position that closes the loop.
+    /// Returns the branch of a position that closes the loop.
     pub fn branch(&self, crank_angle: f64, assembly: AssemblyMode) -> Branch {
         let index = match self.input {
             InputRange::Full if self.circuits() == 2 => u8::from(assembly == AssemblyMode::Minus),
@@ -294,7 +295,7 @@ impl Mobility {
         Branch { circuit: Circuit { index }, assembly }
     }
 
-    /// The toggles, each where two branches of a circuit meet; none where the input turns fully.
+    /// Returns the toggles, at each of which two branches of a circuit meet; none if the input turns fully.
     pub fn toggles(&self) -> Vec<Toggle> {
         let of = |arc: &InputArc, index: u8| {
             [arc.middle - arc.half_width, arc.middle + arc.half_width]

@@ -1,4 +1,5 @@
-//! The noun: what a planar four-bar linkage is and where it is.
+//! Planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates; and chains, the
+//! compound mechanisms.
 //!
 //! ```text
 //!                    P                A, B   fixed pivots (A drives)
@@ -11,9 +12,9 @@
 //!                    g                t2 = +1: P lies left of the line C -> D
 //! ```
 //!
-//! The nine parameters and two signs are those of N. N. Romero Nunez (2016), "Analisis de posicion de un
-//! mecanismo de cuatro barras utilizando coordenadas naturales". Points of the plane are complex numbers.
-//! This room imports nothing else of the crate.
+//! The nine parameters and two signs are those of N. N. Romero Nunez (2016), "Analisis de posicion de un mecanismo de
+//! cuatro barras utilizando coordenadas naturales" ("Romero" in this module). Points of the plane are complex numbers.
+//! Outside its tests this module imports nothing else of the crate.
 
 pub mod assembly_condition;
 pub mod chain;
@@ -39,37 +40,38 @@ use serde::{Deserialize, Serialize};
 /// A point or a vector of the plane, x + i y.
 pub type Complex = nalgebra::Complex<f64>;
 
-/// The point (x, y) as a complex number.
+/// Returns the point (x, y) as a complex number.
 #[inline(always)]
 pub fn point(xy: [f64; 2]) -> Complex {
     Complex::new(xy[0], xy[1])
 }
 
-/// The complex number as (x, y).
+/// Returns the complex number as (x, y).
 #[inline(always)]
 pub fn xy(z: Complex) -> [f64; 2] {
     [z.re, z.im]
 }
 
-/// <x, y>, the scalar product of two vectors.
+/// Returns <x, y>, the scalar product of two vectors.
 #[inline(always)]
 pub fn dot(x: Complex, y: Complex) -> f64 {
     x.re * y.re + x.im * y.im
 }
 
-/// x cross y, positive when y lies to the left of x.
+/// Returns the cross product x cross y, positive if y lies to the left of x.
 #[inline(always)]
 pub fn cross(x: Complex, y: Complex) -> f64 {
     x.re * y.im - x.im * y.re
 }
 
-/// |z| = sqrt(x^2 + y^2), for components between 1e-150 and 1e150; faster than `norm`, which guards all others.
+/// Returns |z| = sqrt(x^2 + y^2), for components between 1e-150 and 1e150; faster than `norm`, which also handles all
+/// others.
 #[inline(always)]
 pub fn length(z: Complex) -> f64 {
     z.norm_sqr().sqrt()
 }
 
-/// i z: the vector turned by +90 degrees.
+/// Returns i z, the vector turned by +90 degrees.
 #[inline(always)]
 pub fn turned(z: Complex) -> Complex {
     Complex::new(-z.im, z.re)
@@ -91,7 +93,7 @@ macro_rules! sign_type {
         }
 
         impl $name {
-            /// +1 or -1.
+            /// Returns +1 or -1.
             #[inline(always)]
             pub fn sign(self) -> f64 {
                 match self {
@@ -100,12 +102,12 @@ macro_rules! sign_type {
                 }
             }
 
-            /// Plus for positive numbers and zero, Minus for negative ones.
+            /// Returns Plus for positive numbers and zero, Minus for negative ones.
             pub fn of(value: f64) -> Self {
                 if value < 0.0 { $name::Minus } else { $name::Plus }
             }
 
-            /// The other one.
+            /// Returns the opposite sign.
             pub fn opposite(self) -> Self {
                 match self {
                     $name::Plus => $name::Minus,
@@ -149,7 +151,7 @@ sign_type!(
     "P lies right of the line from C to D."
 );
 
-/// What makes nine numbers no linkage.
+/// The error of parameters that do not describe a four-bar linkage.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinkageError {
     /// A number that is NaN, infinite or beyond [`MAX_MAGNITUDE`].
@@ -157,7 +159,7 @@ pub enum LinkageError {
     NotFinite {
         /// The parameter's letter.
         key: &'static str,
-        /// Its value.
+        /// The parameter's value.
         value: f64,
     },
     /// A link of zero or negative length.
@@ -165,7 +167,7 @@ pub enum LinkageError {
     LengthNotPositive {
         /// The parameter's letter.
         key: &'static str,
-        /// Its value.
+        /// The parameter's value.
         value: f64,
     },
     /// A negative distance from a pin to the coupler point.
@@ -173,19 +175,19 @@ pub enum LinkageError {
     DistanceNegative {
         /// The parameter's letter.
         key: &'static str,
-        /// Its value.
+        /// The parameter's value.
         value: f64,
     },
-    /// No triangle C-D-P has these sides (seed equation 17 would need the root of a negative number).
+    /// Sides of no triangle C-D-P (Romero's equation 17 would need the root of a negative number).
     #[error(
         "no triangle has the sides b = {b}, d = {d}, e = {e}: each must be at most the sum of the other two"
     )]
     NoCouplerTriangle {
-        /// |CD|.
+        /// |CD|, the coupler.
         b: f64,
-        /// |CP|.
+        /// |CP|, the distance from the crank pin to the coupler point.
         d: f64,
-        /// |DP|.
+        /// |DP|, the distance from the follower pin to the coupler point.
         e: f64,
     },
 }
@@ -193,8 +195,8 @@ pub enum LinkageError {
 /// The largest magnitude of a coordinate or length.
 pub const MAX_MAGNITUDE: f64 = 1e12;
 
-/// A triangle or a loop that misses closure by less than this part of its scale is taken as flat: the roots of
-/// collinear points round below zero in a third of the cases.
+/// Relative tolerance of closure: a triangle or a loop that misses closure by less than this part of its scale counts
+/// as flat, because the roots of collinear points round below zero in a third of the cases.
 pub const FLAT_TOLERANCE: f64 = 1e-12;
 
 /// A four-bar linkage: fixed pivots, five lengths and two signs.
@@ -286,7 +288,7 @@ pub struct VectorLoop {
 }
 
 impl FourBar {
-    /// A linkage from its natural coordinates.
+    /// Builds a linkage from its natural coordinates.
     ///
     /// # Errors
     /// [`LinkageError`] when a number is not finite, a link a, b, c is not positive, d or e is negative or
@@ -320,7 +322,7 @@ impl FourBar {
             }
         }
         let (b, d, e) = (p.coupler, p.crank_side, p.follower_side);
-        // 16 area^2 = (b+d+e)(b+d-e)(d+e-b)(e+b-d): factors, so that a flat triangle is told to the last digit.
+        // 16 area^2 = (b+d+e)(b+d-e)(d+e-b)(e+b-d): factored, so that a flat triangle is recognised to the last digit.
         let perimeter = b + d + e;
         let lacks = [b + d - e, d + e - b, e + b - d];
         if lacks.iter().any(|lack| *lack < -FLAT_TOLERANCE * perimeter) {
@@ -336,8 +338,8 @@ impl FourBar {
         })
     }
 
-    /// A linkage whose coupler point is given in the coupler's own frame: `offset` = P along and across
-    /// C -> D, measured from C, as lengths.
+    /// Builds a linkage whose coupler point is given in the coupler's own frame: `offset` = P along and across C -> D,
+    /// measured from C, as lengths.
     ///
     /// # Errors
     /// As [`FourBar::new`].
@@ -361,7 +363,7 @@ impl FourBar {
         })
     }
 
-    /// A linkage from a vector loop: d = Z1, P at the angle beta from the coupler's line.
+    /// Builds a linkage from a vector loop: d = Z1, P at the angle beta from the coupler's line.
     ///
     /// # Errors
     /// As [`FourBar::new`]; a negative Z1 is a negative distance d.
@@ -383,72 +385,72 @@ impl FourBar {
         )
     }
 
-    /// The nine parameters and two signs.
+    /// Returns the nine parameters and two signs.
     pub fn natural_coordinates(&self) -> NaturalCoordinates {
         self.parameters
     }
 
-    /// A.
+    /// Returns A, the fixed pivot of the crank.
     pub fn crank_pivot(&self) -> Complex {
         point(self.parameters.crank_pivot)
     }
 
-    /// B.
+    /// Returns B, the fixed pivot of the follower.
     pub fn follower_pivot(&self) -> Complex {
         point(self.parameters.follower_pivot)
     }
 
-    /// g = |AB|.
+    /// Returns g = |AB|, the length of the ground link.
     pub fn ground(&self) -> f64 {
         self.ground
     }
 
-    /// a = |AC|.
+    /// Returns a = |AC|, the length of the crank.
     pub fn crank(&self) -> f64 {
         self.parameters.crank
     }
 
-    /// b = |CD|.
+    /// Returns b = |CD|, the length of the coupler.
     pub fn coupler(&self) -> f64 {
         self.parameters.coupler
     }
 
-    /// c = |BD|.
+    /// Returns c = |BD|, the length of the follower.
     pub fn follower(&self) -> f64 {
         self.parameters.follower
     }
 
-    /// d = |CP|.
+    /// Returns d = |CP|, the distance from the crank pin to the coupler point.
     pub fn crank_side(&self) -> f64 {
         self.parameters.crank_side
     }
 
-    /// e = |DP|.
+    /// Returns e = |DP|, the distance from the follower pin to the coupler point.
     pub fn follower_side(&self) -> f64 {
         self.parameters.follower_side
     }
 
-    /// t1.
+    /// Returns t1, the assembly mode.
     pub fn assembly(&self) -> AssemblyMode {
         self.parameters.assembly
     }
 
-    /// t2.
+    /// Returns t2, the side of the coupler on which P lies.
     pub fn side(&self) -> CouplerSide {
         self.parameters.side
     }
 
-    /// The same linkage closed the other way or the same way.
+    /// Returns the same linkage with the given assembly mode.
     #[must_use]
     pub fn with_assembly(mut self, assembly: AssemblyMode) -> Self {
         self.parameters.assembly = assembly;
         self
     }
 
-    /// The same linkage moved by `by`.
+    /// Returns the same linkage moved by the vector `by`.
     ///
     /// # Errors
-    /// As [`FourBar::new`], where a coordinate leaves the allowed range.
+    /// As [`FourBar::new`], if a coordinate leaves the allowed range.
     pub fn shifted(&self, by: Complex) -> Result<Self, LinkageError> {
         let mut parameters = self.parameters;
         parameters.crank_pivot = xy(self.crank_pivot() + by);
@@ -456,32 +458,32 @@ impl FourBar {
         FourBar::new(parameters)
     }
 
-    /// z = (l2 + i h2)/b, so that P = C + z (D - C) (seed equations 16 to 18).
+    /// Returns z = (l2 + i h2)/b, so that P = C + z (D - C) (Romero, equations 16 to 18).
     pub fn coupler_ratio(&self) -> Complex {
         self.coupler_ratio
     }
 
-    /// P along and across C -> D, measured from C, as lengths: b z.
+    /// Returns P along and across C -> D, measured from C, as lengths: b z.
     pub fn coupler_offset(&self) -> Complex {
         self.coupler_ratio * self.coupler()
     }
 
-    /// ground, crank, coupler, follower.
+    /// Returns the lengths of ground, crank, coupler and follower.
     pub fn links(&self) -> [f64; 4] {
         [self.ground, self.crank(), self.coupler(), self.follower()]
     }
 
-    /// The longest of ground, crank, coupler, follower.
+    /// Returns the length of the longest of ground, crank, coupler and follower.
     pub fn longest_link(&self) -> f64 {
         self.links().into_iter().fold(0.0, f64::max)
     }
 
-    /// longest / shortest of ground, crank, coupler, follower; infinite for coincident pivots.
+    /// Returns longest / shortest of ground, crank, coupler, follower; infinite for coincident pivots.
     pub fn link_ratio(&self) -> f64 {
         self.longest_link() / self.links().into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// arg(B - A), the direction of the ground line; 0 for coincident pivots.
+    /// Returns arg(B - A), the direction of the ground line; 0 for coincident pivots.
     pub fn ground_angle(&self) -> f64 {
         if self.ground == 0.0 { 0.0 } else { (self.follower_pivot() - self.crank_pivot()).arg() }
     }

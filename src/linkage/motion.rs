@@ -26,8 +26,8 @@
 //! # Near a toggle
 //! Velocities grow as 1/sin mu and accelerations as 1/sin^3 mu. sin^2 mu itself comes from squared lengths and
 //! is known to about delta = 8 eps (b^2 + c^2 + s (|A| + |B| + a))/(b c), s = |CB|: a velocity has a relative
-//! error up to delta/(2 sin^2 mu), an acceleration three times that (beside 60 digits, at 4,000 positions within
-//! 1e-4 of a toggle, the worst was 0.87 of it). Where sin^2 mu is at most 8 delta, or |sin mu| at most
+//! error up to delta/(2 sin^2 mu), an acceleration three times that (compared with 60 digits, at 4,000 positions
+//! within 1e-4 of a toggle, the worst was 0.87 of it). If sin^2 mu is at most 8 delta, or |sin mu| at most
 //! [`TOGGLE_SINE`], the answer is [`Motion::Singular`] and no number.
 
 use super::gradient::TOGGLE_SINE;
@@ -39,7 +39,7 @@ use std::f64::consts::TAU;
 /// velocity may be off by 1/16, an acceleration by 3/16; below it no digit is sure.
 pub const TOGGLE_ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// How the crank moves at the instant: omega2 and alpha2.
+/// Motion of the crank at one instant: angular velocity omega2 and angular acceleration alpha2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrankMotion {
     /// omega2, rad/s, counter-clockwise positive.
@@ -49,18 +49,18 @@ pub struct CrankMotion {
 }
 
 impl CrankMotion {
-    /// A crank at a steady speed in rad/s: alpha2 = 0.
+    /// Returns the motion of a crank at a steady speed in rad/s: alpha2 = 0.
     pub fn steady(speed_rad_s: f64) -> Self {
         CrankMotion { speed_rad_s, acceleration_rad_s2: 0.0 }
     }
 
-    /// A crank at a steady speed in turns a minute: omega2 = 2 pi rpm/60.
+    /// Returns the motion of a crank at a steady speed in turns a minute: omega2 = 2 pi rpm/60.
     pub fn steady_rpm(speed_rpm: f64) -> Self {
         CrankMotion::steady(speed_rpm * (TAU / 60.0))
     }
 }
 
-/// Where coupler and follower are: joints, angles, and how far the position is from a toggle.
+/// Position of the linkage: joints, angles of coupler and follower, and the sine that vanishes at a toggle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Posture {
     /// C, D and P.
@@ -74,42 +74,42 @@ pub struct Posture {
     pub sine: f64,
 }
 
-/// How a link turns.
+/// Angular motion of a link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turning {
-    /// omega, rad/s, counter-clockwise positive.
+    /// Angular velocity omega, rad/s, counter-clockwise positive.
     pub speed_rad_s: f64,
-    /// alpha, rad/s^2, counter-clockwise positive.
+    /// Angular acceleration alpha, rad/s^2, counter-clockwise positive.
     pub acceleration_rad_s2: f64,
 }
 
-/// How a point moves.
+/// Velocity and acceleration of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointMotion {
-    /// Units of length a second.
+    /// Velocity, in units of length a second.
     pub velocity: Complex,
-    /// Units of length a second squared.
+    /// Acceleration, in units of length a second squared.
     pub acceleration: Complex,
 }
 
 /// The motion of every moving part at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinkageMotion {
-    /// The position that it belongs to.
+    /// The position to which the motion belongs.
     pub posture: Posture,
     /// omega3 and alpha3 (De Castro 13 and 22).
     pub coupler: Turning,
     /// omega4 and alpha4 (De Castro 14 and 23).
     pub follower: Turning,
-    /// C (De Castro 8 and 16).
+    /// Velocity and acceleration of C (De Castro 8 and 16).
     pub crank_pin: PointMotion,
-    /// D (De Castro 9 and 17).
+    /// Velocity and acceleration of D (De Castro 9 and 17).
     pub follower_pin: PointMotion,
-    /// P (De Castro 15 and 24).
+    /// Velocity and acceleration of P (De Castro 15 and 24).
     pub coupler_point: PointMotion,
 }
 
-/// The answer at one crank angle.
+/// Result of the velocity and acceleration analysis at one crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
     /// The linkage moves in a definite way.
@@ -126,7 +126,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// The motion where it is definite.
+    /// Returns the motion if it is definite.
     pub fn definite(self) -> Option<LinkageMotion> {
         match self {
             Motion::Definite(motion) => Some(motion),
@@ -134,7 +134,7 @@ impl Motion {
         }
     }
 
-    /// The position where it is known: at a toggle too.
+    /// Returns the position if it is known, at a toggle too.
     pub fn posture(self) -> Option<Posture> {
         match self {
             Motion::Definite(motion) => Some(motion.posture),
@@ -143,19 +143,18 @@ impl Motion {
         }
     }
 
-    /// Whether the position is a toggle.
+    /// Returns whether the position is a toggle.
     pub fn is_singular(self) -> bool {
         matches!(self, Motion::Singular(_))
     }
 }
 
 impl FourBar {
-    /// Velocities and accelerations at the crank angle `crank_angle` (radians from the x axis), by the
+    /// Computes velocities and accelerations at the crank angle `crank_angle` (radians from the x axis), by the
     /// module's equations. No allocation; about 0.1 microseconds, half of it the sine, cosine and two arctangents.
     ///
-    /// At a toggle the answer is [`Motion::Singular`], where the loop is open [`Motion::Open`], with C on B
-    /// [`Motion::Open`] or [`Motion::Undetermined`] as [`FourBar::position`] has it; a crank angle that is no
-    /// number closes nothing.
+    /// The answer is [`Motion::Singular`] at a toggle, [`Motion::Open`] if the loop is open or the crank angle is no
+    /// number, and [`Motion::Open`] or [`Motion::Undetermined`] with C on B, as in [`FourBar::position`].
     ///
     /// ```
     /// # use linkwright::linkage::*;
@@ -173,7 +172,7 @@ impl FourBar {
         self.motion_with(crank_angle, self.assembly(), input)
     }
 
-    /// As [`FourBar::motion`] with the other or the same assembly.
+    /// Computes the motion as [`FourBar::motion`] does, with the given assembly mode.
     pub fn motion_with(&self, crank_angle: f64, assembly: AssemblyMode, input: CrankMotion) -> Motion {
         let joints = match self.position_with(crank_angle, assembly) {
             Position::Closed(joints) => joints,
@@ -188,7 +187,7 @@ impl FourBar {
         if motion.is_finite() { Motion::Definite(motion) } else { Motion::NotFinite }
     }
 
-    /// The position as joints and angles, whatever its conditioning.
+    /// Computes the angles of a position from its joints, whatever its conditioning.
     pub fn posture(&self, joints: Joints) -> Posture {
         let w = joints.follower_pin - joints.crank_pin;
         let r = joints.follower_pin - self.follower_pivot();

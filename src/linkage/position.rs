@@ -1,4 +1,4 @@
-//! The analytic position solver in natural coordinates: the kernel that everything else calls.
+//! Position analysis of the four-bar in closed form, in natural coordinates: the kernel that the other modules call.
 //!
 //! With V = B - C and s^2 = |V|^2 (N. N. Romero Nunez 2016, equations 10 to 19):
 //!
@@ -10,26 +10,26 @@
 //! P = C + z (D - C)                  (equation 18)
 //! ```
 //!
-//! One division and one square root a position. The seed's assembly condition (20) is necessary only: what
-//! closes the loop is k >= 0, what closes the coupler triangle is d^2 >= l2^2 (checked when a [`FourBar`]
-//! is made). The loop is also open when C falls on B: D is then undetermined (b = c) or impossible.
+//! One division and one square root a position. Romero's assembly condition (20) is necessary only: the loop closes if
+//! k >= 0, and the coupler triangle if d^2 >= l2^2 (checked when a [`FourBar`] is made). The loop is also open when C
+//! falls on B: D is then undetermined (b = c) or impossible.
 
 use super::dispatch::vectorised;
 use super::lane::{F64x8, LANES, Lane};
 use super::{AssemblyMode, Complex, FLAT_TOLERANCE, FourBar};
 
-/// Where the moving joints are.
+/// Positions of the moving joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joints {
-    /// C.
+    /// C, the crank pin.
     pub crank_pin: Complex,
-    /// D.
+    /// D, the follower pin.
     pub follower_pin: Complex,
-    /// P.
+    /// P, the coupler point.
     pub coupler_point: Complex,
 }
 
-/// The answer of the position solver at one crank angle.
+/// Result of the position analysis at one crank angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Position {
     /// The loop closes.
@@ -41,7 +41,7 @@ pub enum Position {
 }
 
 impl Position {
-    /// The joints where the loop closes in a definite way.
+    /// Returns the joints if the loop closes in a definite way.
     pub fn joints(self) -> Option<Joints> {
         match self {
             Position::Closed(joints) => Some(joints),
@@ -49,13 +49,13 @@ impl Position {
         }
     }
 
-    /// Whether the loop closes in a definite way.
+    /// Returns whether the loop closes in a definite way.
     pub fn is_closed(self) -> bool {
         matches!(self, Position::Closed(_))
     }
 }
 
-/// The linkage as the numbers that the kernel multiplies with.
+/// A linkage as the coefficients of its position equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Kernel {
     a_x: f64,
@@ -70,31 +70,31 @@ pub struct Kernel {
     z_y: f64,
 }
 
-/// A position in lanes; `gap` is k where the loop closes (0 or more) and negative or NaN where it doesn't.
+/// A position in each lane; `gap` is at least zero if the loop closes there, and negative or NaN if it does not.
 #[derive(Clone, Copy, Debug)]
 pub struct LanePosition<L> {
-    /// C.
+    /// x and y of C, the crank pin.
     pub crank_pin: [L; 2],
-    /// D.
+    /// x and y of D, the follower pin.
     pub follower_pin: [L; 2],
-    /// P.
+    /// x and y of P, the coupler point.
     pub coupler_point: [L; 2],
-    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly where the loop closes.
+    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly if the loop closes.
     pub gap: L,
 }
 
-/// Where the circle of radius b about C meets the circle of radius c about B, in the frame of V = B - C.
+/// Intersection of the circle of radius b about C with the circle of radius c about B, in the frame of V = B - C.
 #[derive(Clone, Copy)]
 pub(super) struct Meeting<L> {
-    /// u = l1/s: along V.
+    /// u = l1/s, the component along V.
     pub u: L,
-    /// sqrt k = |h1|/s: across V; 0 where the circles miss each other.
+    /// sqrt k = |h1|/s, the component across V; 0 if the circles miss each other.
     pub root: L,
-    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly where the circles meet.
+    /// k + [`FLAT_TOLERANCE`] b^2/s^2: at least zero exactly if the circles meet.
     pub gap: L,
 }
 
-/// u and sqrt k (equations 12 and 13) from V, b^2 and (b^2 - c^2)/2: D = C + V (u +- i sqrt k).
+/// Computes u and sqrt k (equations 12 and 13) from V, b^2 and (b^2 - c^2)/2: D = C + V (u +- i sqrt k).
 #[inline(always)]
 pub(super) fn meeting<L: Lane>(v: [L; 2], radius_sq: L, half_difference: L) -> Meeting<L> {
     let inv = (v[0] * v[0] + v[1] * v[1]).recip();
@@ -105,7 +105,7 @@ pub(super) fn meeting<L: Lane>(v: [L; 2], radius_sq: L, half_difference: L) -> M
 }
 
 impl Kernel {
-    /// The numbers of a linkage.
+    /// Computes the coefficients of a linkage.
     #[inline]
     pub fn new(linkage: &FourBar) -> Self {
         let p = &linkage.parameters;
@@ -118,7 +118,7 @@ impl Kernel {
         )
     }
 
-    /// The numbers from A, B, (a, b, c), z and t1; nothing is checked.
+    /// Computes the coefficients from A, B, (a, b, c), z and t1; nothing is checked.
     #[inline(always)]
     pub fn from_parts(
         crank_pivot: [f64; 2],
@@ -142,7 +142,7 @@ impl Kernel {
         }
     }
 
-    /// C, V, u, sqrt k and the gap: what both assemblies share.
+    /// Computes C, V, u, sqrt k and the gap, which both assemblies share.
     #[inline(always)]
     fn reach<L: Lane>(&self, cos: L, sin: L) -> Reach<L> {
         let s = L::splat;
@@ -169,16 +169,16 @@ impl Kernel {
         }
     }
 
-    /// The position at a crank angle given by its cosine and sine, in any lane type.
+    /// Computes the position at a crank angle given by its cosine and sine, in any lane type.
     ///
-    /// Where the loop is open the joints are those of the nearest flat position and `gap` says so.
+    /// If the loop is open, the joints are those of the nearest flat position and `gap` is negative or NaN.
     #[inline(always)]
     pub fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
         let reach = self.reach(cos, sin);
         self.close(&reach, L::splat(self.t1) * reach.root)
     }
 
-    /// The positions of both assemblies, [t1 = +1, t1 = -1], for one division and one root.
+    /// Computes the positions of both assemblies, [t1 = +1, t1 = -1], with one division and one root.
     #[inline(always)]
     pub fn at_both<L: Lane>(&self, cos: L, sin: L) -> [LanePosition<L>; 2] {
         let reach = self.reach(cos, sin);
@@ -196,7 +196,7 @@ struct Reach<L> {
 }
 
 impl FourBar {
-    /// The position at the crank angle `crank_angle` (radians from the x axis), in closed form.
+    /// Computes the position at the crank angle `crank_angle` (radians from the x axis), in closed form.
     ///
     /// ```
     /// # use linkwright::linkage::*;
@@ -212,7 +212,7 @@ impl FourBar {
         self.position_with(crank_angle, self.assembly())
     }
 
-    /// As [`FourBar::position`] with the other or the same assembly.
+    /// Computes the position as [`FourBar::position`] does, with the given assembly mode.
     pub fn position_with(&self, crank_angle: f64, assembly: AssemblyMode) -> Position {
         let (sin, cos) = crank_angle.sin_cos();
         let at = Kernel::new(&self.with_assembly(assembly)).at(cos, sin);
@@ -233,19 +233,19 @@ impl FourBar {
     }
 }
 
-/// The coupler points and closure of many crank angles, as columns.
+/// Coupler points and closure at many crank angles, as columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CouplerPoints {
-    /// P, x.
+    /// The x coordinates of P.
     pub x: Vec<f64>,
-    /// P, y.
+    /// The y coordinates of P.
     pub y: Vec<f64>,
-    /// At least zero where the loop closes; negative or NaN where x and y mean nothing.
+    /// At least zero if the loop closes; if negative or NaN, x and y are meaningless.
     pub gap: Vec<f64>,
 }
 
 impl CouplerPoints {
-    /// Room for `n` positions, a multiple of eight is used inside.
+    /// Allocates room for `n` positions, rounded up to a multiple of eight.
     pub fn with_room(n: usize) -> Self {
         let padded = n.next_multiple_of(LANES);
         CouplerPoints { x: vec![0.0; padded], y: vec![0.0; padded], gap: vec![0.0; padded] }

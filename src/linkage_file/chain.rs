@@ -1,4 +1,4 @@
-//! The `[chain]` form of linkage files: pivots, a crank and stages by name, in the order in which they stand.
+//! The `[chain]` form of linkage files: pivots, a crank and stages by name, the stages in the order of the file.
 
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::linkage::chain::{
@@ -154,14 +154,14 @@ struct RawGuide {
     side: Option<AssemblyMode>,
 }
 
-/// A stage with the path of its table and where that stands in the text.
+/// A stage with the path of its table and the table's start in the text.
 struct Placed {
     start: usize,
     path: String,
     stage: Result<Stage, Box<Diagnostic>>,
 }
 
-/// The chain of a file's table.
+/// Builds the chain of a file's table.
 pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Result<Chain, Box<Diagnostic>> {
     let mut placed = Vec::new();
     place(&mut placed, "dyad", raw.dyad, |_, d| {
@@ -193,7 +193,7 @@ pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Result<Chain, Box<Dia
     builder.build().map_err(|error| explain(toml, &error, &paths))
 }
 
-/// The stages of one kind.
+/// Adds the stages of one kind.
 fn place<T>(
     placed: &mut Vec<Placed>,
     kind: &str,
@@ -263,7 +263,7 @@ fn sliding(toml: &TomlText<'_>, path: &str, raw: RawSlider) -> Result<Stage, Box
     Ok(Stage::Slider { joint: raw.joint, from: raw.from, length: raw.length.0, line, side: raw.side })
 }
 
-/// A chain's error at the value that it is about.
+/// Returns the diagnostic of a chain's error, at the value that it is about.
 fn explain(toml: &TomlText<'_>, error: &ChainError, paths: &[String]) -> Box<Diagnostic> {
     let base = match &error.place {
         ChainPlace::Pivot(name) => format!("chain.pivots.{name}"),
@@ -277,7 +277,7 @@ fn explain(toml: &TomlText<'_>, error: &ChainError, paths: &[String]) -> Box<Dia
     let path = error.index.map_or(base.clone(), |i| format!("{base}.{i}"));
     let fault = &error.fault;
     let message = match fault {
-        // A name may be any text: shown with care.
+        // A name may be any text, so it is quoted.
         ChainFault::UnknownPoint { name, .. } => format!("there is no point {}", quoted(name)),
         ChainFault::BadName { name } => format!("{} is no name of a point", quoted(name)),
         ChainFault::NotAPivot { name, .. } => format!("{} is not a fixed pivot", quoted(name)),
@@ -321,9 +321,9 @@ fn remedy(fault: &ChainFault) -> String {
     }
 }
 
-/// The nearest name, and the names that there are.
+/// Returns a hint with the nearest name, and the list of known names.
 fn meant(name: &str, known: &[String], kind: &str) -> String {
-    /// More are no help.
+    /// Maximum number of names in the list; more are no help.
     const LISTED: usize = 24;
     let known: Vec<&str> = known.iter().map(String::as_str).collect();
     let hint = nearest(name, &known).map_or(String::new(), |n| format!("did you mean \"{n}\"? "));

@@ -1,4 +1,5 @@
-//! Nine points that move under the hand: every real linkage through them, followed from the ones before.
+//! Live exact synthesis for nine points that the user moves: every real linkage through them, followed from the
+//! solutions before by continuation.
 
 use crate::exact::{Completeness, Options, Solved, resolve_from, solve};
 use crate::problem::Problem;
@@ -12,20 +13,20 @@ pub struct Nine {
 }
 
 impl Nine {
-    /// Nothing solved yet.
+    /// Creates a state without solutions.
     pub fn new() -> Self {
         Nine::default()
     }
 
-    /// All real linkages through the points of a problem, judged by its requirements, better first; from the solutions
-    /// before where there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is certified, and no
-    /// distance to a whole curve is found ([`glanced`]): that is for a run. `None` where the problem has no nine
-    /// precision points, or it was cancelled.
+    /// Returns all real linkages through the points of a problem, judged by its requirements, better first; from the
+    /// solutions before if there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is
+    /// certified, and no distance to a whole curve is computed ([`glanced`]): that is left to a run. `None` if the
+    /// problem does not have nine precision points, or it was cancelled.
     pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
         let target = target(problem)?;
         let options = Options::default();
         let solved = match self.solved.take() {
-            // A requirement has changed, no point.
+            // Only a requirement has changed, not a point.
             Some(before) if before.target == target => before,
             Some(before) => resolve_from(&before, &target, &options, cancel).solved,
             None => solve(&target, &options, &|_, _| {}, cancel),
@@ -34,7 +35,7 @@ impl Nine {
             return None;
         }
         let exact = glanced(problem, &solved);
-        // Points in special position lose classes: from there the way back is the start set.
+        // Points in special position lose classes: after that the start set is needed again.
         self.solved = (solved.completeness() == Completeness::Complete).then_some(solved);
         Some(exact)
     }
@@ -67,7 +68,7 @@ mod tests {
         let afresh = record.exact.expect("nine points");
         let counts = |c: &Census| (c.classes, c.real, c.one_circuit, c.in_order, c.free_of_defects);
         assert_eq!(counts(&moved.record.census), counts(&afresh.census));
-        // Equals may stand in another order, and of six equal mechanisms another may stand first.
+        // Equals may come in another order, and of six equal mechanisms another may come first.
         for followed in &moved.record.linkages {
             let found = afresh.linkages.iter().find(|found| {
                 let others = found.others.iter().map(|form| &form.linkage);
@@ -77,7 +78,7 @@ mod tests {
             assert_eq!((followed.accepted, followed.in_order), (found.accepted, found.in_order));
             assert!(followed.certified.is_none() && found.certified.is_some());
         }
-        // Ten points are no nine.
+        // Ten points are not accepted.
         let mut spec = points(0.0).spec().clone();
         spec.task.path.points.push([9.0, 9.0]);
         assert!(nine.follow(&Problem::new(spec).expect("a task"), &cancel).is_none());

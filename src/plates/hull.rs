@@ -2,8 +2,8 @@
 
 use crate::linkage::{Complex, cross};
 
-/// The corners of the hull, counter-clockwise from the leftmost; points nearer than `near` to another corner or
-/// to a side are left out. One corner where all are in one place, two where all are in line.
+/// Computes the corners of the hull, counter-clockwise from the leftmost; points nearer than `near` to another corner
+/// or to a side are left out. One corner if all points are in one place, two if all are in line.
 pub(super) fn hull(points: &[Complex], near: f64) -> Vec<Complex> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|p, q| p.re.total_cmp(&q.re).then(p.im.total_cmp(&q.im)));
@@ -23,13 +23,13 @@ pub(super) fn hull(points: &[Complex], near: f64) -> Vec<Complex> {
     corners
 }
 
-/// The chain from the first to the last point that turns left by more than `near` at each corner.
+/// Computes the chain from the first to the last point that turns left by more than `near` at each corner.
 fn half(points: impl Iterator<Item = Complex>, near: f64) -> Vec<Complex> {
     let mut chain: Vec<Complex> = Vec::new();
     for p in points {
         while let [.., before, last] = chain[..] {
             let base = p - before;
-            // How far `last` stands out to the right of the line from `before` to p.
+            // `last` is kept if it lies more than `near` to the right of the line from `before` to p.
             if cross(last - before, base) > near * base.norm() {
                 break;
             }
@@ -40,20 +40,20 @@ fn half(points: impl Iterator<Item = Complex>, near: f64) -> Vec<Complex> {
     chain
 }
 
-/// The largest distance between two of the points.
+/// Computes the largest distance between two of the points.
 pub(super) fn extent(points: &[Complex]) -> f64 {
     let pairs = points.iter().enumerate().flat_map(|(i, p)| points[..i].iter().map(move |q| (p - q).norm()));
     pairs.fold(0.0, f64::max)
 }
 
-/// The area of a polygon given counter-clockwise.
+/// Computes the area of a polygon given counter-clockwise.
 pub(super) fn area(corners: &[Complex]) -> f64 {
     let n = corners.len();
     let origin = corners[0];
     0.5 * (0..n).map(|i| cross(corners[i] - origin, corners[(i + 1) % n] - origin)).sum::<f64>()
 }
 
-/// The length around a polygon: of a line twice its length.
+/// Computes the perimeter of a polygon: of a line twice its length.
 pub(super) fn perimeter(corners: &[Complex]) -> f64 {
     let n = corners.len();
     (0..n).map(|i| (corners[(i + 1) % n] - corners[i]).norm()).sum()

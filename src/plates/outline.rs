@@ -3,45 +3,45 @@
 use crate::linkage::{Complex, cross, dot, turned};
 use std::f64::consts::{PI, TAU};
 
-/// A part of an outline.
+/// An edge of an outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
     /// A straight segment.
     Line {
-        /// Where it starts.
+        /// Start point.
         from: Complex,
-        /// Where it ends.
+        /// End point.
         to: Complex,
     },
     /// A circular arc.
     Arc {
-        /// Where it starts.
+        /// Start point.
         from: Complex,
-        /// Where it ends.
+        /// End point.
         to: Complex,
-        /// The centre.
+        /// Centre of the arc.
         centre: Complex,
-        /// The angle that it turns through, in radians, counter-clockwise, in (0, pi].
+        /// Angle of the arc, in radians, counter-clockwise, in (0, pi].
         turn: f64,
     },
 }
 
 impl Edge {
-    /// Where it starts.
+    /// Returns the start point.
     pub fn from(&self) -> Complex {
         match *self {
             Edge::Line { from, .. } | Edge::Arc { from, .. } => from,
         }
     }
 
-    /// Where it ends.
+    /// Returns the end point.
     pub fn to(&self) -> Complex {
         match *self {
             Edge::Line { to, .. } | Edge::Arc { to, .. } => to,
         }
     }
 
-    /// The bulge of drawing files: tan(turn/4), 0 for a segment.
+    /// Returns the bulge of drawing files: tan(turn/4), 0 for a segment.
     pub fn bulge(&self) -> f64 {
         match self {
             Edge::Line { .. } => 0.0,
@@ -49,7 +49,7 @@ impl Edge {
         }
     }
 
-    /// The same edge somewhere else.
+    /// Returns the same edge moved to a placement.
     #[must_use]
     pub fn placed(&self, at: &super::Placement) -> Edge {
         match *self {
@@ -61,7 +61,8 @@ impl Edge {
     }
 }
 
-/// The edges around a hull's corners (counter-clockwise, one or more) at distance r; none for r = 0 about a point.
+/// Computes the edges around a hull's corners (counter-clockwise, one or more) at distance r; none for r = 0 about a
+/// point.
 pub(super) fn outline(corners: &[Complex], radius: f64) -> Vec<Edge> {
     if let [centre] = *corners {
         if radius == 0.0 {

@@ -1,13 +1,13 @@
 //! The signed distance between two convex polygons, points and lines among them.
 //!
 //! It is the signed distance from the origin to the boundary of the Minkowski difference {p - q}, whose sides are
-//! parallel to those of the two polygons: where the origin lies inside, the nearest side decides; outside, the
-//! nearest pair of sides.
+//! parallel to those of the two polygons: if the origin lies inside, the nearest side decides; outside, the nearest
+//! pair of sides.
 
 use crate::linkage::{Complex, cross, dot, turned};
 
-/// The distance between two convex polygons (corners counter-clockwise, one or two for a point or a line), or
-/// minus the least shift that parts them where they overlap.
+/// Computes the distance between two convex polygons (corners counter-clockwise, one or two for a point or a line), or
+/// minus the least shift that separates them if they overlap.
 pub(super) fn separation(p: &[Complex], q: &[Complex]) -> f64 {
     // The largest gap along a normal of a side: below zero the overlap, exact; above zero a lower bound only.
     // Any other direction bounds it too, so a few more do no harm.
@@ -31,8 +31,8 @@ pub(super) fn separation(p: &[Complex], q: &[Complex]) -> f64 {
     least
 }
 
-/// The outward normals of the sides; of a line both, and both directions along it, which part it from what lies
-/// ahead of its ends.
+/// Returns the outward normals of the sides; of a line both, and both directions along it, which separate it from a
+/// polygon ahead of its ends.
 fn normals(corners: &[Complex]) -> Vec<Complex> {
     let n = corners.len();
     let mut normals = Vec::with_capacity(4);
@@ -47,14 +47,14 @@ fn normals(corners: &[Complex]) -> Vec<Complex> {
     normals
 }
 
-/// The sides; a point is one side without length.
+/// Iterates over the sides; a point is one side without length.
 fn sides(corners: &[Complex]) -> impl Iterator<Item = (Complex, Complex)> + '_ {
     let n = corners.len();
     let last = if n == 2 { 1 } else { n };
     (0..last).map(move |i| (corners[i], corners[(i + 1) % n]))
 }
 
-/// The distance between two segments.
+/// Computes the distance between two segments.
 fn between_segments(a: Complex, b: Complex, c: Complex, d: Complex) -> f64 {
     let side = |from: Complex, to: Complex, z: Complex| cross(to - from, z - from);
     if side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0 {
@@ -64,7 +64,7 @@ fn between_segments(a: Complex, b: Complex, c: Complex, d: Complex) -> f64 {
     ends.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// The distance from a point to a segment.
+/// Computes the distance from a point to a segment.
 fn to_segment(z: Complex, from: Complex, to: Complex) -> f64 {
     let along = to - from;
     let length_sq = along.norm_sqr();

@@ -1,4 +1,4 @@
-//! Outlines close, areas are those of the outline, separations those of a dense sweep.
+//! Tests of plates: outlines close, areas are those of the outline, separations those of a dense sweep.
 
 use super::*;
 use crate::linkage::{AssemblyMode, CouplerSide, NaturalCoordinates, cross, dot};
@@ -9,7 +9,8 @@ fn plate(points: &[[f64; 2]], radius: f64) -> Plate {
     Plate::new(Link::Coupler, holes, radius)
 }
 
-/// Every kind: triangle both ways round, P in line (between, beyond), on C, all in one place, a line, a point.
+/// Returns plates of every kind: triangle both ways round, P in line (between, beyond), on C, all in one place, a line,
+/// a point.
 fn plates() -> Vec<Plate> {
     vec![
         plate(&[[0.0, 0.0], [5.0, 0.0], [2.0, 3.0]], 0.7),
@@ -25,7 +26,7 @@ fn plates() -> Vec<Plate> {
     ]
 }
 
-/// 0.5 times the integral of x dy - y dx along an edge, in closed form.
+/// Computes 0.5 times the integral of x dy - y dx along an edge, in closed form.
 fn swept(edge: &Edge) -> f64 {
     match *edge {
         Edge::Line { from, to } => 0.5 * cross(from, to),
@@ -146,7 +147,7 @@ fn separations_agree_with_a_dense_walk_along_the_boundaries() {
                     assert!(nearest >= gap - 1e-12 && nearest - gap < 0.12, "{nearest} {gap}");
                     assert!(best.0.abs() < 1e-4 * (1.0 + gap), "{best:?} {gap}");
                 } else {
-                    // No shift shorter than the overlap parts them, one of that length does (to 0.05 degrees).
+                    // No shift shorter than the overlap separates them, one of that length does (to 0.05 degrees).
                     assert!(
                         best.1 <= 1e-12 && best.1 > -2e-3 * (1.0 + gap.abs()),
                         "{best:?} {gap} {p:?} {q:?}"

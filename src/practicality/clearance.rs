@@ -1,36 +1,37 @@
-//! How near plates and pins come to each other over a motion.
+//! Clearances: least distances between plates, pins and joints over a motion.
 
 use super::closest::{Closest, closest};
 use super::sweep::{Reach, Sweep};
 use crate::linkage::{Complex, FourBar, Joints, length};
 use crate::plates::{Link, Placement, Plate};
 
-/// Least distances are proved to this part of the longest link: far below what a workshop holds.
+/// Accuracy to which least distances are proved, as a part of the longest link: far below the tolerance of a workshop.
 pub const MARGIN: f64 = 1e-4;
 
-/// How the links are made.
+/// Radii of the plates and pins of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Build {
-    /// How far a plate reaches beyond the hull of its hole centres.
+    /// Distance that a plate reaches beyond the hull of its hole centres.
     pub plate_radius: f64,
     /// The radius of the pins, half a hole.
     pub pin_radius: f64,
 }
 
-/// A hole where millimetres are known, millimetres; and where they are not, in parts of the longest link.
+/// Default diameter of a hole, in millimetres, if the unit is known.
 const HOLE_MM: f64 = 4.0;
+/// Default diameter of a hole without a unit, as a part of the longest link.
 const HOLE_SHARE: f64 = 1.0 / 40.0;
-/// A hole at most, in parts of the distance of the nearest two.
+/// Largest default diameter of a hole, as a part of the distance of the nearest two holes.
 const HOLE_BESIDE: f64 = 1.0 / 3.0;
 
 impl Build {
-    /// Plates with holes of this diameter and this much material around them.
+    /// Returns the radii for holes of diameter `hole` with material of width `margin` around them.
     pub fn new(hole: f64, margin: f64) -> Self {
         Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole }
     }
 
-    /// Holes of 4 mm (`millimetre`: what that is in the file's unit) or, where the unit is not known, of a fortieth of
-    /// the longest link; smaller where two holes of a plate stand near each other.
+    /// Returns the default diameter of a hole: 4 mm (`millimetre`: a millimetre in the file's unit) or, if the unit is
+    /// not known, a fortieth of the longest link; smaller if two holes of a plate are near each other.
     pub fn usual_hole(linkage: &FourBar, millimetre: Option<f64>) -> f64 {
         let wanted = millimetre.map_or(HOLE_SHARE * linkage.longest_link(), |mm| HOLE_MM * mm);
         let holes = [linkage.crank_side(), linkage.follower_side()];
@@ -39,24 +40,24 @@ impl Build {
     }
 }
 
-/// The pins, each of which joins two plates.
+/// A pin, which joins two plates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pin {
-    /// Ground and crank.
+    /// The pin of ground and crank.
     A,
-    /// Ground and follower.
+    /// The pin of ground and follower.
     B,
-    /// Crank and coupler.
+    /// The pin of crank and coupler.
     C,
-    /// Coupler and follower.
+    /// The pin of coupler and follower.
     D,
 }
 
 impl Pin {
-    /// All four.
+    /// All four pins.
     pub const ALL: [Pin; 4] = [Pin::A, Pin::B, Pin::C, Pin::D];
 
-    /// Its letter.
+    /// Returns the letter of the pin.
     pub fn name(self) -> &'static str {
         match self {
             Pin::A => "A",
@@ -66,7 +67,7 @@ impl Pin {
         }
     }
 
-    /// The two plates that it joins.
+    /// Returns the two plates that the pin joins.
     pub fn joins(self) -> [Link; 2] {
         match self {
             Pin::A => [Link::Ground, Link::Crank],
@@ -76,7 +77,7 @@ impl Pin {
         }
     }
 
-    /// Where it is.
+    /// Returns the position of the pin's centre.
     pub fn at(self, linkage: &FourBar, joints: &Joints) -> Complex {
         match self {
             Pin::A => linkage.crank_pivot(),
@@ -86,7 +87,7 @@ impl Pin {
         }
     }
 
-    /// How far it can move.
+    /// Returns the bound of the pin's displacement.
     fn moves(self, reach: &Reach) -> f64 {
         match self {
             Pin::A | Pin::B => 0.0,
@@ -96,7 +97,7 @@ impl Pin {
     }
 }
 
-/// How far any point of a plate's hull can move: as far as the farthest-moving of its holes.
+/// Returns the bound of the displacement of any point of a plate's hull: that of the farthest-moving of its holes.
 fn plate_moves(link: Link, reach: &Reach) -> f64 {
     match link {
         Link::Ground => 0.0,
@@ -106,12 +107,12 @@ fn plate_moves(link: Link, reach: &Reach) -> f64 {
     }
 }
 
-/// The margin in the unit of lengths.
+/// Returns [`MARGIN`] in the unit of lengths.
 pub fn margin(linkage: &FourBar) -> f64 {
     MARGIN * linkage.longest_link()
 }
 
-/// The plates of a linkage as the workshop makes them.
+/// The plates and pins of a linkage, with its motion.
 #[derive(Clone, Debug)]
 pub struct Workpieces<'a> {
     sweep: &'a Sweep,
@@ -120,7 +121,7 @@ pub struct Workpieces<'a> {
 }
 
 impl<'a> Workpieces<'a> {
-    /// The plates of a linkage in motion.
+    /// Builds the plates of a linkage in motion.
     pub fn new(sweep: &'a Sweep, build: Build) -> Self {
         Workpieces { sweep, build, plates: Plate::all(&sweep.linkage, build.plate_radius) }
     }
@@ -133,20 +134,20 @@ impl<'a> Workpieces<'a> {
         self.plate(link).placement(&self.sweep.linkage, joints)
     }
 
-    /// The distance between two plates at a position, below zero where they overlap.
+    /// Computes the distance between two plates at a position, below zero if they overlap.
     pub fn between_plates_at(&self, one: Link, other: Link, joints: &Joints) -> f64 {
         let (at, other_at) = (self.placement(one, joints), self.placement(other, joints));
         self.plate(one).separation(&at, self.plate(other), &other_at)
     }
 
-    /// The distance between a pin and a plate at a position, below zero where they overlap.
+    /// Computes the distance between a pin and a plate at a position, below zero if they overlap.
     pub fn pin_to_plate_at(&self, pin: Pin, plate: Link, joints: &Joints) -> f64 {
         let to = pin.at(&self.sweep.linkage, joints);
         self.plate(plate).distance(&self.placement(plate, joints), to) - self.build.pin_radius
     }
 
-    /// The least distance between two plates over the motion; below zero where they overlap. `None` where the loop
-    /// is open in it.
+    /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
+    /// is open in the motion.
     pub fn between_plates(&self, one: Link, other: Link) -> Option<Closest> {
         closest(
             self.sweep,
@@ -156,7 +157,7 @@ impl<'a> Workpieces<'a> {
         )
     }
 
-    /// The least distance between a pin and a plate over the motion.
+    /// Computes the least distance between a pin and a plate over the motion.
     pub fn pin_to_plate(&self, pin: Pin, plate: Link) -> Option<Closest> {
         closest(
             self.sweep,
@@ -166,7 +167,7 @@ impl<'a> Workpieces<'a> {
         )
     }
 
-    /// The least distance between the surfaces of two pins over the motion.
+    /// Computes the least distance between the surfaces of two pins over the motion.
     pub fn between_pins(&self, one: Pin, other: Pin) -> Option<Closest> {
         let linkage = &self.sweep.linkage;
         closest(
@@ -180,19 +181,19 @@ impl<'a> Workpieces<'a> {
     }
 }
 
-/// Two joints and how near they come.
+/// Two joints and the least distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PivotDistance {
-    /// Their letters.
+    /// Letters of the joints.
     pub between: [&'static str; 2],
     /// The least distance of their centres over the motion.
     pub closest: Closest,
-    /// Whether a link holds them apart: then it is the same all the time.
+    /// Whether one link carries both, so that the distance is constant.
     pub fixed: bool,
 }
 
-/// The least distances between the centres of A, B, C, D and P over the motion, nearest first (ties in the order of
-/// the letters). `None` where the loop is open in it.
+/// Computes the least distances between the centres of A, B, C, D and P over the motion, nearest first (ties in the
+/// order of the letters). `None` if the loop is open in the motion.
 pub fn pivot_distances(sweep: &Sweep) -> Option<Vec<PivotDistance>> {
     type Place = fn(&FourBar, &Joints) -> Complex;
     type Moves = fn(&Reach) -> f64;

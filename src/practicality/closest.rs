@@ -1,6 +1,6 @@
 //! The least value of a distance over a motion, by branch and bound.
 //!
-//! A distance between things that move changes by no more than they do. On a stretch it is therefore at least its
+//! A distance between moving parts changes by no more than they move. On a stretch it is therefore at least its
 //! value in the middle less what [`Sweep::reach`] allows; the stretch with the least such bound is halved until
 //! the best value found is within a margin of it. Nothing between two samples can be missed.
 
@@ -9,24 +9,25 @@ use crate::linkage::{AssemblyMode, Joints};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A value is proved to within this part of itself, if the margin is less: what is far from touching need not be
+/// Relative accuracy of a proved value, if the margin is less: the distance of parts far from touching need not be
 /// known to the last digit.
 pub const RELATIVE: f64 = 1e-3;
-/// Stretches that a motion is cut into to begin with, each.
+/// Number of pieces into which each stretch of a motion is cut at the start.
 const FIRST: usize = 32;
-/// Evaluations at most; beyond them the bound stays further below than the margin, and says so.
+/// Maximum number of evaluations; beyond it the bound is reported even if it is below the value by more than the
+/// margin.
 const MOST: usize = 200_000;
 
-/// The least value over a motion.
+/// The least value of a distance over a motion, with a proved lower bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
     /// The least value found.
     pub value: f64,
-    /// Where: the crank angle, radians from the x axis.
+    /// The crank angle of the least value, radians from the x axis.
     pub crank_angle: f64,
-    /// .. and the assembly.
+    /// The assembly mode of the least value.
     pub assembly: AssemblyMode,
-    /// It is nowhere less than this.
+    /// Proved lower bound of the distance over the motion.
     pub bound: f64,
 }
 
@@ -56,10 +57,10 @@ impl Ord for Piece {
     }
 }
 
-/// The least value of `measure` over a motion, proved to within `margin` or [`RELATIVE`] of itself.
+/// Finds the least value of `measure` over a motion, proved to within `margin` or [`RELATIVE`] of itself.
 ///
-/// `moves` says by how much `measure` can differ within a stretch, given how far the joints move. `None` where the
-/// loop is open in the motion, or the motion is empty.
+/// `moves` bounds the change of `measure` within a stretch by the joints' displacements. `None` if the loop is open in
+/// the motion, or the motion is empty.
 pub fn closest(
     sweep: &Sweep,
     margin: f64,
@@ -107,11 +108,11 @@ pub fn closest(
     None
 }
 
-/// The best value once more, by golden section around its place and at the ends of the motion.
+/// Refines the best value, by golden section around its crank angle and at the ends of the motion.
 fn refine(sweep: &Sweep, found: &Closest, measure: &impl Fn(&Joints) -> f64) -> Closest {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
     const ROUNDS: usize = 50;
-    /// Radians on either side.
+    /// Half-width of the search interval, radians.
     const AROUND: f64 = 0.02;
     let mut best = *found;
     let mut try_at = |angle: f64, assembly: AssemblyMode| {

@@ -1,12 +1,13 @@
-//! In which layers the plates stack so that nothing crosses anything while the linkage moves.
+//! Layers of the plates: a stacking in which no parts cross while the linkage moves.
 //!
 //! Plates joined by a pin overlap at that pin, so each of the pairs ground-crank, crank-coupler, coupler-follower and
-//! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane where they stay
-//! apart over the whole motion. A pin stands through all layers from one of its plates to the other; in those
-//! between, it must stay clear of every plate there and of every other pin that stands through them. Pins end flush
-//! with their plates, and every plate is one piece in one layer. All stackings are tried: there are at most 4^4.
+//! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart
+//! over the whole motion. A pin passes through all layers from one of its plates to the other; in those between, it
+//! must stay clear of every plate there and of every other pin that passes through them. Pins end flush with their
+//! plates, and every plate is one piece in one layer. All stackings are tried: there are at most 4^4.
 //!
-//! Clear means: apart by the proved bound of [`super::closest`]. What touches within its margin counts as crossing.
+//! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
+//! count as crossing.
 
 use super::clearance::{Build, Pin, Workpieces};
 use super::closest::Closest;
@@ -16,64 +17,65 @@ use crate::plates::Link;
 /// The pairs of plates that no pin joins.
 pub const FREE_PAIRS: [[Link; 2]; 2] = [[Link::Crank, Link::Follower], [Link::Coupler, Link::Ground]];
 
-/// Two plates that no pin joins.
+/// Two plates that no pin joins, with the least distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlatePair {
-    /// Which.
+    /// The two plates.
     pub plates: [Link; 2],
-    /// How near they come; below zero: they overlap.
+    /// The least distance between them over the motion; below zero if they overlap.
     pub closest: Closest,
 }
 
-/// A pin and a plate that it is not in.
+/// A pin and a plate that it does not join, with the least distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinPlate {
     /// The pin.
     pub pin: Pin,
     /// The plate.
     pub plate: Link,
-    /// How near they come.
+    /// The least distance between them over the motion.
     pub closest: Closest,
 }
 
-/// Two pins.
+/// Two pins, with the least distance between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinPair {
-    /// Which.
+    /// The two pins.
     pub pins: [Pin; 2],
-    /// How near their surfaces come.
+    /// The least distance between their surfaces over the motion.
     pub closest: Closest,
 }
 
-/// A stacking that works.
+/// A stacking without crossings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stack {
     /// The plates of each layer, the lowest first.
     pub layers: Vec<Vec<Link>>,
-    /// The pins that stand through a layer between their plates, with that layer, counted from 0.
+    /// The pins that pass through a layer between their plates, with the index of that layer, counted from 0.
     pub through: Vec<(Pin, usize)>,
 }
 
-/// Everything that decides the layers, and what was decided.
+/// The distances that decide the layers, and the resulting stacking.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layering {
     /// The two pairs of plates that could share a plane.
     pub free_pairs: Vec<PlatePair>,
-    /// Pins and the plates that they are not in.
+    /// Pins and the plates that they do not join.
     pub pins_plates: Vec<PinPlate>,
-    /// Pins beside pins.
+    /// Pairs of pins.
     pub pins: Vec<PinPair>,
-    /// The stacking of the fewest layers; of several the one whose pins stand through the fewest layers, then with
-    /// the coupler outermost (something at P can be reached), then with the ground lowest. `None`: there is none.
+    /// The stacking of the fewest layers; of several the one whose pins pass through the fewest layers, then with the
+    /// coupler outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
     pub stack: Option<Stack>,
 }
 
-/// Whether it is proved that two things stay apart.
+/// Returns whether it is proved that two parts stay apart.
 pub fn clear(closest: &Closest) -> bool {
     closest.bound > 0.0
 }
 
-/// The stacking of the fewest layers that works over the whole motion; `None` where the loop is open in the motion.
+/// Computes the stacking of the fewest layers without crossings over the whole motion; `None` if the loop is open in
+/// the motion.
 pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
     let pieces = Workpieces::new(sweep, build);
     let mut free_pairs = Vec::new();
@@ -102,7 +104,7 @@ fn layer(places: &Places, link: Link) -> usize {
     places[link as usize]
 }
 
-/// The layers strictly between the two plates of a pin.
+/// Returns the layers strictly between the two plates of a pin.
 fn between(places: &Places, pin: Pin) -> std::ops::Range<usize> {
     let [one, other] = pin.joins().map(|link| layer(places, link));
     one.min(other) + 1..one.max(other).max(one.min(other) + 1)
@@ -135,7 +137,7 @@ impl Layering {
         })
     }
 
-    /// Whether nothing crosses anything in a stacking.
+    /// Returns whether no parts cross in a stacking.
     fn works(&self, places: &Places) -> bool {
         let apart = Pin::ALL.iter().all(|pin| {
             let [one, other] = pin.joins();
@@ -155,7 +157,7 @@ impl Layering {
         apart && planes && plates && pins
     }
 
-    /// What stands in the way of a flatter stacking, or of any: the pairs of plates and the crossings of a pin and a
+    /// Returns the obstacles to a flatter stacking, or to any: the pairs of plates and the crossings of a pin and a
     /// plate that are not clear.
     pub fn obstacles(&self) -> (Vec<PlatePair>, Vec<PinPlate>) {
         let pairs = self.free_pairs.iter().filter(|pair| !clear(&pair.closest)).copied().collect();

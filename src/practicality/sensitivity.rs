@@ -1,4 +1,4 @@
-//! How far the path moves when a dimension is wrong.
+//! Sensitivity of the path to errors of the dimensions.
 //!
 //! With s_jk the shift of the path at point j for a unit error of dimension k, to first order,
 //!
@@ -7,16 +7,15 @@
 //! of all together     band  = sigma sqrt(sum_k rms_k^2),  worst   = sigma max_j sqrt(sum_k |s_jk|^2)
 //! ```
 //!
-//! where every dimension is off by its own independent error of standard deviation sigma. What the shift is depends
-//! on what the crank angles do once the linkage is built, see [`Crank`]: with free timing the part of dP along the
-//! path only makes the point pass earlier or later, and the shift of the path is the part across it. (Where the path
-//! misses the target by T - P, that vector stands across the path, and the distance from the target changes by the
-//! same part.)
+//! with an independent error of standard deviation sigma in every dimension. The shift depends on the behaviour of the
+//! crank angles once the linkage is built, see [`Crank`]: with free timing the part of dP along the path only makes the
+//! point pass earlier or later, and the shift of the path is the part across it. (If the path misses the target by
+//! T - P, that vector is perpendicular to the path, and the distance from the target changes by the same part.)
 //!
-//! The dimensions are the nine of [`crate::linkage::NaturalCoordinates`], each moved alone. Where P lies nearly on the
-//! line C-D, d and e hardly say where (coupler_y is the root of a small difference): there the coupler is measured
-//! by `coupler_x` and `coupler_y`, P along and across C -> D. `ground` moves B along A -> B; it is told beside the
-//! nine, and is no part of the band because Bx and By are.
+//! The dimensions are the nine of [`crate::linkage::NaturalCoordinates`], each moved alone. If P lies nearly on the
+//! line C-D, d and e hardly determine its position (coupler_y is the root of a small difference): then the coupler is
+//! measured by `coupler_x` and `coupler_y`, P along and across C -> D. `ground` moves B along A -> B; it is reported
+//! beside the nine, and is no part of the band because Bx and By are.
 
 use super::sweep::Sweep;
 use crate::linkage::gradient::shape_gradient;
@@ -24,15 +23,15 @@ use crate::linkage::{AssemblyMode, Complex, FourBar, dot, length, turned};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// P counts as on the line C-D where it is nearer to it than this part of the larger of d and e.
+/// Distance of P from the line C-D, as a part of the larger of d and e, below which P counts as on that line.
 pub const FLAT: f64 = 0.1;
-/// A point of the path where P stands still to this part of the fastest has no direction of its own.
+/// Speed of P, as a part of the fastest, at and below which the path has no direction at that point.
 const STANDSTILL: f64 = 1e-9;
 
-/// What the crank angles do when a dimension is off.
+/// Behaviour of the crank angles when a dimension is off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crank {
-    /// Free timing: at each point the crank turns to where P is nearest; the shift is the part across the path.
+    /// Free timing: at each point the crank turns until P is nearest; the shift is the part across the path.
     Settles,
     /// Prescribed increments, free offset: one offset for all points is set anew so that they move least.
     OffsetIsSet,
@@ -42,58 +41,58 @@ pub enum Crank {
     TurnsWithGround,
 }
 
-/// A position at which the path is looked at.
+/// A position at which the path is examined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct At {
     /// The crank angle, radians from the x axis.
     pub crank_angle: f64,
-    /// How the loop is closed.
+    /// The assembly mode.
     pub assembly: AssemblyMode,
 }
 
-/// How far the path moves for a unit error of one dimension.
+/// Shift of the path for a unit error of one dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dimension {
-    /// Its letter in files.
+    /// The dimension's letter in files.
     pub name: &'static str,
-    /// The root of the mean square over the points.
+    /// Root mean square of the shift over the points.
     pub rms: f64,
-    /// At the point where it is most.
+    /// Largest shift at a point.
     pub worst: f64,
-    /// That point, counted from 0.
+    /// Index of that point, counted from 0.
     pub worst_at: usize,
 }
 
-/// How far the path moves for errors of the dimensions.
+/// Shifts of the path for errors of the dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
-    /// What the crank angles do.
+    /// The behaviour of the crank angles.
     pub crank: Crank,
-    /// The nine, in the order Ax, Ay, Bx, By, a, b, c, d, e (or coupler_x, coupler_y in place of d, e).
+    /// The nine dimensions, in the order Ax, Ay, Bx, By, a, b, c, d, e (or coupler_x, coupler_y in place of d, e).
     pub dimensions: [Dimension; 9],
-    /// |AB|, B moved along the ground line: a part of what Bx and By say.
+    /// The dimension |AB|, B moved along the ground line: a combination of Bx and By.
     pub ground: Dimension,
     /// The rms band for a standard deviation of 1 of each of the nine.
     pub band: f64,
-    /// The same at the point where it is most.
+    /// The same band at the point where it is largest.
     pub worst: f64,
-    /// That point, counted from 0.
+    /// Index of that point, counted from 0.
     pub worst_at: usize,
-    /// The points at which a toggle leaves no derivative; they are no part of any figure.
+    /// Indices of the points without a derivative (at a toggle, or with an open loop), left out of all figures.
     pub at_toggles: Vec<usize>,
-    /// How many points are.
+    /// Number of points with a derivative.
     pub points: usize,
 }
 
 impl Sensitivity {
-    /// The dimension whose error moves the path most, by rms; of equal ones the first.
+    /// Returns the dimension whose error moves the path most, by rms; of equal ones the first.
     pub fn worst_dimension(&self) -> &Dimension {
         let first = &self.dimensions[0];
         self.dimensions.iter().fold(first, |worst, d| if d.rms > worst.rms { d } else { worst })
     }
 }
 
-/// `n` positions spread evenly over each stretch of a motion, its ends left out.
+/// Returns `n` positions spread evenly over each stretch of a motion, its ends left out.
 pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
     let of = |stretch: &super::sweep::Stretch| {
         let stretch = *stretch;
@@ -105,15 +104,15 @@ pub fn along(sweep: &Sweep, n: usize) -> Vec<At> {
     sweep.stretches.iter().flat_map(of).collect()
 }
 
-/// Whether the coupler is measured by coupler_x and coupler_y.
+/// Returns whether the coupler is measured by coupler_x and coupler_y.
 pub fn is_flat(linkage: &FourBar) -> bool {
     linkage.coupler_offset().im.abs() < FLAT * linkage.crank_side().max(linkage.follower_side())
 }
 
-/// Positions whose shifts a thread takes at once.
+/// Minimum number of positions whose shifts a thread computes at once.
 const AT_ONCE: usize = 512;
 
-/// dP by the nine dimensions and the crank angle at a position; `None` at a toggle or where the loop is open.
+/// Computes dP by the nine dimensions and the crank angle at a position; `None` at a toggle or if the loop is open.
 fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Complex)> {
     if !flat {
         return linkage.with_assembly(at.assembly).gradient(at.crank_angle);
@@ -123,7 +122,7 @@ fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Comp
     Some((gradient.shape, gradient.crank_angle))
 }
 
-/// How far the path moves at the given positions for errors of the dimensions; `None` where none of the positions
+/// Computes the shifts of the path at the given positions for errors of the dimensions; `None` if none of the positions
 /// has a derivative.
 pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<Sensitivity> {
     let flat = is_flat(linkage);
@@ -180,7 +179,7 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
     })
 }
 
-/// Takes out of the shifts what the crank makes good.
+/// Removes from the shifts the part that the crank compensates.
 fn settle(rows: &mut [([Complex; 10], Complex)], crank: Crank) {
     let fastest = rows.iter().map(|(_, by_crank)| length(*by_crank)).fold(0.0, f64::max);
     match crank {

@@ -1,4 +1,5 @@
-//! All of it at once, for a candidate with its target or for a linkage by itself.
+//! Practicality of a candidate with its target, or of a linkage by itself: layers, distances and sensitivities
+//! together.
 
 use super::clearance::{Build, PivotDistance, pivot_distances};
 use super::layers::{Layering, layering};
@@ -11,7 +12,7 @@ use crate::record::Candidate;
 use crate::task::referee::judge;
 use crate::task::{AngleOffset, Timing};
 
-/// Positions at which the path of a linkage without a target is looked at, each stretch of its motion.
+/// Number of positions on each stretch of the motion at which the path of a linkage without a target is examined.
 const POSITIONS: usize = 72;
 
 /// Layers, distances and sensitivities of one linkage.
@@ -19,23 +20,23 @@ const POSITIONS: usize = 72;
 pub struct Practicality {
     /// The linkage and its motion.
     pub sweep: Sweep,
-    /// How the links are made.
+    /// The radii of plates and pins.
     pub build: Build,
-    /// In which layers they stack; `None` where the loop is open in the motion.
+    /// The layers of the plates; `None` if the loop is open in the motion.
     pub layering: Option<Layering>,
-    /// How near the joints come to each other, nearest first; `None` where the loop is open in the motion.
+    /// The least distances between the joints, nearest first; `None` if the loop is open in the motion.
     pub distances: Option<Vec<PivotDistance>>,
-    /// How much each dimension moves the path; `None` where no position has a derivative.
+    /// The sensitivity of the path to errors of the dimensions; `None` if no position has a derivative.
     pub sensitivity: Option<Sensitivity>,
-    /// Whether the path is looked at in a target's points, which count from 0; else all along the motion.
+    /// Whether the path is examined at a target's points, counted from 0; else all along the motion.
     pub at_points: bool,
 }
 
 impl Practicality {
-    /// Of a candidate: over the cycle or the motion used, as its transmission angle is judged; the path at its
-    /// positions on the target.
+    /// Examines a candidate over the cycle or the motion used, as for its transmission angle; the path at its positions
+    /// on the target.
     ///
-    /// `None` where it has no position for each of the problem's points, or a crank angle that is no number.
+    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number.
     pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
         let n = problem.task().len();
         let angles = &candidate.crank_deg;
@@ -50,8 +51,8 @@ impl Practicality {
         Some(Practicality::of(sweep, build, felt, true))
     }
 
-    /// Of a linkage by itself: over all that it can do without passing a toggle ([`Sweep::of_linkage`]), the path
-    /// along that motion, wherever the crank stands. `None` where it cannot be joined.
+    /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
+    /// path along that motion, with free timing ([`Crank::Settles`]). `None` if it cannot be assembled.
     pub fn of_linkage(linkage: &FourBar, build: Build) -> Option<Self> {
         let sweep = Sweep::of_linkage(linkage)?;
         let felt = sensitivity(linkage, &along(&sweep, POSITIONS), Crank::Settles);
@@ -65,14 +66,14 @@ impl Practicality {
 }
 
 impl At {
-    /// The positions of a candidate, one a target point.
+    /// Returns the positions of a candidate, one for each target point.
     pub fn of_candidate(candidate: &Candidate) -> Vec<At> {
         let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
         positions.map(|(deg, assembly)| At { crank_angle: deg.to_radians(), assembly: *assembly }).collect()
     }
 }
 
-/// What the crank angles of a problem do when a dimension is off.
+/// Returns the behaviour of a problem's crank angles when a dimension is off.
 pub fn crank_of(problem: &Problem) -> Crank {
     match problem.task().timing() {
         Timing::Free => Crank::Settles,

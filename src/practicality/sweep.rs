@@ -1,4 +1,5 @@
-//! The motion as stretches of crank angle, and how far the joints can move within one.
+//! Sweep: the motion of a linkage as stretches (intervals of crank angles), with bounds of the joints' displacements
+//! within one.
 //!
 //! On a stretch from phi - h to phi + h with one assembly, measured from its middle,
 //!
@@ -19,56 +20,57 @@ use crate::linkage::{AssemblyMode, FourBar, InputArc, InputRange, Joints, length
 use crate::task::referee::UsedMotion;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A stretch of crank angles that is passed with one assembly.
+/// An interval of crank angles that is passed with one assembly mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
     /// The lower crank angle, radians.
     pub from: f64,
     /// The higher crank angle, radians.
     pub to: f64,
-    /// How the loop is closed.
+    /// The assembly mode.
     pub assembly: AssemblyMode,
 }
 
 impl Stretch {
-    /// The crank angle in the middle.
+    /// Returns the crank angle in the middle.
     pub fn middle(&self) -> f64 {
         0.5 * (self.from + self.to)
     }
 }
 
-/// A linkage with everything that it passes.
+/// A linkage with its motion as stretches.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The linkage.
     pub linkage: FourBar,
-    /// Its stretches; together the motion.
+    /// The stretches, which together are the motion.
     pub stretches: Vec<Stretch>,
-    /// Whether the crank turns through.
+    /// Whether the crank turns fully.
     pub full_turn: bool,
 }
 
-/// How far the joints can be from where they are in the middle of a stretch.
+/// Bounds of the joints' distances from their positions in the middle of a stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
-    /// C.
+    /// Bound for C.
     pub crank_pin: f64,
-    /// D.
+    /// Bound for D.
     pub follower_pin: f64,
-    /// P.
+    /// Bound for P.
     pub coupler_point: f64,
 }
 
 impl Reach {
-    /// The largest of the three.
+    /// Returns the largest of the three.
     pub fn coupler(&self) -> f64 {
         self.crank_pin.max(self.follower_pin).max(self.coupler_point)
     }
 }
 
 impl Sweep {
-    /// All that a linkage by itself can do without passing a toggle: the full turn, or the arc of the crank (of two
-    /// arcs the one to the left of A -> B) with the linkage's own assembly; `None` where it cannot be joined.
+    /// Returns the whole motion of a linkage by itself without passing a toggle: the full turn, or the arc of the crank
+    /// (of two arcs the one to the left of A -> B) with the linkage's own assembly mode; `None` if it cannot be
+    /// assembled.
     pub fn of_linkage(linkage: &FourBar) -> Option<Self> {
         let arc = match linkage.mobility().input {
             InputRange::None => return None,
@@ -80,8 +82,8 @@ impl Sweep {
         Some(Sweep { linkage: *linkage, stretches: vec![Stretch { from, to, assembly }], full_turn: false })
     }
 
-    /// The motion through the points of a task. With `cycle` all of the circuit: the full turn, or both branches
-    /// of a rocking crank.
+    /// Returns the motion through the points of a task. With `cycle` it is all of the circuit: the full turn, or both
+    /// branches of a rocking crank.
     pub fn of_motion(motion: &UsedMotion, cycle: bool) -> Self {
         let linkage = *motion.linkage();
         let [low, high] = motion.range();
@@ -101,7 +103,8 @@ impl Sweep {
         Sweep { linkage: *linkage, stretches: vec![stretch], full_turn: true }
     }
 
-    /// The joints in the middle of a stretch and how far they can be from there; `None` where the loop is open.
+    /// Computes the joints in the middle of a stretch and the bounds of their distances from there; `None` if the loop
+    /// is open.
     pub fn reach(&self, stretch: &Stretch) -> Option<(Joints, Reach)> {
         let linkage = &self.linkage;
         let middle = stretch.middle();
@@ -117,7 +120,7 @@ impl Sweep {
         Some((joints, Reach { crank_pin, follower_pin, coupler_point }))
     }
 
-    /// max |delta - delta(s)| over a stretch, delta the angle at B opposite to the coupler.
+    /// Computes max |delta - delta(s)| over a stretch, delta the angle at B opposite to the coupler.
     fn change_of_angle(&self, stretch: &Stretch, s: f64) -> f64 {
         let linkage = &self.linkage;
         let (g, a) = (linkage.ground(), linkage.crank());
@@ -138,7 +141,8 @@ impl Sweep {
         change
     }
 
-    /// `n` + 1 positions of each stretch, evenly spaced in the crank angle: crank angle, assembly, joints.
+    /// Computes `n` + 1 positions of each stretch, evenly spaced in the crank angle: crank angle, assembly mode,
+    /// joints.
     pub fn positions(&self, n: usize) -> Vec<(f64, AssemblyMode, Joints)> {
         let of = |stretch: &Stretch| {
             let Stretch { from, to, assembly } = *stretch;
@@ -151,7 +155,7 @@ impl Sweep {
     }
 }
 
-/// The crank angles between two values of psi, split where psi passes a toggle.
+/// Splits the crank angles between two values of psi at the toggles that psi passes.
 fn split(arc: &InputArc, low: f64, high: f64) -> Vec<Stretch> {
     let mut cuts = vec![low];
     let mut toggle = FRAC_PI_2 + PI * ((low - FRAC_PI_2) / PI).floor() + PI;

@@ -1,10 +1,10 @@
-//! The design vector: the only file that knows which number of it is which.
+//! The design vector and its coordinates; only this file knows the meaning of each component.
 //!
-//! x = (Ax, Ay, G1, G2, a, b, c, Q1, Q2, o). The ground (G1, G2) is B itself or, where the problem speaks of
-//! `ground` or `ground_angle_deg` and not of B, the length and direction from A to B. The coupler point
-//! (Q1, Q2) is (coupler_x, coupler_y) or, where the problem speaks of d or e only, those distances with the
-//! side t2 kept apart. o is the crank angle's offset where the timing leaves it free. What the problem bounds
-//! besides becomes an inequality (a derived bound).
+//! x = (Ax, Ay, G1, G2, a, b, c, Q1, Q2, o). The ground (G1, G2) is B itself or, if the problem gives `ground` or
+//! `ground_angle_deg` and not B, the length and direction from A to B. The coupler point (Q1, Q2) is (coupler_x,
+//! coupler_y) or, if the problem gives d or e only, those distances with the side t2 kept separately. o is the crank
+//! angle's offset if the timing leaves it free. Any other quantity that the problem bounds becomes an inequality (a
+//! derived bound).
 
 use super::spec::{DEFAULT_REACH, DesignSpec, Limits};
 use crate::linkage::{
@@ -13,17 +13,17 @@ use crate::linkage::{
 use crate::task::PathTask;
 use std::f64::consts::{PI, TAU};
 
-/// How many numbers a design vector has; fixed ones keep their place.
+/// Dimension of a design vector; fixed numbers keep their place.
 pub const DESIGN: usize = 10;
 
 /// A design vector.
 pub type Design = [f64; DESIGN];
 
-/// How many numbers describe a shape: Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y.
+/// Number of parameters of a shape: Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y.
 pub const SHAPE: usize = 9;
 
-/// A bound of zero on a length means "any positive length"; this part of the target's size is the least that
-/// the search looks at, because a linkage of size zero fits any circular arc.
+/// Least length searched, in parts of the target's size. A bound of zero on a length means "any positive length", but a
+/// linkage of size zero fits any circular arc.
 pub const SHORTEST_LINK: f64 = 1e-4;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,25 +38,25 @@ enum CouplerChart {
     Distances(CouplerSide),
 }
 
-/// A linkage as the search moves it: pivots, links and the coupler point in the coupler's frame.
+/// The parameters of a linkage that the search varies: pivots, links and the coupler point in the coupler's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// A.
+    /// The crank's pivot A.
     pub crank_pivot: Complex,
-    /// B.
+    /// The follower's pivot B.
     pub follower_pivot: Complex,
-    /// a.
+    /// The crank length a.
     pub crank: f64,
-    /// b.
+    /// The coupler length b.
     pub coupler: f64,
-    /// c.
+    /// The follower length c.
     pub follower: f64,
-    /// P along and across C -> D from C, lengths.
+    /// The coupler point P along and across C -> D from C, as lengths.
     pub offset: Complex,
 }
 
 impl Shape {
-    /// The linkage with an assembly.
+    /// Returns the linkage with an assembly.
     ///
     /// # Errors
     /// As [`FourBar::new`].
@@ -69,7 +69,7 @@ impl Shape {
         )
     }
 
-    /// ground, a, b, c.
+    /// Returns the lengths ground, a, b, c.
     pub fn links(&self) -> [f64; 4] {
         [length(self.follower_pivot - self.crank_pivot), self.crank, self.coupler, self.follower]
     }
@@ -88,10 +88,10 @@ impl From<&FourBar> for Shape {
     }
 }
 
-/// A quantity that the problem bounds although it is no coordinate of the design vector.
+/// A bound on a quantity that is not a coordinate of the design vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DerivedBound {
-    /// Which.
+    /// The bounded quantity.
     pub quantity: Derived,
     /// Its limits; an angle's in radians.
     pub limits: Limits,
@@ -100,17 +100,17 @@ pub struct DerivedBound {
 /// The quantities that can be bounded besides the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Derived {
-    /// |AB|.
+    /// The ground length |AB|.
     Ground,
-    /// arg(B - A), radians.
+    /// The direction of the ground line, arg(B - A), in radians.
     GroundAngle,
-    /// |CP|.
+    /// The coupler side |CP|.
     CrankSide,
-    /// |DP|.
+    /// The coupler side |DP|.
     FollowerSide,
 }
 
-/// Where designs may lie.
+/// The set of admissible designs: coordinates, bounds and derived bounds.
 #[derive(Clone, Debug)]
 pub struct DesignSpace {
     ground: GroundChart,
@@ -123,8 +123,8 @@ pub struct DesignSpace {
 const OFFSET: usize = DESIGN - 1;
 
 impl DesignSpace {
-    /// The space of a resolved design table; `offset_free` says whether the crank angle's offset is unknown,
-    /// `pivot_box` tightens the pivots' bounds, `side` is t2 where d and e are the coordinates.
+    /// Creates the space of a resolved design table; `offset_free`: whether the crank angle's offset is unknown;
+    /// `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
     pub fn new(
         spec: &DesignSpec,
         task: &PathTask,
@@ -142,7 +142,7 @@ impl DesignSpace {
         let within = |l: Limits, axis: usize| match pivot_box {
             Some(b) if !l.is_fixed() => {
                 let inside = Limits(l.0.max(b[axis]), l.1.min(b[axis + 2]));
-                // An empty intersection is left to the requirement, which then says that it is not met.
+                // An empty intersection is left to the requirement, which is then not met.
                 if inside.0 < inside.1 { inside } else { l }
             }
             _ => l,
@@ -172,7 +172,7 @@ impl DesignSpace {
         };
         let on_crank_pin = spec.d.is_some_and(|d| d.is_fixed() && d.0 == 0.0);
         let (coupler, [q_1, q_2]) = if on_crank_pin && spec.coupler_x.is_none() && spec.coupler_y.is_none() {
-            // P on C: its offset is zero, and e is b whatever b is.
+            // P on C: its offset is zero, and e equals b for every b.
             derive(Derived::FollowerSide, spec.e);
             (CouplerChart::Offset, [Limits(0.0, 0.0), Limits(0.0, 0.0)])
         } else if spec.coupler_x.is_none() && spec.coupler_y.is_none() {
@@ -191,29 +191,29 @@ impl DesignSpace {
         DesignSpace { ground, coupler, bounds, derived, free }
     }
 
-    /// Whether t2 has to be chosen apart (d and e are the coordinates).
+    /// Returns whether t2 has to be chosen separately (d and e are the coordinates).
     pub fn has_side(spec: &DesignSpec) -> bool {
         spec.coupler_x.is_none() && spec.coupler_y.is_none()
     }
 
-    /// [low, high] of each number.
+    /// Returns [low, high] of each number.
     pub fn bounds(&self) -> &[(f64, f64); DESIGN] {
         &self.bounds
     }
 
-    /// Fixes every number where it is.
+    /// Fixes every number at its value in `x`.
     pub fn fix(&mut self, x: &Design) {
         self.bounds = x.map(|value| (value, value));
         self.free.clear();
         self.derived.clear();
     }
 
-    /// The derived bounds.
+    /// Returns the derived bounds.
     pub fn derived(&self) -> &[DerivedBound] {
         &self.derived
     }
 
-    /// The limits of ground, a, b and c.
+    /// Returns the limits of ground, a, b and c.
     pub fn link_limits(&self) -> [Limits; 4] {
         let of = |i: usize| Limits(self.bounds[i].0, self.bounds[i].1);
         let ground = match self.ground {
@@ -227,8 +227,8 @@ impl DesignSpace {
         [ground, of(4), of(5), of(6)]
     }
 
-    /// What number `i` of a design is called in the file (a pivot's by its coordinate, such as Ax), and whether
-    /// it is an angle; `None` for the crank angle's offset.
+    /// Returns the name of number `i` of a design in the file (a pivot's by its coordinate, such as Ax), and whether it
+    /// is an angle; `None` for the crank angle's offset.
     pub fn coordinate(&self, i: usize) -> Option<(&'static str, bool)> {
         let polar = self.ground == GroundChart::Polar;
         let distances = self.coupler != CouplerChart::Offset;
@@ -251,7 +251,7 @@ impl DesignSpace {
         Some((name, self.is_angle(i)))
     }
 
-    /// The box of the numbers that are not fixed, for a population search: angles within half a turn.
+    /// Returns the box of the numbers that are not fixed, for a population search: angles within half a turn.
     pub fn free_box(&self) -> Vec<(f64, f64)> {
         self.free.iter().map(|&i| self.finite(i)).collect()
     }
@@ -261,7 +261,7 @@ impl DesignSpace {
         if low.is_finite() && high.is_finite() { (low, high) } else { (-PI, PI) }
     }
 
-    /// The design vector with the numbers that are not fixed taken from `genes`.
+    /// Returns the design vector with the numbers that are not fixed taken from `genes`.
     pub fn from_free(&self, genes: &[f64]) -> Design {
         let mut x = self.bounds.map(|(low, _)| low);
         for (&i, &gene) in self.free.iter().zip(genes) {
@@ -270,7 +270,7 @@ impl DesignSpace {
         x
     }
 
-    /// The numbers that are not fixed.
+    /// Returns the numbers that are not fixed.
     pub fn to_free(&self, x: &Design) -> Vec<f64> {
         self.free
             .iter()
@@ -282,30 +282,30 @@ impl DesignSpace {
             .collect()
     }
 
-    /// Whether a number of the design vector is the length of a link or of a side.
+    /// Returns whether a number of the design vector is the length of a link or of a side.
     pub fn is_length(&self, i: usize) -> bool {
         (4..7).contains(&i)
             || (i == 2 && self.ground == GroundChart::Polar)
             || ((7..9).contains(&i) && self.coupler != CouplerChart::Offset)
     }
 
-    /// How far a step may go before linear models say little, for a target of this size: a tenth of it for
+    /// Returns the trust region within which linear models are useful, for a target of this size: a tenth of it for
     /// lengths, a tenth of a radian for angles.
     pub fn trust(&self, size: f64) -> Design {
         std::array::from_fn(|i| if self.is_angle(i) { 0.1 } else { 0.1 * size })
     }
 
-    /// Whether a number is an angle, radians; the others are lengths.
+    /// Returns whether a number is an angle, in radians; the others are lengths.
     pub fn is_angle(&self, i: usize) -> bool {
         i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
     }
 
-    /// The crank angle's offset.
+    /// Returns the crank angle's offset.
     pub fn offset(&self, x: &Design) -> f64 {
         x[OFFSET]
     }
 
-    /// The shape of a design; `None` where d and e form no triangle with b.
+    /// Returns the shape of a design; `None` if d and e form no triangle with b.
     pub fn shape(&self, x: &Design) -> Option<Shape> {
         let crank_pivot = Complex::new(x[0], x[1]);
         let follower_pivot = match self.ground {
@@ -327,7 +327,7 @@ impl DesignSpace {
         Some(Shape { crank_pivot, follower_pivot, crank: x[4], coupler: x[5], follower: x[6], offset })
     }
 
-    /// The design of a shape, brought into the bounds.
+    /// Returns the design of a shape, clamped to the bounds.
     pub fn design(&self, shape: &Shape, offset: f64) -> Design {
         let mut x = self.coordinates(shape, offset);
         for (value, &(low, high)) in x.iter_mut().zip(&self.bounds) {
@@ -336,8 +336,8 @@ impl DesignSpace {
         x
     }
 
-    /// How far a shape is outside the bounds: the distances of its coordinates from them, added up (a direction
-    /// as an arc of the ground); 0 where only rounding takes it out, as [`DesignSpace::project`] would bring it back.
+    /// Returns the distance of a shape from the bounds: the distances of its coordinates from them, added up (a
+    /// direction as an arc of the ground); 0 if it is only rounding, which [`DesignSpace::project`] would undo.
     pub fn excess(&self, shape: &Shape) -> f64 {
         let x = self.coordinates(shape, 0.0);
         let mut excess = 0.0;
@@ -350,7 +350,7 @@ impl DesignSpace {
         excess
     }
 
-    /// The design vector of a shape, wherever it lies.
+    /// Returns the design vector of a shape, inside the bounds or not.
     fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let (g_1, g_2) = match self.ground {
@@ -369,7 +369,7 @@ impl DesignSpace {
         [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
     }
 
-    /// A derivative by the design vector from one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,
+    /// Returns the derivative by the design vector from the one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,
     /// coupler_y) and by the crank angle's offset.
     pub fn pull_back(&self, x: &Design, shape: &Shape, row: &[f64; SHAPE], by_offset: f64) -> Design {
         let mut out = [0.0; DESIGN];
@@ -396,7 +396,7 @@ impl DesignSpace {
         out
     }
 
-    /// A linkage's pivots and lengths brought exactly into their bounds where rounding took them out.
+    /// Clamps a linkage's pivots and lengths exactly to their bounds if rounding took them out.
     pub fn project(&self, linkage: &FourBar) -> Result<FourBar, LinkageError> {
         let mut p = linkage.natural_coordinates();
         let snap = |value: &mut f64, (low, high): (f64, f64)| {
@@ -414,7 +414,7 @@ impl DesignSpace {
             snap(&mut p.follower_pivot[0], b[2]);
             snap(&mut p.follower_pivot[1], b[3]);
         } else if b[3].0 == b[3].1 && b[3].0 == 0.0 {
-            // A horizontal ground is horizontal to the last bit.
+            // A horizontal ground is kept horizontal to the last bit.
             p.follower_pivot[1] = p.crank_pivot[1];
         }
         snap(&mut p.crank, b[4]);
@@ -428,12 +428,12 @@ impl DesignSpace {
     }
 }
 
-/// The pivots of a shape as coordinate pairs.
+/// Returns the pivots of a shape as coordinate pairs.
 pub fn pivots(shape: &Shape) -> [[f64; 2]; 2] {
     [xy(shape.crank_pivot), xy(shape.follower_pivot)]
 }
 
-/// A direction as a unit vector; the x axis for the zero vector.
+/// Returns a direction as a unit vector; the x axis for the zero vector.
 pub fn unit(v: Complex) -> Complex {
     let long = length(v);
     if long > 0.0 { v / long } else { point([1.0, 0.0]) }

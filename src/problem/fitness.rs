@@ -1,13 +1,15 @@
-//! What a population search sees: the design's free numbers in, violation and cost out.
+//! Fitness of a population search in the physical parameters: the design's free numbers in, violation and cost out.
 //!
-//! *Prescribed timing*: the cost is the weighted sum of squared errors at the prescribed angles; both
-//! assemblies come from one position solution, both directions are tried where allowed, and the better one
-//! counts; for the largest deviation the cost is that, in parts of the tolerances. *Free timing*: the coupler curve is sampled at evenly spaced crank angles and each point is met at
-//! the angle that is nearest to it alone (a parabola through the three samples around the nearest one). The
-//! crank angles are no genes. Order, circuit and branch, where required, enter the violation.
+//! *Prescribed timing*: the cost is the weighted sum of squared errors at the prescribed angles; both assemblies come
+//! from one position solution, both directions are tried if allowed, and the better one counts; if the largest
+//! deviation is minimised the cost is that, in parts of the tolerances. *Free timing*: the coupler curve is sampled at
+//! evenly spaced crank angles and each point is matched, independently of the others, to its nearest angle (a parabola
+//! through the three samples around the nearest one). The crank angles are not genes. Order, circuit and branch, if
+//! required, enter the violation.
 //!
-//! A design that breaks a requirement is not given a cost that it does not have: it has a violation, and
-//! feasibility rules compare it (see [`crate::solve::population`]). Nothing here allocates.
+//! A design that violates a requirement gets a violation instead of a penalised cost, and feasibility rules compare it
+//! (see [`crate::solve::population`]). Nothing here allocates, except for targets of thousands
+//! of points.
 
 use super::design_space::{DesignSpace, Shape};
 use super::requirements::{Motion, Requirements, nearest_type};
@@ -24,7 +26,7 @@ use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Samples of the coupler curve for free timing: 2.8 degrees apart; the parabola leaves an error of the third
+/// Number of samples of the coupler curve for free timing: 2.8 degrees apart; the parabola leaves an error of third
 /// order in that.
 const CURVE_SAMPLES: usize = 128;
 
@@ -44,29 +46,29 @@ pub struct PathFitness<'a> {
     requirements: Requirements,
     genes: Vec<(f64, f64)>,
     targets: Columns,
-    /// The unit of the largest deviation, where that is minimised: the least tolerance, or 1.
+    /// The unit of the largest deviation, if that is minimised: the least tolerance, or 1.
     deviation: Option<f64>,
-    /// For each direction the sign and the columns cos, sin of direction psi_j (prescribed timing).
+    /// The prescribed angles (*clocks*): for each direction its sign and the columns cos, sin of direction psi_j.
     clocks: Vec<(f64, Vec<f64>, Vec<f64>)>,
-    /// cos, sin of the sampled crank angles (free timing).
+    /// The sampled crank angles of free timing (the *wheel*): cos and sin.
     wheel: (Vec<f64>, Vec<f64>),
     /// The least and the greatest prescribed angle as written, radians.
     span: (f64, f64),
 }
 
-/// The best way to read a design: its fitness and the setting that has it.
+/// An evaluation of a design (a *reading*): its fitness and the discrete setting that attains it.
 #[derive(Clone, Copy, Debug)]
 pub struct Reading {
     /// The fitness.
     pub fitness: Fitness,
     /// The setting.
     pub setting: Setting,
-    /// Free timing: +1 or -1 where only the input arc on that side of the ground line is meant, else 0.
+    /// Free timing: +1 or -1 if only the input arc on that side of the ground line is meant, else 0.
     pub arc: f64,
 }
 
 impl Reading {
-    /// Takes a reading that is better.
+    /// Takes a reading if it is better.
     fn offer(&mut self, reading: Reading) {
         if reading.fitness.compare(&self.fitness).is_lt() {
             *self = reading;
@@ -74,7 +76,7 @@ impl Reading {
     }
 }
 
-/// The reading of what cannot be read.
+/// Returns the reading of a design that cannot be evaluated.
 fn nothing() -> Reading {
     let setting =
         Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: CouplerSide::Plus };
@@ -82,7 +84,7 @@ fn nothing() -> Reading {
 }
 
 impl<'a> PathFitness<'a> {
-    /// The fitness of a problem.
+    /// Creates the fitness of a problem.
     pub fn new(problem: &'a Problem) -> Self {
         let task = problem.task();
         let padded = task.len().next_multiple_of(LANES);
@@ -131,17 +133,17 @@ impl<'a> PathFitness<'a> {
         }
     }
 
-    /// The problem.
+    /// Returns the problem.
     pub fn problem(&self) -> &'a Problem {
         self.problem
     }
 
-    /// The design space of a side of the coupler point.
+    /// Returns the design space of a side of the coupler point.
     pub fn space(&self, side: CouplerSide) -> &DesignSpace {
         self.spaces.iter().find(|(s, _)| *s == side).map_or(&self.spaces[0].1, |(_, space)| space)
     }
 
-    /// How many positions of the linkage one evaluation computes.
+    /// Returns the number of positions of the linkage that one evaluation computes.
     pub fn positions_per_evaluation(&self) -> u64 {
         let each = if self.clocks.is_empty() {
             CURVE_SAMPLES
@@ -151,9 +153,10 @@ impl<'a> PathFitness<'a> {
         (2 * each * self.spaces.len()) as u64
     }
 
-    /// The best reading of a design's free numbers.
+    /// Returns the best reading of a design's free numbers.
     pub fn read(&self, genes: &[f64]) -> Reading {
-        // With free timing every point is compared with every sample: about as much work as a position for eight of them.
+        // With free timing every point is compared with every sample: for eight of them about as much work as a
+        // position.
         let free = if self.clocks.is_empty() { self.problem.task().len() * CURVE_SAMPLES / 8 } else { 0 };
         computed(self.positions_per_evaluation() as usize + free);
         let mut best = nothing();
@@ -170,7 +173,7 @@ impl<'a> PathFitness<'a> {
         best
     }
 
-    /// Whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
+    /// Returns whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
     fn on_arc(&self, ground: Complex, arc: f64, sample: usize) -> bool {
         let crank = Complex::new(self.wheel.0[sample], self.wheel.1[sample]);
         arc == 0.0 || cross(ground, crank) * arc > 0.0
@@ -186,7 +189,7 @@ impl<'a> PathFitness<'a> {
         )
     }
 
-    /// The angle added to every prescribed one, from the design's own where that is free.
+    /// Returns the angle added to every prescribed one: `offset` if it is free.
     fn angle_offset(&self, offset: f64, shape: &Shape) -> f64 {
         match self.problem.task().timing() {
             Timing::Prescribed { offset: AngleOffset::Free, .. } => offset,
@@ -197,8 +200,8 @@ impl<'a> PathFitness<'a> {
         }
     }
 
-    /// The reading of a shape in one direction (by its place among the allowed ones) and on one assembly;
-    /// `offset` is the crank angle's where it is free. Prescribed timing. Bounds of the design do not enter.
+    /// Returns the reading of a shape with prescribed timing, in one direction (by its index among the allowed ones)
+    /// and on one assembly; `offset` is that of the crank angle, if it is free. Bounds of the design do not enter.
     pub fn read_timed(
         &self,
         side: CouplerSide,
@@ -223,22 +226,22 @@ impl<'a> PathFitness<'a> {
         })
     }
 
-    /// How far the loop is from closing, summed over the points, in one direction: 0 where it closes at all
-    /// of them. `turn` is added to every prescribed angle.
+    /// Returns the opening of the loop, summed over the points, in one direction: 0 if it closes at all of them. `turn`
+    /// is added to every prescribed angle.
     pub fn open(&self, shape: &Shape, turn: f64, direction: usize) -> f64 {
         let Some((_, cos, sin)) = self.clocks.get(direction) else { return f64::INFINITY };
         let turn = Complex::from_polar(1.0, turn);
         timed_sums(&self.kernel(shape), turn, cos, sin, &self.targets, None).open
     }
 
-    /// The best reading of a shape with free timing. Bounds of the design do not enter.
+    /// Returns the best reading of a shape with free timing. Bounds of the design do not enter.
     pub fn read_free(&self, side: CouplerSide, shape: &Shape) -> Reading {
         let mut best = nothing();
         self.free_readings(side, shape, &mut |reading| best.offer(reading));
         best
     }
 
-    /// What the requirements lack; computed once a shape where the motion does not enter.
+    /// Returns the violation of the requirements; computed once per shape if it does not depend on the motion.
     fn lack(
         &self,
         aim: Option<LinkageType>,
@@ -279,7 +282,7 @@ impl<'a> PathFitness<'a> {
         let aim = nearest_type(links, self.problem.types());
         let own = linkage_type(links);
         let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
-        // A Grashof linkage whose input rocks has a circuit on either side of its ground line.
+        // A Grashof linkage with a rocking input has a circuit on either side of its ground line.
         let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
         let sides: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
         let ground = shape.follower_pivot - shape.crank_pivot;
@@ -290,9 +293,10 @@ impl<'a> PathFitness<'a> {
                 let (mut cost, mut open) = (0.0, false);
                 let mut course = Course::default();
                 let points = self.problem.task().points();
-                // Side by side where there are many, and read in the order of the points: threads change no digit.
+                // In parallel if there are many, and read in the order of the points: the number of threads changes no
+                // digit.
                 let nearest = |target: &Complex| curve.nearest(assembly, *target, &reachable);
-                let ready: Option<Vec<_>> = (points.len() >= MANY)
+                let ready: Option<Vec<_>> = (points.len() >= MANY && nearest(&points[0]).is_some())
                     .then(|| points.par_iter().with_min_len(AT_ONCE).map(nearest).collect());
                 for (j, target) in points.iter().enumerate() {
                     match ready.as_ref().map_or_else(|| nearest(target), |ready| ready[j]) {
@@ -326,8 +330,8 @@ impl<'a> PathFitness<'a> {
         }
     }
 
-    /// The positions (e_j, u_j) of the points for free timing, as the reading has them; `None` where a point
-    /// finds no position.
+    /// Returns the positions (e_j, u_j) of the points for free timing, as in the reading; `None` if a point finds no
+    /// position.
     pub fn positions(&self, shape: &Shape, reading: &Reading) -> Option<Vec<[Complex; 2]>> {
         let assembly = reading.setting.assembly;
         let ground = shape.follower_pivot - shape.crank_pivot;
@@ -350,9 +354,9 @@ impl<'a> PathFitness<'a> {
     }
 }
 
-/// Targets of so many points are compared with the curve by all threads.
+/// Number of points from which they are compared with the curve by all threads.
 const MANY: usize = 4096;
-/// Points that a thread takes at once.
+/// Least number of points that a thread takes at once.
 const AT_ONCE: usize = 512;
 
 impl PopulationProblem for PathFitness<'_> {
@@ -365,8 +369,8 @@ impl PopulationProblem for PathFitness<'_> {
     }
 
     fn cost_hint_ns(&self) -> f64 {
-        // About 3 ns a position and 150 ns a set of requirements; free timing compares every point with every
-        // sample besides.
+        // About 3 ns per position and 150 ns per set of requirements; free timing also compares every point with every
+        // sample.
         let positions = 3.0 * self.positions_per_evaluation() as f64 + 300.0;
         if self.clocks.is_empty() {
             positions + 2.0 * (CURVE_SAMPLES * self.problem.task().len()) as f64
@@ -379,15 +383,15 @@ impl PopulationProblem for PathFitness<'_> {
 struct TimedSums {
     /// The cost of both assemblies: a sum, or the largest deviation.
     cost: [f64; 2],
-    /// How far the loop is from closing, summed over the points; 0 where it closes at all of them.
+    /// The opening of the loop, summed over the points; 0 if it closes at all of them.
     open: f64,
 }
 
-/// Points whose errors are computed before they are summed.
+/// Number of points whose errors are computed before they are summed.
 const BLOCK: usize = 64;
 
-/// The weighted sums of squared errors of both assemblies at the angles turned by `turn`; with the unit of a
-/// deviation the root of the largest weighted square in that unit.
+/// Returns the weighted sums of squared errors of both assemblies at the angles turned by `turn`; with the unit of a
+/// deviation, the root of the largest weighted square in that unit.
 ///
 /// Errors are stored block by block and summed afterwards, always in the same order: a running sum inside the
 /// loop would keep the compiler from using vectors.
@@ -472,7 +476,7 @@ impl Sampled {
         out
     }
 
-    /// The crank angle of the nearest point and its squared distance.
+    /// Returns the crank angle of the nearest point and its squared distance.
     fn nearest(
         &self,
         assembly: AssemblyMode,
@@ -503,7 +507,7 @@ impl Sampled {
     }
 }
 
-/// How a crank turns through points.
+/// The course of the crank angle through the points: its steps in either direction.
 #[derive(Default)]
 struct Course {
     first: Option<f64>,
@@ -511,8 +515,8 @@ struct Course {
     /// The sum of the steps taken counter-clockwise all the way, and clockwise all the way.
     forward: f64,
     backward: f64,
-    /// Each step the short way: the sums of those counter-clockwise and clockwise, and how far it got from the
-    /// first point.
+    /// With each step taken the short way: the sums of those counter-clockwise and clockwise, and the range reached
+    /// from the first point.
     up: f64,
     down: f64,
     reach: (f64, f64),
@@ -534,8 +538,8 @@ impl Course {
         self.last = Some(angle);
     }
 
-    /// The direction among those allowed, how far out of order the points are (in turns; 0: in order), and
-    /// the motion. A crank that turns goes round less than once; one that rocks does not turn back.
+    /// Returns the direction among those allowed, the disorder of the points (in turns; 0: in order), and the motion. A
+    /// crank that turns goes round less than once; one that rocks does not turn back.
     fn judged(&self, turns: bool, allowed: &[f64], assembly: AssemblyMode) -> (f64, f64, Motion<'static>) {
         let start = self.first.unwrap_or(0.0);
         let best = |length: &dyn Fn(f64) -> f64| {

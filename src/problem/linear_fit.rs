@@ -9,8 +9,8 @@
 //! P = A + K e + Z u      A, K, Z complex and linear;  back: B - A = K/p
 //! ```
 //!
-//! What the problem fixes of A, B or the ground's direction makes some of the six real unknowns known or
-//! dependent: v = T w + v0 with fewer unknowns w. Only a start is made here; the fit proper follows.
+//! If the problem fixes A, B or the ground's direction, some of the six real unknowns are known or dependent: v = T w +
+//! v0 with fewer unknowns w. This makes a start only; the actual fit follows.
 
 use super::Problem;
 use super::design_space::{Shape, unit};
@@ -18,21 +18,21 @@ use super::spec::Limits;
 use crate::linkage::{Complex, cross};
 use nalgebra::{SMatrix, SVector};
 
-/// What is known of the pivots before the fit.
+/// The known pivots and ground, before the fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KnownPivots {
-    /// A, where it is fixed.
+    /// A, if it is fixed.
     pub crank_pivot: Option<Complex>,
-    /// B, where it is fixed.
+    /// B, if it is fixed.
     pub follower_pivot: Option<Complex>,
-    /// arg(B - A), where it is fixed or drawn (radians).
+    /// The ground's direction arg(B - A), if it is fixed or drawn, in radians.
     pub ground_angle: Option<f64>,
-    /// |AB|, where it is fixed and the direction is known.
+    /// The ground's length |AB|, if it is fixed and the direction is known.
     pub ground: Option<f64>,
 }
 
 impl KnownPivots {
-    /// What the design's bounds fix of the pivots.
+    /// Returns the values that the design's bounds fix.
     pub fn of(problem: &Problem) -> Self {
         let fixed = |limits: Option<Limits>| limits.filter(Limits::is_fixed).map(|l| l.0);
         let design = &problem.spec().design;
@@ -52,15 +52,16 @@ impl KnownPivots {
 /// The ratios of the links to the ground: p = a/g, q = b/g, r = c/g.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ratios {
-    /// a/g.
+    /// Crank to ground, a/g.
     pub crank: f64,
-    /// b/g.
+    /// Coupler to ground, b/g.
     pub coupler: f64,
-    /// c/g.
+    /// Follower to ground, c/g.
     pub follower: f64,
 }
 
-/// u at a crank direction e (from the ground line) on the assembly with sign t; `None` where the loop is open.
+/// Returns the coupler direction u at a crank direction e (from the ground line) on the assembly with sign t; `None` if
+/// the loop is open.
 #[inline]
 pub fn coupler_direction(ratios: &Ratios, e: Complex, t: f64) -> Option<Complex> {
     let (p, q, r) = (ratios.crank, ratios.coupler, ratios.follower);
@@ -74,11 +75,10 @@ pub fn coupler_direction(ratios: &Ratios, e: Complex, t: f64) -> Option<Complex>
     Some(w * Complex::new(sigma, t * h2.sqrt()) / (f2 * q))
 }
 
-/// Six real numbers (A, K, Z) by linear least squares through `targets` at directions (e_j, u_j) with weights.
+/// Fits the six real numbers (A, K, Z) by linear least squares through `targets` at directions (e_j, u_j) with weights.
 ///
-/// Returns the shape, and for each point nothing: its positions are the directions turned by the ground's
-/// direction. `None` where the system is singular, the crank would have no length, or (known ground
-/// direction) the size came out negative.
+/// Returns the shape; the positions of the points are the directions turned by the ground's direction. `None` if the
+/// system is singular, the crank would have no length, or (known ground direction) the size came out negative.
 pub fn fit(
     ratios: &Ratios,
     known: &KnownPivots,
@@ -215,7 +215,7 @@ pub fn fit(
     })
 }
 
-/// Whether the assembly of a position (from the ground line) is the left one, as a sign.
+/// Returns the assembly sign of a position (from the ground line): +1 if it is the left one.
 pub fn assembly_sign(ratios: &Ratios, [e, u]: [Complex; 2]) -> f64 {
     cross(Complex::new(1.0, 0.0) - e * ratios.crank, u).signum()
 }

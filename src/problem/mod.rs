@@ -1,7 +1,7 @@
-//! The task as mathematics: design space, residuals with derivatives, requirements, fitness.
+//! The mathematical problem: design space, residuals with derivatives, requirements, fitness.
 //!
-//! A [`Problem`] is a checked [`spec::ProblemSpec`]. What a search may choose besides the design vector (the
-//! assembly, the crank's direction, the type aimed at, the side of the coupler point) is a [`Setting`].
+//! A [`Problem`] is a checked [`spec::ProblemSpec`]. The discrete choices of a search besides the design vector (the
+//! assembly, the crank's direction, the type aimed at, the side of the coupler point) are a [`Setting`].
 
 pub mod design_space;
 pub mod fitness;
@@ -21,7 +21,7 @@ use requirements::Requirements;
 use serde::{Deserialize, Serialize};
 use spec::{ClosingPolicy, DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec, RequireSpec};
 
-/// A problem that has been checked.
+/// A checked problem.
 #[derive(Clone, Debug)]
 pub struct Problem {
     spec: ProblemSpec,
@@ -29,21 +29,22 @@ pub struct Problem {
     types: Vec<LinkageType>,
 }
 
-/// What a search chooses besides the design vector.
+/// The discrete choices of a search besides the design vector.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// The type aimed at; `None`: any.
     pub aim: Option<LinkageType>,
-    /// t1 (prescribed timing).
+    /// The assembly sign t1 (prescribed timing).
     pub assembly: AssemblyMode,
-    /// +1: the prescribed increments as written, -1: reversed. With free timing the sense in which starts run.
+    /// The direction of the crank. +1: the prescribed increments as written, -1: reversed. With free timing the sense
+    /// in which starts run.
     pub direction: f64,
-    /// t2 where d and e are coordinates of the design.
+    /// The side t2 of the coupler point, used if d and e are coordinates of the design.
     pub side: CouplerSide,
 }
 
-/// The task of the largest deviation: in place of the file's weights, which do not enter it, those with which
-/// least squares come nearest to it, (least tolerance / tol_j)^2.
+/// Returns the task for the largest deviation. Its weights replace those of the file, which do not enter: with (least
+/// tolerance / tol_j)^2 least squares come nearest to it.
 fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
     let weights = match task.tolerances() {
         None => vec![1.0; task.len()],
@@ -59,7 +60,7 @@ fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
     task.with_weights(weights)
 }
 
-/// How the motion may come back to the first point, where it has to.
+/// Returns the ways in which the motion may come back to the first point, if it has to.
 fn way_back(require: &RequireSpec) -> Return {
     match (require.closing, require.branch) {
         (ClosingPolicy::Any, _) => Return::Any,
@@ -68,8 +69,8 @@ fn way_back(require: &RequireSpec) -> Return {
     }
 }
 
-/// Of some types (none: of all) those whose crank turns fully. Where that is none of them they stay as they are:
-/// nothing that they allow can be acceptable then, and the search says so.
+/// Returns those of the given types (none: of all) whose crank turns fully. If no type does, they stay as they are:
+/// nothing that they allow can be acceptable then, and the search reports that.
 fn turning(types: &[LinkageType]) -> Vec<LinkageType> {
     let turns = |kind: &LinkageType| kind.input_turns_fully() || *kind == LinkageType::ChangePoint;
     let left: Vec<LinkageType> = types.iter().copied().filter(turns).collect();
@@ -80,14 +81,14 @@ fn turning(types: &[LinkageType]) -> Vec<LinkageType> {
     }
 }
 
-/// No point's weight is less than this part of the largest, so that each stays a weight above zero.
+/// Least weight of a point, in parts of the largest, so that each weight stays above zero.
 const LEAST_WEIGHT: f64 = 1e-12;
 
 impl Problem {
-    /// A problem from its resolved data.
+    /// Creates a problem from its resolved data.
     ///
     /// # Errors
-    /// As [`PathTask::new`]; and where the largest deviation is minimised and a tolerance is zero.
+    /// As [`PathTask::new`]; and if the largest deviation is minimised and a tolerance is zero.
     pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
         let mut task = spec.task.path.to_task()?;
         if spec.solve.objective == Objective::MaxDeviation {
@@ -104,40 +105,40 @@ impl Problem {
         Ok(problem)
     }
 
-    /// The data it was made from.
+    /// Returns the data it was made from.
     pub fn spec(&self) -> &ProblemSpec {
         &self.spec
     }
 
-    /// The task.
+    /// Returns the task.
     pub fn task(&self) -> &PathTask {
         &self.task
     }
 
-    /// Whether only a crank that turns fully can be acceptable: the motion has to come back to its first point, in
-    /// order, without reversing and without passing a toggle.
+    /// Returns whether only a crank that turns fully can be acceptable: the motion has to come back to its first point,
+    /// in order, without reversing and without passing a toggle.
     pub fn has_to_turn_on(&self) -> bool {
         self.task.returns() && self.order_required() && self.task.comes_back() == Return::TurningOn
     }
 
-    /// The types that are searched for, sorted; empty: any. Those that are required, and of them, where the crank
-    /// has to turn fully, those whose crank does.
+    /// Returns the types that are searched for, sorted; empty: any. They are the required ones; if the crank has to
+    /// turn fully, those of them whose crank does.
     pub fn types(&self) -> &[LinkageType] {
         &self.types
     }
 
-    /// Whether searches hold their fits to one of the types from the start: where types are required. Where only the
-    /// crank has to turn fully, fits are free to pass a change point, and those that end beyond it are led back.
+    /// Returns whether searches hold their fits to one of the types from the start: true if types are required. If only
+    /// the crank has to turn fully, fits are free to pass a change point, and those that end beyond it are led back.
     pub fn aims_at_types(&self) -> bool {
         !self.spec.require.types.is_empty()
     }
 
-    /// Whether the crank angle's offset is an unknown of the design vector.
+    /// Returns whether the crank angle's offset is an unknown of the design vector.
     pub fn offset_is_free(&self) -> bool {
         matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
     }
 
-    /// The design space of a setting.
+    /// Returns the design space for a side of the coupler point.
     pub fn space(&self, side: CouplerSide) -> DesignSpace {
         DesignSpace::new(
             &self.spec.design,
@@ -148,12 +149,12 @@ impl Problem {
         )
     }
 
-    /// The requirements over a design space.
+    /// Returns the requirements over a design space.
     pub fn requirements(&self, space: &DesignSpace) -> Requirements {
         Requirements::new(&self.spec.require, space.derived(), self.task.size())
     }
 
-    /// The directions in which prescribed increments may be run, +1 first; for free timing the allowed senses.
+    /// Returns the directions in which prescribed increments may be run, +1 first; for free timing the allowed senses.
     pub fn directions(&self) -> &'static [f64] {
         match (self.task.timing(), self.spec.require.direction) {
             (Timing::Prescribed { offset: AngleOffset::Fixed | AngleOffset::Ground, .. }, _) => &[1.0],
@@ -167,7 +168,7 @@ impl Problem {
         }
     }
 
-    /// The sides of the coupler point to try: both only where d and e are the coordinates.
+    /// Returns the sides of the coupler point to try: both only if d and e are the coordinates.
     pub fn sides(&self) -> &'static [CouplerSide] {
         if DesignSpace::has_side(&self.spec.design) {
             &[CouplerSide::Plus, CouplerSide::Minus]
@@ -176,22 +177,22 @@ impl Problem {
         }
     }
 
-    /// Whether the points must be passed in order.
+    /// Returns whether the points must be passed in order.
     pub fn order_required(&self) -> bool {
         self.spec.require.order == OrderPolicy::Required
     }
 
-    /// Whether the motion may pass a toggle.
+    /// Returns whether the motion may pass a toggle.
     pub fn branch_any(&self) -> bool {
         self.spec.require.branch == OnePolicy::Any
     }
 
-    /// Whether the points may lie on different circuits.
+    /// Returns whether the points may lie on different circuits.
     pub fn circuit_any(&self) -> bool {
         self.spec.require.circuit == OnePolicy::Any
     }
 
-    /// e^{i psi_j} of the prescribed angles in a direction; empty for free timing.
+    /// Returns e^{i psi_j} of the prescribed angles in a direction; empty for free timing.
     pub fn phases(&self, direction: f64) -> Vec<Complex> {
         match self.task.timing() {
             Timing::Free => Vec::new(),

@@ -1,26 +1,26 @@
-//! Which problems have exact answers: paths of nine precision points with free timing.
+//! Exact problems: paths of nine precision points with free timing.
 //!
-//! Nine points are as many as a four-bar's coupler curve can be made to pass through: nine numbers are a linkage,
-//! each point with a crank angle of its own takes one of them. Fewer points leave a family, more have no exact
-//! answer in general, and with the timing prescribed five points are all that can be met.
+//! Nine is the largest number of points that a four-bar's coupler curve can be made to pass through: a linkage has nine
+//! parameters, and each point with a crank angle of its own takes one of them. Fewer points leave a family, more have
+//! no exact answer in general, and with prescribed timing only five points can be met.
 
 use super::Problem;
 use crate::linkage::Complex;
 use crate::task::Timing;
 
-/// As many points as a coupler curve can be made to pass through.
+/// The largest number of points that a coupler curve can be made to pass through.
 pub const PRECISION_POINTS: usize = 9;
 
-/// Points nearer to each other than this part of the target's size are one point.
+/// Distance, in parts of the target's size, below which points are one point.
 const COINCIDENT: f64 = 1e-9;
 
-/// Why a problem has no exact answers to list.
+/// The reason why a problem has no exact answers to list.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// Not nine points.
+    /// The path does not have nine points.
     #[error("method = \"continuation\" finds linkages through exactly 9 points, this path has {points}")]
     Points {
-        /// How many there are.
+        /// Number of points.
         points: usize,
     },
     /// The crank angles are given.
@@ -28,20 +28,20 @@ pub enum Refusal {
         "crank angles cannot be prescribed with method = \"continuation\": nine points take all the freedom"
     )]
     Timed,
-    /// Two points in one place.
+    /// Two points coincide.
     #[error(
         "points {first} and {second} are one point, and method = \"continuation\" needs 9 different ones"
     )]
     Coincident {
-        /// One, counted from 0.
+        /// Index of the one, counted from 0.
         first: usize,
-        /// The other.
+        /// Index of the other, counted from 0.
         second: usize,
     },
 }
 
 impl Refusal {
-    /// What to do.
+    /// Returns the remedy to suggest.
     pub fn remedy(&self) -> &'static str {
         match self {
             Refusal::Points { points } if *points < PRECISION_POINTS => {
@@ -56,10 +56,10 @@ impl Refusal {
     }
 }
 
-/// The nine points of a problem that has exact answers.
+/// Returns the nine points of a problem that has exact answers.
 ///
 /// # Errors
-/// [`Refusal`]: why it has none.
+/// [`Refusal`]: the reason why it has none.
 pub fn precision_points(problem: &Problem) -> Result<[Complex; PRECISION_POINTS], Refusal> {
     let task = problem.task();
     if !matches!(task.timing(), Timing::Free) {

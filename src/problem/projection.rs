@@ -1,4 +1,4 @@
-//! Prescribed timing in its reduced form: what is linear is solved inside (variable projection).
+//! Variable projection for prescribed timing (the reduced form): the linear parameters are solved for inside.
 //!
 //! With the ratios p = a/g, q = b/g, r = c/g, the crank's direction e_j measured from the ground line and
 //! G = B - A, the joints of a linkage of ground 1 on the x axis are ([`super::linear_fit`])
@@ -9,8 +9,8 @@
 //! P   = A + K e + Z u                   K = p G;  Z: the coupler point in the frame of the coupler, turned by G
 //! ```
 //!
-//! A, K and Z enter linearly. For given p, q, r and (at most) one angle the best of them follow from linear
-//! least squares, and what is left is a function of three or four unknowns (Golub & Pereyra 1973):
+//! A, K and Z enter linearly. For given p, q, r and (at most) one angle the best of them follow from linear least
+//! squares, and the reduced cost is a function of three or four unknowns (Golub & Pereyra 1973):
 //!
 //! | crank angles | angle | K |
 //! |---|---|---|
@@ -18,18 +18,19 @@
 //! | from the ground line | none | complex; or as below |
 //! | from the x axis | theta = arg G, unless the design fixes it | kappa e^{i theta}, kappa > 0 |
 //!
-//! Where the design fixes the ground's direction K = kappa e^{i theta} in every row; where it fixes the length
-//! as well, or both pivots, K is known. A is eliminated by centring; where the design fixes it the points are
-//! measured from it; where it fixes B alone they are measured from B and the column is e - 1/p. Offset free with
-//! a ground of given length and free direction would take a second angle: it has no reduced form here.
+//! If the design fixes the ground's direction, K = kappa e^{i theta} in every row; if it fixes the length as well, or
+//! both pivots, K is known. A is eliminated by centring; if the design fixes it, the points are measured from it; if it
+//! fixes B alone, they are measured from B and the column is e - 1/p. A free offset with a ground of given length and
+//! free direction would need a second angle: it has no reduced form here.
 //!
 //! Limits of the lengths are kept by the linear part: |K| is the crank's length a, and with the ratios it gives g, b
-//! and c, so that they leave it the interval [max(a_lo, p g_lo, p b_lo/q, p c_lo/r), min(..)]. What K costs beyond
-//! the best is N |K - K_0|^2 with one N for all directions, so that the best K in the interval is K_0 with its
-//! length brought into it. Where no length satisfies all limits the geometric mean of the two ends is taken; the
-//! physical fit has to follow. Pivot boxes and limits of the coupler point are left to it as well.
+//! and c, so that together they give the interval [max(a_lo, p g_lo, p b_lo/q, p c_lo/r), min(..)] for |K|. The cost of
+//! a K other than the unconstrained optimum K_0 is greater by N |K - K_0|^2 with one N for all directions, so that the
+//! best K in the interval is K_0 with its length clamped to it. If no length satisfies all limits the geometric mean of
+//! the two ends is taken; the physical fit has to follow. Pivot boxes and limits of the coupler point are left to it as
+//! well.
 //!
-//! Weights are normalised to the sum 1 inside; every cost that leaves is the weighted sum of squares.
+//! Weights are normalised to the sum 1 inside; every cost returned is the weighted sum of squares.
 
 mod fit;
 mod screen;
@@ -44,20 +45,21 @@ use crate::linkage::lane::LANES;
 use crate::linkage::{Complex, CouplerSide};
 use crate::task::{AngleOffset, Timing};
 
-/// ln p, ln q, ln r and the angle.
+/// Number of unknowns: ln p, ln q, ln r and the angle.
 pub const UNKNOWNS: usize = 4;
 /// A point of the reduced form.
 pub type Reduced = [f64; UNKNOWNS];
-/// Ratios of links beyond this are a slider-crank in disguise: differences of large lengths, no digits left.
+/// The ratio of links beyond which a linkage is a slider-crank in disguise: differences of large lengths, no digits
+/// left.
 pub const LARGEST_RATIO: f64 = 1e4;
 
-/// Twice the margin (in sizes of the target, or relative) that requirements are aimed at with.
+/// Twice the margin (in sizes of the target, or relative) inside the limits at which requirements are aimed.
 const MARGIN: f64 = 2e-9;
 
-/// Below this part of a column's length what the other columns leave of it is rounding.
+/// The part of a column's length below which its remainder after projecting off the other columns is rounding.
 const SINGULAR: f64 = 1e-12;
 
-/// From where the points are measured, and with that the column of K.
+/// The origin from which the points are measured, which determines the column of K.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Origin {
     /// A is free: points and columns are centred; the column is e.
@@ -68,27 +70,28 @@ enum Origin {
     FollowerPivot(Complex),
 }
 
-/// What is known of K = p G.
+/// The known part of K = p G.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum GroundKnown {
-    /// Nothing: K is complex.
+    /// Nothing is known: K is complex.
     Nothing,
-    /// Its direction: K = kappa e^{i theta}.
+    /// The direction is known: K = kappa e^{i theta}.
     Direction,
-    /// Its direction and length: K = p g e^{i theta}.
+    /// Direction and length are known: K = p g e^{i theta}.
     Both(f64),
 }
 
-/// What the angle among the unknowns is.
+/// The meaning of the angle among the unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AngleRole {
-    /// There is none.
+    /// There is no angle.
     None,
-    /// phi_0: it turns the crank.
+    /// The angle is phi_0: it turns the crank.
     Crank,
-    /// theta with angles from the ground line: it turns K.
+    /// The angle is theta, with crank angles from the ground line: it turns K.
     Ground,
-    /// theta with angles from the x axis: it turns K and, seen from the ground line, the crank back.
+    /// The angle is theta, with crank angles from the x axis: it turns K and, seen from the ground line, the crank
+    /// back.
     Both,
 }
 
@@ -96,7 +99,7 @@ enum AngleRole {
 #[derive(Clone, Debug)]
 struct Columns {
     phase: [Vec<f64>; 2],
-    /// From the origin.
+    /// The points measured from the origin.
     target: [Vec<f64>; 2],
     weight: Vec<f64>,
     root_weight: Vec<f64>,
@@ -108,9 +111,9 @@ pub struct Projection {
     origin: Origin,
     ground: GroundKnown,
     role: AngleRole,
-    /// The turn from the prescribed angles to the crank's from the ground line, where no unknown decides it.
+    /// The turn from the prescribed angles to the crank's from the ground line, if no unknown determines it.
     turn: f64,
-    /// theta where it is known.
+    /// The ground's direction theta, if it is known.
     theta: f64,
     bounds: [(f64, f64); UNKNOWNS],
     /// Limits of a, g, b, c.
@@ -120,7 +123,7 @@ pub struct Projection {
     /// The sum of the weights as given.
     total_weight: f64,
     offset_free: bool,
-    /// sum w phase, sum w T, sum w |T|^2, sum w conj(phase) T.
+    /// The sums of w phase, w T, w |T|^2 and w conj(phase) T.
     phase_sum: Complex,
     target_sum: Complex,
     target_sq: f64,
@@ -128,8 +131,8 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// The reduced form in a direction of the crank (+1 or -1); `None` for free timing, where there are fewer
-    /// equations than linear unknowns, and where two angles would be needed.
+    /// Creates the reduced form in a direction of the crank (+1 or -1); `None` for free timing, if there are fewer
+    /// equations than linear unknowns, and if two angles would be needed.
     pub fn new(problem: &Problem, direction: f64) -> Option<Self> {
         let task = problem.task();
         let Timing::Prescribed { offset, .. } = task.timing() else { return None };
@@ -210,23 +213,23 @@ impl Projection {
         })
     }
 
-    /// [low, high] of the unknowns: the ratios between 1 / [`LARGEST_RATIO`] and [`LARGEST_RATIO`] or as the
-    /// design's bounds and the link ratio leave them; the angle unbounded, or fixed at 0 where there is none.
+    /// Returns [low, high] of the unknowns: the ratios between 1 / [`LARGEST_RATIO`] and [`LARGEST_RATIO`], or within
+    /// the design's bounds and the link ratio; the angle unbounded, or fixed at 0 if there is none.
     pub fn bounds(&self) -> &[(f64, f64); UNKNOWNS] {
         &self.bounds
     }
 
-    /// How many points.
+    /// Returns the number of points.
     pub fn points(&self) -> usize {
         self.points
     }
 
-    /// Whether one of the unknowns is an angle.
+    /// Returns whether one of the unknowns is an angle.
     pub fn has_angle(&self) -> bool {
         self.role != AngleRole::None
     }
 
-    /// The turn of the crank against the prescribed angles and the direction of the ground line, as angles.
+    /// Returns the turn of the crank against the prescribed angles, and the direction of the ground line, as angles.
     fn angles(&self, angle: f64) -> (f64, f64) {
         match self.role {
             AngleRole::None => (self.turn, self.theta),
@@ -236,7 +239,7 @@ impl Projection {
         }
     }
 
-    /// The angle from the prescribed angles to the crank's from the ground line at a point of the form.
+    /// Returns the angle from the prescribed angles to the crank's from the ground line at a point of the form.
     pub fn crank_turn(&self, x: &Reduced) -> f64 {
         self.angles(x[3]).0
     }
@@ -250,13 +253,13 @@ impl Projection {
     }
 }
 
-/// [low, high] of ln p, ln q, ln r of a problem whose ground has this length, where it is known.
+/// Returns [low, high] of ln p, ln q, ln r of a problem whose ground has this length, if it is known.
 pub fn ratio_box(problem: &Problem, ground: Option<f64>) -> [(f64, f64); 3] {
     let [p, q, r, _] = ratio_bounds(problem, link_limits(problem, ground), AngleRole::None);
     [p, q, r]
 }
 
-/// The limits of ground, a, b and c, a little inside the design's where a requirement keeps a margin.
+/// Returns the limits of ground, a, b and c, slightly inside the design's if a requirement keeps a margin.
 fn link_limits(problem: &Problem, ground: Option<f64>) -> [Limits; 4] {
     let mut limits = problem.space(CouplerSide::Plus).link_limits();
     let [of_ground, ..] = &mut limits;
@@ -271,7 +274,7 @@ fn link_limits(problem: &Problem, ground: Option<f64>) -> [Limits; 4] {
     limits
 }
 
-/// What the lengths' limits and the link ratio leave to the ratios.
+/// Returns the bounds of the ratios that follow from the lengths' limits and the link ratio.
 fn ratio_bounds(problem: &Problem, limits: [Limits; 4], role: AngleRole) -> [(f64, f64); UNKNOWNS] {
     let widest = LARGEST_RATIO.min(problem.spec().require.link_ratio_max * (1.0 - 10.0 * MARGIN)).max(1.0);
     let [ground, a, b, c] = limits;

@@ -1,9 +1,9 @@
-//! Which problems can be searched in reduced variables.
+//! Admissibility of a problem for the search in reduced variables.
 //!
-//! There pivots, size and coupler point come out of linear least squares. What the design fixes has to be held
-//! by that fit ([`Projection`], [`super::linear_fit`]): a whole pivot, the ground's direction, with prescribed
-//! timing also its length or one of the links. Anything else that is fixed would come out with some other value
-//! from almost every draw, and such a problem is refused. Intervals are no obstacle: outside them is a violation.
+//! In reduced variables pivots, size and coupler point follow from linear least squares. Values that the design fixes
+//! have to be held by that fit ([`Projection`], [`super::linear_fit`]): a whole pivot, the ground's direction, with
+//! prescribed timing also its length or one of the links. Any other fixed value would differ in almost every draw, and
+//! such a problem is refused. Intervals are allowed: lying outside them is a violation.
 
 use super::Problem;
 use super::linear_fit::KnownPivots;
@@ -11,10 +11,10 @@ use super::projection::Projection;
 use super::spec::Limits;
 use crate::task::Timing;
 
-/// Why a problem has no reduced form.
+/// The reason why a problem has no reduced form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
-    /// The design fixes what the linear fit cannot hold.
+    /// The design fixes a key that the linear fit cannot hold.
     #[error("reduced variables cannot hold {key} at a fixed value: it comes out of a linear fit")]
     Fixed {
         /// The key of `[design]`.
@@ -23,13 +23,13 @@ pub enum Refusal {
     /// Fewer equations than linear unknowns.
     #[error("{points} points are too few for reduced variables: the linear fit has more unknowns")]
     TooFewPoints {
-        /// How many there are.
+        /// Number of points.
         points: usize,
     },
 }
 
 impl Refusal {
-    /// What to do.
+    /// Returns the remedy to suggest.
     pub fn remedy(&self) -> &'static str {
         match self {
             Refusal::Fixed { .. } => "write variables = \"nine\", or give the key as [min, max]",
@@ -38,7 +38,7 @@ impl Refusal {
     }
 }
 
-/// Why the problem cannot be searched in reduced variables; `None` where it can.
+/// Returns the reason why the problem cannot be searched in reduced variables; `None` if it can.
 pub fn refusal(problem: &Problem) -> Option<Refusal> {
     let design = &problem.spec().design;
     let fixed = |limits: Option<Limits>| limits.is_some_and(|l| l.is_fixed());
@@ -63,7 +63,7 @@ pub fn refusal(problem: &Problem) -> Option<Refusal> {
     {
         return Some(Refusal::Fixed { key: "ground" });
     }
-    // One length among the links sets the size where the ground does not; the rest follows from the ratios.
+    // One length among the links sets the size if the ground does not; the rest follows from the ratios.
     let links = [("a", design.a), ("b", design.b), ("c", design.c)];
     let spare = if ground_held { links.len() } else { usize::from(timed) };
     if let Some((key, _)) = links.into_iter().filter(|(_, limits)| fixed(*limits)).nth(spare) {
@@ -74,7 +74,7 @@ pub fn refusal(problem: &Problem) -> Option<Refusal> {
         .then(|| Refusal::TooFewPoints { points: problem.task().len() })
 }
 
-/// The length of the ground where the linear fit holds it.
+/// Returns the length of the ground if the linear fit holds it.
 pub fn known_ground(problem: &Problem) -> Option<f64> {
     let known = KnownPivots::of(problem);
     match (known.crank_pivot, known.follower_pivot) {

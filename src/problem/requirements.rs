@@ -1,4 +1,4 @@
-//! What is required of a linkage, as smooth functions g(shape, motion) >= 0 in units of length.
+//! Requirements on a linkage, as smooth constraint functions g(shape, motion) >= 0 in units of length.
 //!
 //! - type: with the shortest link s and the others p, q, l, "s is the shortest and the margin is positive"
 //!   is the three linear conditions p + q - l - s >= 0, p + l - q - s >= 0, q + l - p - s >= 0;
@@ -9,7 +9,8 @@
 //!   extreme position (Danskin 1967);
 //! - derived bounds of the design space.
 //!
-//! Every g is aimed at with a small margin, so that what the search calls met is met to the referee.
+//! Every g is aimed at with a small margin, so that a requirement that the search counts as met is met for the referee
+//! too.
 
 use super::design_space::{Derived, DerivedBound, SHAPE, Shape, unit};
 use super::spec::{RequireSpec, TransmissionOver};
@@ -40,7 +41,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a box at which a coordinate (0: x, 1: y) has its lower or its upper limit.
+    /// Returns the side of a box at which a coordinate (0: x, 1: y) has its lower or its upper limit.
     fn of(axis: usize, lower: bool) -> Side {
         match (axis, lower) {
             (0, true) => Side::XMin,
@@ -50,18 +51,18 @@ impl Side {
         }
     }
 
-    /// Its place in [xmin, ymin, xmax, ymax].
+    /// Returns its index in [xmin, ymin, xmax, ymax].
     pub fn index(self) -> usize {
         self as usize
     }
 
-    /// xmin, ymin, xmax or ymax.
+    /// Returns xmin, ymin, xmax or ymax.
     pub fn name(self) -> &'static str {
         ["xmin", "ymin", "xmax", "ymax"][self.index()]
     }
 }
 
-/// What a row asks for: which requirement and which side of it.
+/// The kind of a row: its requirement and the side of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RowKind {
     /// The type aimed at: g is a Grashof margin.
@@ -81,41 +82,42 @@ pub enum RowKind {
 /// One requirement's value with its derivatives by the shape and by a turn of all crank angles.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
-    /// What it asks for.
+    /// The requirement that it belongs to.
     pub kind: RowKind,
-    /// g, a length.
+    /// The value g, a length.
     pub value: f64,
-    /// dg/d(Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
+    /// The derivatives dg/d(Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
     pub shape: [f64; SHAPE],
-    /// dg/dphi, all crank angles together.
+    /// The derivative dg/dphi by a turn of all crank angles together.
     pub crank: f64,
     /// The position at which it is evaluated.
     pub place: Place,
 }
 
-/// The position of a motion at which a requirement is evaluated: where it is tightest.
+/// The position of a motion at which a requirement is evaluated: the one where it is tightest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// None in particular, or an extreme inside a stretch, which does not move with the crank angle to first order.
+    /// No particular position, or an extreme inside an interval, which does not move with the crank angle to first
+    /// order.
     Anywhere,
-    /// The crank angle that a stretch begins with.
+    /// The crank angle at which an interval begins.
     First,
-    /// The crank angle that a stretch ends with.
+    /// The crank angle at which an interval ends.
     Last,
-    /// A position of a list, counted from 0.
+    /// The index of a position in a list, counted from 0.
     Position(usize),
 }
 
-/// The motion that a requirement is asked of.
+/// The motion over which a requirement is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub enum Motion<'a> {
-    /// The crank angles from the first to the second, on one assembly.
+    /// The interval of crank angles from the first to the second, in radians, on one assembly.
     Stretch(f64, f64, AssemblyMode),
-    /// Positions (crank, coupler direction) at the points, not further known between them.
+    /// Positions (crank, coupler direction) at the points; the motion between them is not known.
     Positions(&'a [[Complex; 2]]),
 }
 
-/// The requirements as the search sees them.
+/// The requirements of a problem as constraint rows for the search.
 #[derive(Clone, Debug)]
 pub struct Requirements {
     /// The target's size.
@@ -125,7 +127,7 @@ pub struct Requirements {
 }
 
 impl Requirements {
-    /// The requirements of a problem whose target has the given size.
+    /// Creates the requirements of a problem whose target has the given size.
     pub fn new(require: &RequireSpec, derived: &[DerivedBound], size: f64) -> Self {
         Requirements { size, require: require.clone(), derived: derived.to_vec() }
     }
@@ -196,13 +198,13 @@ impl Requirements {
         }
     }
 
-    /// Whether a row depends on the motion, and not on the shape alone.
+    /// Returns whether a row depends on the motion, and not on the shape alone.
     pub fn depend_on_motion(&self) -> bool {
         let used = self.require.transmission_over != Some(TransmissionOver::Cycle);
         self.require.footprint_in.is_some() || (self.require.transmission_deg_min.is_some() && used)
     }
 
-    /// The sum of what the rows lack, in sizes of the target; 0 where all are met.
+    /// Returns the total violation of the rows, in sizes of the target; 0 if all are met.
     pub fn lack(&self, aim: Option<LinkageType>, shape: &Shape, motion: &Motion<'_>) -> f64 {
         let mut lack = 0.0;
         self.rows(aim, shape, motion, &mut |row| lack += (-row.value).max(0.0));
@@ -290,7 +292,7 @@ impl Requirements {
         }
     }
 
-    /// The diagonals at which the transmission angle is extreme: s^2 with its derivatives.
+    /// Adds the rows of the transmission angle, at the diagonals at which it is extreme: s^2 with its derivatives.
     fn transmission_rows(
         &self,
         limit: f64,
@@ -398,7 +400,7 @@ impl Requirements {
                     let value = sign * (at - limit) - margin;
                     Some(Row { kind, value, shape: shape_row, crank, place: extreme.place })
                 });
-                // A linkage that has no position at all has no footprint to judge: its size is lacking.
+                // A linkage without any position has no footprint: its violation is the target's size.
                 let nowhere = Place::Anywhere;
                 let lacking =
                     Row { kind, value: -self.size, shape: [0.0; SHAPE], crank: 0.0, place: nowhere };
@@ -435,7 +437,7 @@ fn type_rows(
             return;
         }
         Some(LinkageType::ChangePoint) => {
-            // The margin is zero: both inequalities, with nothing to spare.
+            // The margin is zero: both inequalities, without slack.
             let mut order = [0, 1, 2, 3];
             order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
             let mut factors = [0.0; 4];
@@ -456,7 +458,7 @@ fn type_rows(
     }
 }
 
-/// Joints over a motion, without allocation.
+/// The joints over a motion, without allocation.
 #[expect(clippy::large_enum_variant, reason = "one at a time, on the stack, so that nothing is allocated")]
 enum Swept<'a> {
     Samples {
@@ -472,7 +474,7 @@ enum Swept<'a> {
     },
 }
 
-/// Samples a stretch needs for parabolas through neighbours to find its extremes.
+/// Number of samples of an interval from which parabolas through neighbours find its extremes.
 const SAMPLES: usize = 96;
 
 #[derive(Clone, Copy)]
@@ -575,7 +577,7 @@ impl SweptPosition {
         })
     }
 
-    /// The derivative of `sign` times a joint's coordinate by the shape and by the crank angle.
+    /// Returns the derivative of `sign` times a joint's coordinate by the shape and by the crank angle.
     fn derivative(&self, shape: &Shape, joint: usize, axis: usize, sign: f64) -> ([f64; SHAPE], f64) {
         // C is the coupler point at offset 0, D the one at offset b (which grows with b).
         let offset = match joint {
@@ -600,7 +602,7 @@ impl SweptPosition {
     }
 }
 
-/// Which of the allowed types a shape is nearest to: its own where that is allowed.
+/// Returns the allowed type that a shape is nearest to: its own if that is allowed.
 pub fn nearest_type(links: [f64; 4], allowed: &[LinkageType]) -> Option<LinkageType> {
     let own = linkage_type(links)?;
     if allowed.is_empty() || allowed.contains(&own) {
@@ -616,7 +618,7 @@ pub fn nearest_type(links: [f64; 4], allowed: &[LinkageType]) -> Option<LinkageT
     allowed.iter().copied().min_by(|s, t| shortest(s).total_cmp(&shortest(t)))
 }
 
-/// +1 where D lies left of C -> B, -1 right of it: the assembly of a position given by directions.
+/// Returns the assembly of a position given by directions: +1 if D lies left of C -> B, -1 if right of it.
 pub fn assembly_of(shape: &Shape, crank: Complex, coupler: Complex) -> AssemblyMode {
     let c = shape.crank_pivot + crank * shape.crank;
     AssemblyMode::of(cross(shape.follower_pivot - c, coupler))

@@ -1,7 +1,7 @@
 //! The problem as data: every key of a problem file with its default filled in.
 //!
-//! This is what stands as `problem.resolved` in a record and what a run starts from; a problem file, a
-//! library caller and `verify` all arrive here. Angles in degrees, lengths in the file's unit.
+//! It is written as `problem.resolved` in a record, and a run starts from it; a problem file, a library caller and
+//! `verify` all lead to it. Angles in degrees, lengths in the file's unit.
 
 use crate::linkage::{LinkageType, MAX_MAGNITUDE};
 use crate::resampling::{resample, smooth};
@@ -16,12 +16,12 @@ use serde::{Deserialize, Serialize};
 pub struct Limits(pub f64, pub f64);
 
 impl Limits {
-    /// Whether it fixes a value.
+    /// Returns whether it fixes a value.
     pub fn is_fixed(&self) -> bool {
         self.0 == self.1
     }
 
-    /// The nearest value inside.
+    /// Returns the nearest value inside.
     pub fn clamp(&self, value: f64) -> f64 {
         value.max(self.0).min(self.1)
     }
@@ -41,7 +41,7 @@ pub struct ProblemSpec {
 }
 
 impl ProblemSpec {
-    /// The same problem with everything moved by `by`: points, pivots' bounds, boxes.
+    /// Returns the same problem with everything moved by `by`: points, pivots' bounds, boxes.
     #[must_use]
     pub fn shifted(&self, by: [f64; 2]) -> Self {
         let mut spec = self.clone();
@@ -103,7 +103,7 @@ pub struct RawPoints {
 }
 
 impl RawPoints {
-    /// The target's points: smoothed, then resampled.
+    /// Returns the target's points: smoothed, then resampled.
     pub fn target(&self, closed: bool) -> Vec<[f64; 2]> {
         let smoothed = match self.smooth {
             Some(deviation) => smooth(&self.points, closed, deviation),
@@ -126,7 +126,7 @@ pub struct TimingSpec {
 }
 
 impl PathSpec {
-    /// The task, checked.
+    /// Returns the task, checked.
     ///
     /// # Errors
     /// As [`PathTask::new`].
@@ -196,12 +196,11 @@ impl DesignSpec {
     /// Fills in the defaults for a target: pivots within 5 sizes of its centre, links in [0.02, 5] sizes,
     /// coupler point within 5 sizes along and across.
     ///
-    /// A quantity that other given keys determine gets no default of its own: B where `ground` or
-    /// `ground_angle_deg` is given, the ground where both pivots are, coupler_x and coupler_y where `d` or
-    /// `e` is given.
+    /// A quantity that other given keys determine gets no default of its own: B if `ground` or `ground_angle_deg` is
+    /// given, the ground if both pivots are, coupler_x and coupler_y if `d` or `e` is given.
     pub fn resolve(&mut self, task: &PathTask) {
         let (size, centre) = (task.size(), task.centre());
-        // No default asks for coordinates that a linkage cannot have.
+        // No default allows coordinates that a linkage cannot have.
         let within = |low: f64, high: f64| Limits(low.max(-MAX_MAGNITUDE), high.min(MAX_MAGNITUDE));
         let around = |c: f64| within(c - DEFAULT_REACH * size, c + DEFAULT_REACH * size);
         let length = within(DEFAULT_SHORTEST * size, DEFAULT_REACH * size);
@@ -259,7 +258,7 @@ pub enum ClosingPolicy {
 }
 
 impl ClosingPolicy {
-    /// Whether it is the default.
+    /// Returns whether it is the default.
     pub fn is_one_way(&self) -> bool {
         *self == ClosingPolicy::OneWay
     }
@@ -324,7 +323,7 @@ pub struct RequireSpec {
 }
 
 impl RequireSpec {
-    /// Whether a defect is disallowed.
+    /// Returns whether a defect is disallowed.
     pub fn forbids(&self, defect: &Defect) -> bool {
         match defect {
             Defect::Order { .. } => self.order == OrderPolicy::Required,
@@ -370,7 +369,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// The name in files.
+    /// Returns the name in files.
     pub fn name(self) -> &'static str {
         match self {
             Method::Auto => "auto",
@@ -394,7 +393,7 @@ pub enum Objective {
     MaxDeviation,
 }
 
-/// What candidates are ranked by, as a reader meets it.
+/// The measure by which candidates are ranked, as it is shown to a reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// The sum of squared errors: no point has another weight than 1.
@@ -420,7 +419,7 @@ pub enum Variables {
 }
 
 impl Variables {
-    /// Whether these are the literature's.
+    /// Returns whether these are the literature's variables.
     pub fn is_nine(&self) -> bool {
         *self == Variables::Nine
     }
@@ -466,7 +465,7 @@ pub struct SolveSpec {
 }
 
 impl ProblemSpec {
-    /// What its candidates are ranked by.
+    /// Returns the measure by which its candidates are ranked.
     pub fn measure(&self) -> Measure {
         let path = &self.task.path;
         match self.solve.objective {
@@ -481,7 +480,7 @@ impl ProblemSpec {
 }
 
 impl SolveSpec {
-    /// Whether the search moves in the reduced variables: a population search that was asked to.
+    /// Returns whether the search moves in the reduced variables: a population search that was asked to.
     pub fn moves_reduced(&self) -> bool {
         let population = matches!(self.method, Method::Genetic | Method::DifferentialEvolution);
         population && self.variables == Variables::Reduced
@@ -528,7 +527,7 @@ pub use crate::resampling::MAX_SMOOTHED;
 
 /// The most points of a target.
 pub const MAX_POINTS: usize = 100_000;
-/// The most candidates that a run gives.
+/// The most candidates that a run returns.
 pub const MAX_CANDIDATES: usize = 100;
 /// The largest budget of evaluations.
 pub const MAX_EVALUATIONS: u64 = 1_000_000_000_000;

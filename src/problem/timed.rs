@@ -1,4 +1,5 @@
-//! Prescribed timing as least squares: T_j - P(x, phi_j), with phi_j = offset + direction psi_j.
+//! Prescribed timing as a least-squares problem in the design vector. The residuals are T_j - P(x, phi_j), with phi_j =
+//! offset + direction psi_j.
 //!
 //! The offset is an unknown ([`AngleOffset::Free`]), zero ([`AngleOffset::Fixed`]) or the direction of the
 //! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
@@ -21,15 +22,15 @@ pub struct TimedFit<'a> {
     setting: Setting,
     space: DesignSpace,
     requirements: Requirements,
-    /// direction psi_j, radians.
+    /// The angles direction psi_j, in radians.
     angles: Vec<f64>,
-    /// e^{i direction psi_j}.
+    /// The phases e^{i direction psi_j}.
     phases: Vec<Complex>,
     offset: AngleOffset,
 }
 
 impl<'a> TimedFit<'a> {
-    /// The fit of a problem in a setting; `None` for free timing.
+    /// Creates the fit of a problem in a setting; `None` for free timing.
     pub fn new(problem: &'a Problem, setting: Setting) -> Option<Self> {
         let Timing::Prescribed { crank_angles, offset } = problem.task().timing() else { return None };
         let space = problem.space(setting.side);
@@ -45,17 +46,17 @@ impl<'a> TimedFit<'a> {
         })
     }
 
-    /// The design space.
+    /// Returns the design space.
     pub fn space(&self) -> &DesignSpace {
         &self.space
     }
 
-    /// The requirements.
+    /// Returns the requirements.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
     }
 
-    /// The angle added to every prescribed one.
+    /// Returns the angle added to every prescribed one.
     pub fn offset(&self, x: &Design, shape: &Shape) -> f64 {
         match self.offset {
             AngleOffset::Free => self.space.offset(x),
@@ -64,13 +65,13 @@ impl<'a> TimedFit<'a> {
         }
     }
 
-    /// The crank angles at the points, radians.
+    /// Returns the crank angles at the points, in radians.
     pub fn crank_angles(&self, x: &Design, shape: &Shape) -> Vec<f64> {
         let offset = self.offset(x, shape);
         self.angles.iter().map(|angle| angle + offset).collect()
     }
 
-    /// The motion between the least and the greatest crank angle; the full turn of a closed target.
+    /// Returns the motion between the least and the greatest crank angle; the full turn for a closed target.
     pub fn motion(&self, x: &Design, shape: &Shape) -> Motion<'static> {
         let offset = self.offset(x, shape);
         let low = self.angles.iter().copied().fold(f64::INFINITY, f64::min);
@@ -112,7 +113,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
-            // The very toggle has no derivative, and beyond it the loop is open.
+            // At the toggle itself there is no derivative, and beyond it the loop is open.
             if at.gap.is_nan() || at.gap <= 0.0 {
                 return None;
             }

@@ -1,8 +1,8 @@
-//! Free timing as least squares: each point carries its own position of the linkage.
+//! Free timing as a least-squares problem: the design vector and, for each point, a position of the linkage of its own.
 //!
-//! A position is a pair of unit vectors (e_j, u_j), crank and coupler, on the curve |Y_j| = c with
-//! Y_j = A + a e_j + b u_j - B. There is no assembly sign in it and nothing singular at a toggle, so every
-//! type and both branches are alike. With c_phi = <Y, i a e>, c_w = <Y, i b u>, n2 = c_phi^2 + c_w^2:
+//! A position is a pair of unit vectors (e_j, u_j), crank and coupler, on the curve |Y_j| = c with Y_j = A + a e_j + b
+//! u_j - B. It contains no assembly sign and is not singular at a toggle, so every type and both branches are treated
+//! alike. With c_phi = <Y, i a e>, c_w = <Y, i b u>, n2 = c_phi^2 + c_w^2:
 //!
 //! ```text
 //! P   = A + a e + Z u
@@ -28,9 +28,9 @@ use std::f64::consts::TAU;
 /// The positions of all points: (e_j, u_j).
 pub type Positions = Vec<[Complex; 2]>;
 
-/// Newton steps that bring a position back to its curve; each squares the miss.
+/// Most Newton steps that bring a position back to its curve; each squares the miss.
 const RETURN_STEPS: usize = 12;
-/// A position is on its curve when its miss is below this part of the largest link squared.
+/// Tolerance for a position on its curve: its miss over the largest link squared.
 const ON_CURVE: f64 = 1e-14;
 
 /// Least squares over the design vector and the points' positions.
@@ -40,23 +40,23 @@ pub struct TorusFit<'a> {
     setting: Setting,
     space: DesignSpace,
     requirements: Requirements,
-    /// Which way along the curves the points follow each other; 0: they need keep no order.
+    /// The sense along the curves in which the points follow each other; 0: no order is kept.
     sense: f64,
 }
 
 impl<'a> TorusFit<'a> {
-    /// The fit of a problem in a setting. The points need keep no order, see [`TorusFit::in_order`].
+    /// Creates the fit of a problem in a setting, without an order of the points; see [`TorusFit::in_order`].
     pub fn new(problem: &'a Problem, setting: Setting) -> Self {
         let space = problem.space(setting.side);
         let requirements = problem.requirements(&space);
         TorusFit { problem, setting, space, requirements, sense: 0.0 }
     }
 
-    /// The same fit with the points held in the order in which they stand around their curve, where the
-    /// problem requires an order.
+    /// Returns the same fit with the points held in their present order around the curve, if the problem requires an
+    /// order.
     ///
-    /// Along the curve of positions the tangent (c_w, -c_phi) never turns back; the points follow it or run
-    /// against it, whichever is the shorter way in total.
+    /// Along the curve of positions the tangent (c_w, -c_phi) never turns back; the points follow it or run against it,
+    /// whichever is shorter in total.
     #[must_use]
     pub fn in_order(mut self, x: &Design, positions: &Positions) -> Self {
         if !self.problem.order_required() {
@@ -67,36 +67,36 @@ impl<'a> TorusFit<'a> {
         self
     }
 
-    /// The fit of the positions alone: the design stays at `x`.
+    /// Creates the fit of the positions alone: the design stays at `x`.
     pub fn at(problem: &'a Problem, setting: Setting, x: &Design) -> Self {
         let mut fit = TorusFit::new(problem, setting);
         fit.space.fix(x);
         fit
     }
 
-    /// The sense in which the points' own unknowns grow.
+    /// Returns the sense in which the points' own unknowns grow.
     fn forward(&self) -> f64 {
         if self.sense < 0.0 { -1.0 } else { 1.0 }
     }
 
-    /// The design space.
+    /// Returns the design space.
     pub fn space(&self) -> &DesignSpace {
         &self.space
     }
 
-    /// The requirements.
+    /// Returns the requirements.
     pub fn requirements(&self) -> &Requirements {
         &self.requirements
     }
 
-    /// The motion through the positions: a stretch of crank angle where the input turns fully and where it rocks on
-    /// one branch. Where no requirement looks at the motion, it is not worked out.
+    /// Returns the motion through the positions: an interval of crank angles if the input turns fully, or rocks on one
+    /// branch. If no requirement depends on the motion, it is not computed.
     pub fn motion<'p>(&self, shape: &Shape, positions: &'p Positions) -> Motion<'p> {
         self.motion_between(shape, positions).0
     }
 
-    /// As [`TorusFit::motion`], with the points at which a stretch begins and ends; `None` for a full turn, which
-    /// begins and ends nowhere.
+    /// As [`TorusFit::motion`], with the indices of the points at which the interval begins and ends; `None` for a full
+    /// turn, which has no ends.
     fn motion_between<'p>(
         &self,
         shape: &Shape,
@@ -118,7 +118,7 @@ impl<'a> TorusFit<'a> {
         }
         let total = |direction: f64| -> f64 {
             let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
-            // Points that share a place make no step, and rounding must not make a turn of it.
+            // Points that share a place make no step, and rounding must not turn that into a full turn.
             positions
                 .windows(2)
                 .map(step)
@@ -136,15 +136,15 @@ impl<'a> TorusFit<'a> {
         }
     }
 
-    /// Brings positions to the curves of a design; `false` where one cannot get there.
+    /// Brings positions to the curves of a design; `false` if one cannot get there.
     pub fn settle(&self, x: &Design, positions: &mut Positions) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
         settle_all(&shape, positions)
     }
 }
 
-/// The stretch of a crank that rocks through positions on one branch, with the points at its two ends; `None` where
-/// the positions lie on both branches.
+/// Returns the interval of crank angles of a rocking crank through positions on one branch, with the indices of the
+/// points at its two ends; `None` if the positions lie on both branches.
 fn rocking<'p>(
     shape: &Shape,
     positions: &[[Complex; 2]],
@@ -168,28 +168,28 @@ fn rocking<'p>(
     Some((Motion::Stretch(first + low.0, first + high.0, assembly), Some([low.1, high.1])))
 }
 
-/// The curve's frame at a position: Y, c_phi, c_w.
+/// Returns the curve's frame at a position: Y, c_phi, c_w.
 fn frame(shape: &Shape, [e, u]: [Complex; 2]) -> (Complex, f64, f64) {
     let y = shape.crank_pivot + e * shape.crank + u * shape.coupler - shape.follower_pivot;
     (y, dot(y, turned(e)) * shape.crank, dot(y, turned(u)) * shape.coupler)
 }
 
-/// The unit tangent (dphi, domega) of the curve at a position.
+/// Returns the unit tangent (dphi, domega) of the curve at a position.
 fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
     let (_, by_e, by_u) = frame(shape, position);
     let length = (by_e * by_e + by_u * by_u).sqrt();
     (length > 0.0).then(|| [by_u / length, -by_e / length])
 }
 
-/// The way along the curve from one position to a near one, positive along the tangent: the turns of crank
+/// Returns the distance along the curve from one position to a near one, positive along the tangent: the turns of crank
 /// and coupler along the mean of both tangents.
 ///
-/// Positions that are far apart (a radian, or tangents that differ by more than about 70 degrees) cannot pass
-/// each other in one step: their way counts as [`FAR_APART`] in the `sense`.
+/// `None` for positions that are far apart (a radian, or tangents that differ by more than about 70 degrees): they
+/// cannot pass each other in one step, and their distance counts as [`FAR_APART`] in the `sense`.
 fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
     let turn = |i: usize| {
         let z = to[i] * from[i].conj();
-        // The sine will do for small turns: nothing is asked of it but order and a rough length.
+        // The sine suffices for small turns: only the order and a rough length are needed.
         (z.re > 0.5).then_some(z.im)
     };
     let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
@@ -198,15 +198,14 @@ fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent:
     (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
 }
 
-/// A gap that no step can close.
+/// A distance between points that no step can close.
 const FAR_APART: f64 = 3.0;
 
-/// +1 where the points run along the tangents of their curve, -1 against; 0 where that cannot be said.
+/// Returns +1 if the points run along the tangents of their curve, -1 if against; 0 if that is undecided.
 ///
-/// The circuit is parametrised by the crank angle where the crank turns fully (the assembly is the same at
-/// all points) and else by psi with phi = middle + half width sin psi; of both ways around the shorter is the
-/// one that is meant. The tangent's crank part has one sign on each assembly, so that a single point tells
-/// how the parameter runs along it.
+/// The circuit is parametrised by the crank angle if the crank turns fully (the assembly is the same at all points),
+/// and else by psi with phi = middle + half width sin psi; of both ways around the shorter is taken. The tangent's
+/// crank part has one sign on each assembly, so that a single point determines the direction of the parameter along it.
 fn orientation(shape: &Shape, positions: &Positions) -> f64 {
     let Some(first) = positions.first() else { return 0.0 };
     let assembly = assembly_of(shape, first[0], first[1]);
@@ -225,21 +224,21 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
     };
     let (forward, backward) = (total(1.0), total(-1.0));
     let runs = if backward < forward { -1.0 } else { 1.0 };
-    // dphi/dparameter has the sign of t1 where the crank rocks; the tangent's crank part is c_w.
+    // dphi/dparameter has the sign of t1 if the crank rocks; the tangent's crank part is c_w.
     let (_, _, by_u) = frame(shape, *first);
     let crank_rises = if arc.is_some() { assembly.sign() } else { 1.0 };
     if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
 }
 
-/// The numbers of a shape that positions depend on.
+/// The parameters of a shape on which its positions depend.
 #[derive(Clone, Copy)]
 struct Loop {
-    /// A - B.
+    /// The vector A - B.
     ground: [f64; 2],
     a: f64,
     b: f64,
     c2: f64,
-    /// Half a squared miss below this is on the curve.
+    /// The half squared miss below which a position is on the curve.
     near: f64,
 }
 
@@ -256,7 +255,7 @@ impl Loop {
         }
     }
 
-    /// (|Y|^2 - c^2)/2, c_phi, c_w at e = (ex, ey), u = (ux, uy).
+    /// Returns (|Y|^2 - c^2)/2, c_phi, c_w at e = (ex, ey), u = (ux, uy).
     #[inline(always)]
     fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
         let yx = self.ground[0] + self.a * ex + self.b * ux;
@@ -266,8 +265,8 @@ impl Loop {
     }
 }
 
-/// A unit vector turned by an angle, to third order, and kept at unit length without trigonometry:
-/// (1 + i h)/(1 - i h) with h = angle/2, and one Newton step to |z| = 1.
+/// Turns a unit vector by an angle, to third order, and keeps it at unit length without trigonometry: (1 + i h)/(1 - i
+/// h) with h = angle/2, and one Newton step to |z| = 1.
 #[inline(always)]
 fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
     let h = 0.5 * angle;
@@ -318,8 +317,8 @@ impl Columns {
         }
     }
 
-    /// Brings the positions back to their curves by least-norm Newton steps of at most a radian; `false` where
-    /// one does not get there.
+    /// Brings the positions back to their curves by least-norm Newton steps of at most a radian; `false` if one does
+    /// not get there.
     #[inline(always)]
     fn settle(&mut self, on: &Loop) -> bool {
         let n = self.ex.len();
@@ -330,7 +329,7 @@ impl Columns {
             let mut off = 0_u64;
             for i in 0..n {
                 let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
-                // A miss that is no number is no position.
+                // A NaN miss is not a position.
                 off += u64::from(miss > limit || miss.is_nan());
             }
             if off == 0 {
@@ -371,8 +370,8 @@ fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
 }
 
 impl TorusFit<'_> {
-    /// dphi of a position by the shape, with the least-norm return to its curve, and by its own step. Zero where the
-    /// curve has no tangent.
+    /// Returns the derivatives of a position's crank angle: by the shape, with the least-norm return to its curve, and
+    /// by its own step. Zero if the curve has no tangent.
     fn crank_of(&self, shape: &Shape, position: [Complex; 2]) -> ([f64; SHAPE], f64) {
         let (y, by_e, by_u) = frame(shape, position);
         let n2 = by_e * by_e + by_u * by_u;
@@ -502,8 +501,8 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
             gaps.push(way(w[0], last, w[1], tangent).map_or(FAR_APART, |way| self.sense * way));
             last = tangent;
         }
-        // The last point must not run into the first from behind. Where it is near, it is so either by having
-        // gone almost all the way round or, on a short stretch, by not having gone far.
+        // The last point must not run into the first from behind. If it is near, it has either gone almost all the way
+        // round or, on a short interval, not gone far.
         let gone: f64 = gaps.iter().sum();
         let closing = way(state[state.len() - 1], last, state[0], first).map(|way| self.sense * way);
         let far = self.problem.task().repeats_first() || closing.is_none_or(|way| way < -0.1 * gone);

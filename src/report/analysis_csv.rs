@@ -1,11 +1,11 @@
-//! An analysis as CSV: one row a configuration and crank angle, empty cells where there is no number.
+//! An analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty.
 
 use super::csv::written;
 use super::text::exact;
 use crate::analysis::{Analysis, Row};
 use crate::linkage::FourBar;
 
-/// The head of [`analysis_csv`].
+/// The header row of [`analysis_csv`].
 pub const ANALYSIS_COLUMNS: [&str; 29] = [
     "crank_deg",
     "t1",
@@ -38,7 +38,7 @@ pub const ANALYSIS_COLUMNS: [&str; 29] = [
     "status",
 ];
 
-/// Every row of every configuration.
+/// Returns every row of every configuration as CSV.
 pub fn analysis_csv(analysis: &Analysis) -> String {
     let rows = analysis.configurations.iter().flat_map(|c| c.rows.iter().map(|r| cells(&c.linkage, r)));
     written(&ANALYSIS_COLUMNS, rows)

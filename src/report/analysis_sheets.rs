@@ -1,4 +1,4 @@
-//! An analysis as one self-contained SVG page: the sheets that the classic papers draw by hand, where they apply.
+//! An analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply.
 //!
 //! | sheet | after | when |
 //! |---|---|---|
@@ -8,7 +8,7 @@
 //! | the four configurations | Romero, figure 3 | all four were asked for |
 //! | curves over the cycle | | from [`CYCLE_ROWS`] rows on |
 //!
-//! The figures are those of the analysis; only curves are drawn by the linkage's own kinematics.
+//! The figures are those of the analysis; only curves are computed from the linkage's own kinematics.
 
 mod chart;
 mod configurations;
@@ -31,10 +31,10 @@ use crate::linkage::{Complex, FourBar, Joints};
 /// The least number of rows that are drawn as curves against the crank angle.
 pub const CYCLE_ROWS: usize = 24;
 
-/// The page of an analysis: title, what the linkage can do, and the sheets that apply.
+/// Returns the page of an analysis: title, the linkage's mobility, and the sheets that apply.
 ///
-/// Rows without a position are left out of drawings and are gaps in curves; vectors are those of the first row
-/// that has them.
+/// Rows without a position are left out of drawings and are gaps in curves; vectors are those of the first row that has
+/// them.
 ///
 /// ```
 /// # use linkwright::{analysis::{Request, analyze}, linkage::{motion::CrankMotion, *}};
@@ -58,7 +58,7 @@ fn sheets(analysis: &Analysis) -> Vec<Sheet> {
     let mut sheets: Vec<Sheet> =
         makers.iter().filter_map(|make| make(analysis, configuration, HALF)).collect();
     if sheets.len() % 2 == 1 {
-        // The first one takes the whole width.
+        // The first sheet takes the whole width.
         sheets.splice(..1, positions::sheet(analysis, configuration, FULL));
     }
     sheets.extend(configurations::sheet(analysis));
@@ -101,7 +101,7 @@ fn heading(analysis: &Analysis) -> Heading {
     }
 }
 
-/// `A (0, 0), B (4, 1), a 2, b 5 ..`.
+/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
 pub(super) fn dimensions(linkage: &FourBar) -> String {
     let p = linkage.natural_coordinates();
     let number = |x: f64| brief(x, 6);
@@ -120,7 +120,7 @@ pub(super) fn dimensions(linkage: &FourBar) -> String {
     )
 }
 
-/// `360 positions: 358 ok, 2 singular`.
+/// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
 fn counted(rows: &[Row]) -> String {
     let all = [Status::Ok, Status::Singular, Status::Open, Status::Undetermined, Status::NotFinite];
     let counts: Vec<(Status, usize)> = all
@@ -151,17 +151,17 @@ fn input(analysis: &Analysis) -> String {
     text
 }
 
-/// `+1` or a true minus.
+/// Returns a sign as `+1`, or as `−1` with a true minus.
 fn sign(value: f64) -> &'static str {
     if value < 0.0 { "−1" } else { "+1" }
 }
 
-/// `90°`.
+/// Returns an angle such as `90°`.
 fn degrees(value: f64) -> String {
     format!("{}°", brief(value, 5))
 }
 
-/// The rows that have a position, with A, B, C, D, P there.
+/// Returns the rows that have a position, with A, B, C, D, P there.
 fn closed(configuration: &Configuration) -> Vec<(&Row, [Complex; 5])> {
     let rows = configuration.rows.iter();
     rows.filter_map(|row| Some((row, joints_of(&configuration.linkage, row)?)))
@@ -173,7 +173,7 @@ fn as_joints([_, _, crank_pin, follower_pin, coupler_point]: [Complex; 5]) -> Jo
     Joints { crank_pin, follower_pin, coupler_point }
 }
 
-/// Crank angle in radians and assembly of rows, for the circuits that they are on.
+/// Returns the crank angle in radians and the assembly of rows, from which their circuits follow.
 fn positions_of<'a>(
     configuration: &'a Configuration,
     closed: &'a [(&'a Row, [Complex; 5])],
@@ -181,7 +181,7 @@ fn positions_of<'a>(
     closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), configuration.linkage.assembly()))
 }
 
-/// A and B, where there is no position to draw.
+/// Draws A and B, if there is no position to draw.
 fn pivots(canvas: &mut Canvas, labels: &mut Labels, view: &View, linkage: &FourBar, weight: f64) {
     for (name, pivot) in [("A", linkage.crank_pivot()), ("B", linkage.follower_pivot())] {
         let at = view.spot(pivot);
@@ -192,7 +192,7 @@ fn pivots(canvas: &mut Canvas, labels: &mut Labels, view: &View, linkage: &FourB
     }
 }
 
-/// Halfway between two places.
+/// Returns the middle of two places.
 fn between(a: Spot, b: Spot) -> Spot {
     Spot::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
 }

@@ -1,4 +1,4 @@
-//! An analysis as text: the mobility in words, the tables of positions, motion and methods.
+//! An analysis as text: the mobility in words, and the tables of positions, motion and methods.
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{clean, significant, wrapped};
@@ -7,12 +7,12 @@ use crate::linkage::transmission::ForceTransmission;
 use crate::linkage::{FourBar, LinkageType};
 use crate::record::Unit;
 
-/// The width of the page.
+/// The width of the page, in columns.
 const COLUMNS: usize = 100;
-/// Significant digits of lengths and rates.
+/// The number of significant digits of lengths and rates.
 const DIGITS: usize = 7;
 
-/// The linkage, and its mobility in words.
+/// Returns the linkage and its mobility in words.
 pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
     let mut out = format!("{}\n", colour.paint(Ink::Strong, &clean(&analysis.name)));
     if let Some(first) = analysis.configurations.first() {
@@ -22,7 +22,7 @@ pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
     out
 }
 
-/// Everything that `analyze` prints.
+/// Returns the whole output of `analyze`.
 pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
     let mut out = analysis_head(analysis, colour);
     for configuration in &analysis.configurations {
@@ -88,8 +88,8 @@ fn linkage_line(linkage: &FourBar, unit: Option<Unit>) -> String {
     )
 }
 
-/// What a linkage can do, in words: type, margin, input range, toggles, circuits and branches, transmission,
-/// what to watch for.
+/// Returns the mobility of a linkage in words: type, margin, input range, toggles, circuits and branches, transmission,
+/// warnings.
 pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     let Some(kind) = mobility.linkage_type else {
         return wrapped(
@@ -173,13 +173,13 @@ fn plain(text: String) -> (String, Ink) {
     (text, Ink::Plain)
 }
 
-/// A number beside others of the given size; what is rounding beside them is shown as 0.
+/// Returns a number shown beside others of the given size; a number that is only rounding in comparison is shown as 0.
 fn number(value: Option<f64>, size: f64) -> (String, Ink) {
     let shown = |v: f64| if v.abs() <= ROUNDING * size { 0.0 } else { v };
     plain(value.map_or_else(|| "-".to_owned(), |v| significant(shown(v), DIGITS)))
 }
 
-/// Numbers below this part of their neighbours are rounding: the table shows 0, CSV and JSON all digits.
+/// The fraction of its neighbours below which a number is rounding: the table shows 0, CSV and JSON all digits.
 const ROUNDING: f64 = 1e-14;
 
 fn status(row: &Row) -> (String, Ink) {
@@ -239,7 +239,7 @@ fn rates(configuration: &Configuration, colour: Colour, columns: [(&'static str,
     let mut grid = Grid::new(&heads);
     for row in &configuration.rows {
         let mut cells = vec![plain(significant(row.crank_deg, 6))];
-        // The first two columns are of the links, the others of the points.
+        // The first two columns belong to the links, the others to the points.
         let size = |these: &[(&'static str, Of)]| {
             let sizes = these.iter().filter_map(|(_, of)| row.rates.as_ref().map(|r| of(r).abs()));
             sizes.fold(0.0, f64::max)
@@ -322,8 +322,8 @@ fn methods(configuration: &Configuration, colour: Colour) -> String {
     )
 }
 
-/// Romero's condition (20) beside what is sufficient: at the rows without a position, else at the row where
-/// it is nearest to failing.
+/// Returns Romero's condition (20) beside a sufficient condition: at the rows without a position, otherwise at the row
+/// at which it is nearest to failing.
 fn conditions(configuration: &Configuration) -> String {
     let rows = || configuration.rows.iter().filter_map(|row| Some((row, row.assembly?)));
     let line = |(row, condition): (&Row, crate::analysis::ConditionRecord)| {

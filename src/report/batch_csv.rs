@@ -1,12 +1,12 @@
-//! A batch as a table for spreadsheets and scripts: one row a file. It holds no time, so that the same batch gives
-//! the same bytes.
+//! A batch as a table for spreadsheets and scripts: one row for each file. It contains no time, so that the same batch
+//! gives the same bytes.
 
 use super::csv::written;
 use super::table::{BatchOutcome, BatchRow};
 use super::text::{cell, exact};
 use super::words;
 
-/// The head of [`batch_csv`].
+/// The header row of [`batch_csv`].
 pub const BATCH_COLUMNS: [&str; 12] = [
     "problem",
     "status",
@@ -22,8 +22,8 @@ pub const BATCH_COLUMNS: [&str; 12] = [
     "message",
 ];
 
-/// One row a file: `accepted`, `nothing-acceptable` or `refused`, the figures of the best candidate, why the search
-/// ended, and why a file was refused.
+/// Returns one row for each file: `accepted`, `nothing-acceptable` or `refused`, the figures of the best candidate, the
+/// reason why the search ended, and the reason why a file was refused.
 pub fn batch_csv(files: &[BatchRow<'_>]) -> String {
     written(&BATCH_COLUMNS, files.iter().map(row))
 }

@@ -1,14 +1,14 @@
-//! What stands beside the candidates, in lines: the family, warnings, cognates, the buildable answer.
+//! Lines printed below the candidates: the family, warnings, cognates, the buildable candidate.
 
 use super::text::{clean, significant, wrapped};
 use super::words;
 use crate::record::{Candidate, ON_BOUND_TEXT, Record, WarningKind};
 
-/// The text is no longer than this many lines of warnings and cognates each.
+/// The largest number of lines of warnings and of cognates in the text.
 const MOST_LINES: usize = 20;
 
-/// Lines for the table of candidates, set in by two, at most `columns` wide; empty where there is nothing to
-/// say.
+/// Returns the lines for the table of candidates, indented by two, at most `columns` wide; empty if there is nothing to
+/// report.
 pub(super) fn lines(record: &Record, columns: usize) -> String {
     let mut parts = Vec::new();
     if let Some(family) = &record.family {
@@ -30,7 +30,7 @@ pub(super) fn lines(record: &Record, columns: usize) -> String {
     format!("\n{text}")
 }
 
-/// The candidates whose mirror images serve as well; `None` where there are none.
+/// Returns the candidates whose mirror images serve as well, in words; `None` if there are none.
 pub(super) fn mirrored(record: &Record) -> Option<String> {
     let ranks: Vec<String> =
         record.candidates.iter().filter(|c| c.mirror_serves).map(|c| format!("#{}", c.rank)).collect();
@@ -45,7 +45,7 @@ pub(super) fn mirrored(record: &Record) -> Option<String> {
     Some(format!("{which}: the target is symmetric, and {images} as well."))
 }
 
-/// The warnings of a candidate in one line; empty without any. Several limits are told in one clause.
+/// Returns the warnings of a candidate in one line; empty without any. Several limits are combined in one clause.
 pub(super) fn warnings(candidate: &Candidate) -> String {
     let (mut said, mut limits) = (Vec::new(), Vec::new());
     for warning in candidate.warnings.iter().take(MOST_LINES) {
@@ -67,7 +67,8 @@ pub(super) fn warnings(candidate: &Candidate) -> String {
 
 fn buildable(record: &Record, candidate: &Candidate) -> String {
     let place = if candidate.rank > 0 { format!("#{}", candidate.rank) } else { "beside the table".into() };
-    // Where the first is warned of nothing but limits it may well be built: this one is free of them.
+    // If the first candidate has no warnings but those about limits, it may well be buildable: this one is free of
+    // them.
     let first = record.candidates.first();
     let limits_only = first.is_some_and(|c| c.warnings.iter().all(|w| w.kind == WarningKind::OnBound));
     let label = if limits_only { "buildable, on no limit" } else { "buildable" };
@@ -86,7 +87,7 @@ fn buildable(record: &Record, candidate: &Candidate) -> String {
     text + "; linkage-buildable.toml"
 }
 
-/// `same curve: 2 cognates, one accepted, worst transmission 41 deg, see record`.
+/// Returns a line such as `same curve: 2 cognates, one accepted, worst transmission 41 deg, see record`.
 fn alternatives(candidate: &Candidate) -> Option<String> {
     let all = &candidate.alternatives;
     let count = match all.len() {

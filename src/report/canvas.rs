@@ -1,11 +1,11 @@
-//! The few shapes of an SVG, in pixels with y down, and the view that brings the plane there with y up.
+//! The SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up.
 
 use super::scene::Bounds;
 use super::text::xml;
 use crate::linkage::Complex;
 use std::fmt::Write;
 
-/// Colours that stay apart for colour-blind eyes (Okabe and Ito 2008) on a light ground.
+/// Colours that colour-blind readers can distinguish (Okabe and Ito 2008) on a light ground.
 pub(super) mod palette {
     pub(in crate::report) const PAPER: &str = "#ffffff";
     pub(in crate::report) const INK: &str = "#1f2a36";
@@ -21,7 +21,7 @@ pub(super) mod palette {
     pub(in crate::report) const BAR_EDGE: &str = "#45525f";
 }
 
-/// A place on the canvas, pixels, y down.
+/// A place on the canvas, in pixels, y down.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spot {
     pub(super) x: f64,
@@ -58,7 +58,7 @@ impl Area {
     }
 }
 
-/// From the plane to the canvas: one scale for both axes, y up.
+/// A view: the map from the plane to the canvas, with one scale for both axes and y up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) scale: f64,
@@ -67,7 +67,7 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The box in the middle of the area, as large as it fits.
+    /// Returns the view with the box in the middle of the area, as large as it fits.
     pub(super) fn fit(bounds: &Bounds, area: Area) -> View {
         let by_width = area.width / bounds.width();
         let by_height = area.height / bounds.height();
@@ -85,17 +85,17 @@ impl View {
     }
 }
 
-/// A coordinate to a hundredth of a pixel, kept within what viewers can read.
+/// Returns a coordinate to a hundredth of a pixel, kept within the range that viewers can read.
 pub(super) fn px(value: f64) -> String {
     let mut text = String::new();
     push_px(&mut text, value);
     text
 }
 
-/// Appends [`px`] of a number.
+/// Appends a number as [`px`] writes it.
 fn push_px(text: &mut String, value: f64) {
     let value = if value.is_finite() { value.clamp(-1e6, 1e6) } else { 0.0 };
-    // The product is off by less than 2e-8: further than that from a half, whole hundredths are the right ones.
+    // The error of the product is below 2e-8: if the product is farther than that from a half, the rounding is right.
     let hundredths = value.abs() * 100.0;
     let whole = hundredths.round();
     if ((hundredths - whole).abs() - 0.5).abs() < 1e-6 {
@@ -116,7 +116,7 @@ fn push_px(text: &mut String, value: f64) {
     };
 }
 
-/// Appends a command of a path with its spot.
+/// Appends a command of a path with its place.
 fn push_spot(data: &mut String, command: char, spot: Spot) {
     data.push(command);
     push_px(data, spot.x);
@@ -124,7 +124,7 @@ fn push_spot(data: &mut String, command: char, spot: Spot) {
     push_px(data, spot.y);
 }
 
-/// Where a text starts from.
+/// The part of a text that is at its place: start, middle or end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -132,7 +132,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// SVG elements, one after the other.
+/// A canvas: SVG elements, one after the other.
 #[derive(Default)]
 pub(super) struct Canvas {
     pub(super) body: String,
@@ -177,7 +177,7 @@ impl Canvas {
         );
     }
 
-    /// A polyline through the spots; those that don't move by a third of a pixel are left out.
+    /// Draws a polyline through the places; those nearer than a third of a pixel to the one before are left out.
     pub(super) fn path(&mut self, spots: &[Spot], closed: bool, attributes: &str) {
         const STEP: f64 = 0.33;
         let Some(&first) = spots.first() else { return };
@@ -194,7 +194,7 @@ impl Canvas {
         let _ = writeln!(self.body, r#"<path d="{data}" {attributes}/>"#);
     }
 
-    /// Dots of one colour in one element.
+    /// Draws dots of one colour in one element.
     pub(super) fn dots(&mut self, spots: &[Spot], diameter: f64, colour: &str) {
         if spots.is_empty() {
             return;
@@ -211,7 +211,7 @@ impl Canvas {
         );
     }
 
-    /// Foreign text is cleaned and escaped here and nowhere else.
+    /// Writes a text. Foreign text is cleaned and escaped here and nowhere else.
     pub(super) fn text(&mut self, at: Spot, anchor: Anchor, attributes: &str, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
@@ -227,7 +227,7 @@ impl Canvas {
         );
     }
 
-    /// A bar of a round length with its label above, its left end at `at`.
+    /// Draws a bar of a round length with its label above, its left end at `at`.
     pub(super) fn scale_bar(&mut self, at: Spot, length_px: f64, label: &str) {
         let ink = format!(r#"stroke="{}" stroke-width="1.5""#, palette::INK);
         let (left, right) = (at, Spot::new(at.x + length_px, at.y));
@@ -239,7 +239,7 @@ impl Canvas {
         self.text(middle, Anchor::Middle, &format!(r#"font-size="12" fill="{}""#, palette::INK), label);
     }
 
-    /// The whole document. `title` and `description` are read by screen readers.
+    /// Returns the whole document. `title` and `description` are read by screen readers.
     pub(super) fn document(self, width: f64, height: f64, title: &str, description: &str) -> String {
         format!(
             concat!(
@@ -260,7 +260,7 @@ impl Canvas {
     }
 }
 
-/// About how wide a text is in the usual sans-serif faces.
+/// Returns the approximate width of a text in the usual sans-serif faces.
 pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
     0.56 * font_size * super::text::columns_of(text) as f64
 }

@@ -1,25 +1,26 @@
-//! What is proved about a result, and how often its best answer came back, in words.
+//! The certificate of a result, and the number of times its best answer was found, in words.
 
 use super::grid::{Colour, Ink};
 use super::table::COLUMNS;
 use super::text::{at_most, clean, clean_sentence, grouped, percent_up, significant, wrapped};
 use crate::record::{Certificate, CertificatePart, Record, Repeats};
 
-/// From this gap down a best answer is called a proved optimum.
+/// The largest gap with which a best answer is called a proved optimum.
 const NARROW: f64 = 1e-2;
-/// Entries of a list that are told.
+/// The largest number of entries of a list that are written.
 const TOLD: usize = 12;
 
-/// The classes of a certificate that are shown; it has at most four.
+/// The largest number of classes of a certificate that are shown; it has at most four.
 pub(super) const PARTS: usize = 8;
 
-/// What each class of a certificate has come to, for a terminal.
+/// Returns the result for each class of a certificate, for a terminal.
 pub fn parts_text(certificate: &Certificate) -> String {
     let lines = certificate.parts.iter().take(PARTS).map(part_words);
     lines.map(|words| wrapped("    ", "      ", &words, COLUMNS)).collect()
 }
 
-/// The certificate, or why there is none and what repeated hits say instead; empty where none was asked for.
+/// Returns the certificate, or the reason why there is none and the statement about repeated hits; empty if no
+/// certificate was asked for.
 pub fn certificate_text(record: &Record, colour: Colour) -> String {
     let head = |text: &str| format!("\n  {}\n", colour.paint(Ink::Strong, text));
     let lines = |sentences: &[String]| -> String {
@@ -42,12 +43,12 @@ pub fn certificate_text(record: &Record, colour: Colour) -> String {
     }
 }
 
-/// How often the best answer came back, for a terminal.
+/// Returns the statement about the number of times the best answer was found, for a terminal.
 pub fn repeats_text(repeats: &Repeats) -> String {
     repeats_sentences(repeats).iter().map(|sentence| wrapped("  ", "  ", sentence, COLUMNS)).collect()
 }
 
-/// Why there is none, as a sentence.
+/// Returns the reason why there is no certificate, as a sentence.
 pub(super) fn reason(why: &str) -> String {
     let why = clean_sentence(why);
     let mut letters = why.chars();
@@ -55,7 +56,8 @@ pub(super) fn reason(why: &str) -> String {
     format!("{}.", capital.trim_end_matches('.'))
 }
 
-/// `Proved optimum: no linkage that the proof covers is better by more than 0.01 %`, or how far a proof came.
+/// Returns `Proved optimum: no linkage that the proof covers is better by more than 0.01 %`, or the state of an open
+/// proof.
 pub fn headline(certificate: &Certificate) -> String {
     let proved = match (certificate.closed, certificate.lower_bound > 0.0) {
         (true, _) if certificate.gap <= NARROW => "Proved optimum",
@@ -67,7 +69,7 @@ pub fn headline(certificate: &Certificate) -> String {
     format!("{proved}: no linkage that the proof covers is better by more than {gap} %")
 }
 
-/// `crank-rocker, crank as prescribed: no sum below 0.009, 1,200 boxes`.
+/// Returns a clause such as `crank-rocker, crank as prescribed: no sum below 0.009, 1,200 boxes`.
 pub(super) fn part_words(part: &CertificatePart) -> String {
     format!(
         "{}, crank {}: no sum below {}, {} boxes{}",
@@ -79,7 +81,7 @@ pub(super) fn part_words(part: &CertificatePart) -> String {
     )
 }
 
-/// What is proved, what it covers, what not.
+/// Returns the statement of the proof, and the linkages that it covers and does not cover.
 pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
     let list = |entries: &[String]| {
         let told: Vec<String> = entries.iter().take(TOLD).map(|entry| clean(entry)).collect();
@@ -104,10 +106,11 @@ pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
     sentences
 }
 
-/// The limits of a length that a proof uses too.
+/// The limits on lengths that a proof uses too.
 const USED_LIMITS: [&str; 3] = ["design.coupler_x", "design.coupler_y", "design.d"];
 
-/// Where a proof that has not closed may never do so: limits and requirements at the best answer that it does not use.
+/// Returns the reason why an open proof may never close: limits and requirements at the best answer that it does not
+/// use.
 pub(super) fn unused_limits(record: &Record) -> Option<String> {
     let open = record.certificate.as_ref().is_some_and(|certificate| !certificate.closed);
     let costs = record.candidates.first().filter(|_| open).map_or(&[][..], |best| &best.costs);
@@ -126,7 +129,8 @@ pub(super) fn unused_limits(record: &Record) -> Option<String> {
     })
 }
 
-/// How often the best answer came back and what that foretells, each figure with what it assumes.
+/// Returns the number of times the best answer was found and the estimate that follows from it, each figure with its
+/// assumption.
 pub(super) fn repeats_sentences(repeats: &Repeats) -> Vec<String> {
     let starts = grouped(repeats.starts);
     let near = match repeats.near.checked_sub(repeats.hits) {

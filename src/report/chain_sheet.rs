@@ -1,4 +1,5 @@
-//! A compound mechanism drawn at one position, with ghosts of others and the path of its traced point.
+//! A drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced
+//! point.
 
 use super::canvas::{Canvas, Spot, palette};
 use super::labels::Labels;
@@ -10,10 +11,10 @@ use crate::analysis::Status;
 use crate::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
 use crate::linkage::{Chain, Complex};
 
-/// The most positions that are drawn faintly besides the first.
+/// The largest number of positions that are drawn faintly besides the first.
 const GHOSTS: usize = 5;
 
-/// The page of a chain's analysis: one self-contained SVG.
+/// Returns the page of a chain's analysis: one self-contained SVG.
 pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
     let path: Vec<Option<Complex>> = chain.path(chain.trace(), CYCLE_SAMPLES);
     let closed: Vec<f64> =
@@ -72,14 +73,14 @@ pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
     page(&Heading { title: analysis.name.clone(), standing: standing.into(), lines }, vec![sheet])
 }
 
-/// Every point at a crank angle; `None` where a stage does not close.
+/// Returns every point at a crank angle; `None` if a stage does not close.
 fn pose(chain: &Chain, crank_deg: f64) -> Option<Vec<Complex>> {
     let mut pose = chain.pose();
     chain.position(crank_deg.to_radians(), &mut pose);
     (pose.known().len() == chain.names().len()).then(|| pose.known().to_vec())
 }
 
-/// The moving links: a bar for two points, a shaded plate for more.
+/// Draws the moving links: a bar for two points, a shaded plate for more.
 fn links(canvas: &mut Canvas, chain: &Chain, spots: &[Spot]) {
     for link in chain.links().iter().skip(1) {
         let corners: Vec<Spot> = link.iter().filter_map(|id| spots.get(id.index())).copied().collect();

@@ -9,7 +9,7 @@ use crate::analysis::chain::{ChainAnalysis, ChainRow};
 const COLUMNS: usize = 100;
 const DIGITS: usize = 7;
 
-/// The mechanism in words: stages, input range, the box of the traced path.
+/// Returns the mechanism in words: stages, input range, the box of the traced path.
 pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
     let unit = analysis.unit.map_or(String::new(), |u| format!(" {}", u.label()));
     let trace = clean(&analysis.trace);
@@ -41,7 +41,7 @@ pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
     format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), wrapped("  ", "  ", &words, COLUMNS))
 }
 
-/// Everything that `analyze` prints of a chain: the head and the motion of the traced point.
+/// Returns the whole output of `analyze` for a chain: the head and the motion of the traced point.
 pub fn chain_table(analysis: &ChainAnalysis, colour: Colour) -> String {
     use Align::{Left, Right};
     let mut grid = Grid::new(&[
@@ -82,7 +82,7 @@ pub fn chain_table(analysis: &ChainAnalysis, colour: Colour) -> String {
     )
 }
 
-/// ok, or what is wrong and at which joint.
+/// Returns `ok`, or the fault and the joint at which it occurs.
 fn status(row: &ChainRow) -> String {
     match &row.joint {
         Some(joint) => format!("{} at {}", row.status.word(), clean(joint)),
@@ -90,7 +90,7 @@ fn status(row: &ChainRow) -> String {
     }
 }
 
-/// One row a crank angle: `crank_deg`, then x, y, vx, vy, ax, ay of every moving point, then `status`.
+/// Returns one row for each crank angle: `crank_deg`, then x, y, vx, vy, ax, ay of every moving point, then `status`.
 pub fn chain_csv(analysis: &ChainAnalysis) -> String {
     let names: Vec<String> =
         analysis.rows.first().map_or(Vec::new(), |row| row.points.iter().map(|p| p.name.clone()).collect());

@@ -1,4 +1,4 @@
-//! Roberts' figure: a linkage and its cognates in one position, with the curve that they share.
+//! Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share.
 
 use super::analysis_sheets::dimensions;
 use super::canvas::{Anchor, Canvas, Spot, View, palette, text_width};
@@ -11,10 +11,11 @@ use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use crate::record::Unit;
 use std::f64::consts::TAU;
 
-/// Positions along the circuit of which the most legible is drawn.
+/// The number of positions along the circuit among which the most legible one is chosen.
 const TRIED: usize = 180;
-/// A cognate whose loop misses closure at the common coupler point by more than this part of its size isn't
-/// drawn: it traces another curve. Rounding leaves the root of the machine's precision at a flat crank dyad.
+/// The largest closure error of a cognate at the common coupler point, as a fraction of its size. A cognate with a
+/// larger error is not drawn: it traces another curve. At a flat crank dyad, rounding leaves the square root of the
+/// machine's precision.
 const CLOSURE: f64 = 1e-6;
 const COLOURS: [(&str, &str); 3] = [
     (palette::BAR_EDGE, palette::COUPLER),
@@ -23,10 +24,10 @@ const COLOURS: [(&str, &str); 3] = [
 ];
 const LEGEND_LINE: f64 = 20.0;
 
-/// The original and its cognates together in one position, with the coupler curve that they share.
+/// Returns the original and its cognates together in one position, with the coupler curve that they share.
 ///
-/// The position is the one at which joints are farthest apart; each cognate is brought there by its own
-/// lengths, from the coupler point. What doesn't reach it is named in the legend and not drawn.
+/// The position is the one at which joints are farthest apart; the position of each cognate is computed from its own
+/// lengths and the coupler point. A cognate that does not reach the point is named in the legend and not drawn.
 ///
 /// ```
 /// # use linkwright::linkage::*;
@@ -52,7 +53,7 @@ pub fn cognates_svg(name: &str, unit: Option<Unit>, original: &FourBar, cognates
     page(&heading, vec![sheet(unit, original, cognates)])
 }
 
-/// A, B, C, D, P of a linkage.
+/// The joints A, B, C, D, P of a linkage.
 type Joints5 = [Complex; 5];
 
 fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet {
@@ -91,7 +92,7 @@ fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet 
     Sheet { title, note, body, foot: Vec::new(), width: FULL, bottom: y + 6.0 }
 }
 
-/// `original`, `first cognate` ..
+/// Returns `original`, `first cognate` ..
 fn standing(index: usize) -> String {
     match index {
         0 => "original".to_owned(),
@@ -107,7 +108,8 @@ fn described(linkage: &FourBar, is_drawn: bool) -> String {
     format!("{kind}{without}; {}", dimensions(linkage))
 }
 
-/// The joints of the original and of each cognate at the most legible position; `None` for what isn't there.
+/// Returns the joints of the original and of each cognate at the most legible position; `None` for a linkage that does
+/// not reach it.
 fn position(original: &FourBar, cognates: &[FourBar]) -> Vec<Option<Joints5>> {
     let (angle, assembly) = middle_position(original);
     let curve = CouplerCurve::through(original, angle, assembly, 8);
@@ -126,7 +128,7 @@ fn position(original: &FourBar, cognates: &[FourBar]) -> Vec<Option<Joints5>> {
     best.map_or(vec![None; 1 + cognates.len()], |(_, _, all)| all)
 }
 
-/// The distance of the closest two of all pins, pivots and P.
+/// Returns the distance of the closest two of all pins, pivots and P.
 fn spacing(all: &[Option<Joints5>]) -> f64 {
     let mut points = fixed_pivots(all);
     points.extend(all.iter().flatten().flat_map(|[_, _, c, d, _]| [*c, *d]));
@@ -140,9 +142,9 @@ fn joints_at(linkage: &FourBar, angle: f64, assembly: AssemblyMode) -> Option<Jo
     Some([a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
 }
 
-/// The joints of a linkage whose coupler point is at `p`: C is where the circles of radius a about A and d
-/// about P meet, D follows from the coupler's triangle, and of the two answers the one whose follower has its
-/// length is right.
+/// Returns the joints of a linkage whose coupler point is at `p`: C is an intersection of the circles of radius a about
+/// A and d about P, D follows from the coupler's triangle, and the right one of the two answers is that whose follower
+/// has its length.
 fn reaching(linkage: &FourBar, p: Complex) -> Option<Joints5> {
     let (a, b, z) = (linkage.crank_pivot(), linkage.follower_pivot(), linkage.coupler_ratio());
     let (crank, side) = (linkage.crank(), linkage.crank_side());
@@ -153,7 +155,7 @@ fn reaching(linkage: &FourBar, p: Complex) -> Option<Joints5> {
         return None;
     }
     if side <= CLOSURE * size {
-        // P on C: D is either intersection.
+        // If P is on C, D is either intersection.
         return joints_at(linkage, line.arg(), linkage.assembly())
             .filter(|_| (s - crank).abs() <= CLOSURE * size);
     }
@@ -173,7 +175,7 @@ fn reaching(linkage: &FourBar, p: Complex) -> Option<Joints5> {
     (miss <= CLOSURE * size).then_some(joints)
 }
 
-/// A, B and then the pivots of the cognates that are at neither.
+/// Returns A, B and then the pivots of the cognates that are at neither.
 fn fixed_pivots(all: &[Option<Joints5>]) -> Vec<Complex> {
     let mut pivots: Vec<Complex> = Vec::new();
     for (i, joints) in all.iter().enumerate() {

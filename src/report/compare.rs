@@ -1,5 +1,5 @@
-//! Linkages of several results side by side: ranked by chosen figures, the Pareto front of error, worst
-//! transmission angle and size marked, differences from a chosen one in per cent.
+//! Comparison of linkages from several results: ranked by chosen figures, with the Pareto front of error, worst
+//! transmission angle and size marked, and differences from a chosen one in per cent.
 //!
 //! | for | call |
 //! |---|---|
@@ -29,36 +29,36 @@ pub use front::{Point, front};
 pub use key::{SortKey, UnknownKey};
 pub use unit::{in_one_unit, scaled, times, unit_remarks};
 
-/// A linkage with its figures on a target, from a record or evaluated on one.
+/// An entry of a comparison: a linkage with its figures on a target, from a record or evaluated on one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
-    /// What to call it.
+    /// The name of the entry.
     pub label: String,
     /// The linkage, its figures and verdicts.
     pub candidate: Candidate,
-    /// The name of the problem whose target the errors are to.
+    /// The name of the problem to whose target the errors are measured.
     pub target_name: String,
-    /// The target that the errors are to.
+    /// The target to which the errors are measured.
     pub target: Vec<[f64; 2]>,
-    /// Whether it is a closed curve.
+    /// Whether the target is a closed curve.
     pub closed: bool,
-    /// The unit of its lengths.
+    /// The unit of the lengths.
     pub unit: Option<Unit>,
-    /// What the candidates of that problem are ranked by.
+    /// The measure by which the candidates of that problem are ranked.
     pub measure: Measure,
-    /// Whether it is the answer of a run; else it is a linkage file.
+    /// Whether it is a candidate of a run; otherwise it is a linkage file.
     pub of_run: bool,
-    /// What its record said and what is not so: the figures here are those found.
+    /// The false statements of its record; the figures here are the recomputed ones.
     pub untrue: Vec<String>,
 }
 
 impl Entry {
-    /// `record.candidates[index]`, where there is one, with the figures that the record has.
+    /// Returns `record.candidates[index]`, if it exists, with the figures of the record.
     pub fn from_record(label: &str, record: &Record, index: usize) -> Option<Entry> {
         record.candidates.get(index).map(|candidate| Entry::of(label, record, candidate.clone()))
     }
 
-    /// A candidate measured on the problem of a record.
+    /// Returns a candidate measured on the problem of a record.
     pub fn of(label: &str, record: &Record, candidate: Candidate) -> Entry {
         let path = &record.problem.resolved.task.path;
         Entry {
@@ -74,8 +74,8 @@ impl Entry {
         }
     }
 
-    /// The diagonal of the box that A, B and the moving joints sweep over the circuits used (half a degree
-    /// apart); not a number where the links cannot be joined.
+    /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
+    /// degree apart); NaN if the links cannot be joined.
     pub fn size(&self) -> f64 {
         let mut bounds = Bounds::default();
         for joints in circuits(&self.candidate, SAMPLES).iter().flatten() {
@@ -109,66 +109,67 @@ impl Entry {
 /// A ranked entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
-    /// 1 is the best; figures that are equal within the margin of limits share a rank. Of several keys a later one
-    /// decides between equals.
+    /// The rank, 1 for the best; figures that are equal within the margin of limits share a rank. With several keys, a
+    /// later one decides between equals.
     pub rank: usize,
-    /// The rank by each key alone, in the order of the keys.
+    /// The ranks by each key alone, in the order of the keys.
     pub ranks: Vec<usize>,
     /// The entry.
     pub entry: Entry,
-    /// The figure of the first key; `None` where it isn't finite.
+    /// The figure of the first key; `None` if it is not finite.
     pub figure: Option<f64>,
-    /// How far that is from the best, per cent of the best; `None` where the best is 0 and this isn't.
+    /// The difference between the figure and the best one, in per cent of the best; `None` if the best is 0 and this is
+    /// not.
     pub behind_percent: Option<f64>,
-    /// By how much each figure is above the reference's, per cent of the reference's, in the order of
+    /// The difference between each figure and the reference's, in per cent of the reference's, in the order of
     /// [`SortKey::ALL`]: see [`percent_above`]. Empty without a reference.
     pub difference_percent: Vec<Option<f64>>,
-    /// Whether it is on the front: see [`front()`]. Of rows whose figures are equal only the first is marked.
+    /// Whether it is on the Pareto front: see [`front()`]. Of rows with equal figures only the first is marked.
     pub on_front: bool,
-    /// [`Entry::size`].
+    /// The size: see [`Entry::size`].
     pub size: f64,
     figures: [Option<f64>; SortKey::ALL.len()],
     levels: [Option<f64>; SortKey::ALL.len()],
 }
 
 impl Ranked {
-    /// The best figure among the rows that this one's is equal to, within the margin of limits.
+    /// Returns the best figure among the rows whose figures are equal to this one's within the margin of limits.
     fn level_of(&self, key: SortKey) -> Option<f64> {
         self.levels[key as usize]
     }
 
-    /// A figure; `None` where it isn't finite.
+    /// Returns a figure; `None` if it is not finite.
     pub fn figure_of(&self, key: SortKey) -> Option<f64> {
         self.figures[key as usize]
     }
 }
 
-/// Something that was given and has no figures.
+/// An input without figures.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftOut {
-    /// What it is called.
+    /// The name of the input.
     pub label: String,
-    /// Why it has none.
+    /// The reason why it has no figures.
     pub why: String,
 }
 
-/// Entries in the order of the chosen figures.
+/// A comparison: entries in the order of the chosen figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// What they are ranked by; never empty.
+    /// The figures by which the entries are ranked; never empty.
     pub keys: Vec<SortKey>,
-    /// Best first; those without the figure last, equals in the order given.
+    /// The rows, best first; those without the figure last, equal ones in the given order.
     pub rows: Vec<Ranked>,
-    /// Which row the differences are from.
+    /// The index of the row from which differences are taken.
     pub reference: Option<usize>,
-    /// What else was given.
+    /// The inputs without figures.
     pub left_out: Vec<LeftOut>,
-    /// What was done to make them comparable, in sentences.
+    /// Remarks on the conversions that made the entries comparable, in sentences.
     pub remarks: Vec<String>,
 }
 
-/// 100 (value - reference)/|reference|; 0 where the two are equal within the margin of limits, also both 0; `None`
-/// where only the reference is 0.
+/// Returns 100 (value - reference)/|reference|; 0 if the two are equal within the margin of limits, also if both are 0;
+/// `None` if only the reference is 0.
 pub fn percent_above(value: f64, reference: f64) -> Option<f64> {
     if level::equal(value, reference, 0.0) {
         return Some(0.0);
@@ -176,14 +177,14 @@ pub fn percent_above(value: f64, reference: f64) -> Option<f64> {
     Some(100.0 * (value - reference) / reference.abs()).filter(|p| p.is_finite())
 }
 
-/// Whether two targets are one, up to the rounding of a change of units.
+/// Returns whether two targets are the same, up to the rounding of a change of units.
 pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
     const ROUNDING: f64 = 8.0 * f64::EPSILON;
     let near = |x: f64, y: f64| x == y || (x - y).abs() <= ROUNDING * x.abs().max(y.abs());
     one.len() == other.len() && one.iter().flatten().zip(other.iter().flatten()).all(|(x, y)| near(*x, *y))
 }
 
-/// Better first; what is missing last.
+/// Compares two figures: the better one first, a missing one last.
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     match (x, y) {
         (Some(x), Some(y)) => {
@@ -199,7 +200,7 @@ fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     }
 }
 
-/// One more than how many are better, for each.
+/// Returns the rank of each: one more than the number of better ones.
 fn ranked<T>(sorted: &[T], equal: impl Fn(&T, &T) -> bool) -> Vec<usize> {
     let mut ranks = Vec::with_capacity(sorted.len());
     for i in 0..sorted.len() {
@@ -209,8 +210,8 @@ fn ranked<T>(sorted: &[T], equal: impl Fn(&T, &T) -> bool) -> Vec<usize> {
     ranks
 }
 
-/// What entries are ranked by where nobody says: by what all of their problems minimise, where that is one thing and
-/// no plain sum; else by the sum of squared errors.
+/// Returns the default key: the objective that all the entries' problems minimise, if it is the same for all and not
+/// the plain sum; otherwise the sum of squared errors.
 fn usual_key(entries: &[Entry]) -> SortKey {
     let one = entries.windows(2).all(|w| {
         w[0].measure == w[1].measure && w[0].unit == w[1].unit && same_points(&w[0].target, &w[1].target)
@@ -221,9 +222,9 @@ fn usual_key(entries: &[Entry]) -> SortKey {
     }
 }
 
-/// Ranks the entries by the first key, equals by the next ones (where there is none by what their problems minimise);
-/// `reference` is the index of the entry that differences are from. Figures are ordered by their levels
-/// (`level`): equal within the margin of limits is equal.
+/// Ranks the entries by the first key, and equal ones by the next keys (without keys, by the objective of their
+/// problems); `reference` is the index of the entry from which differences are taken. Figures are ordered by their
+/// levels (`level`): figures within the margin of limits count as equal.
 pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) -> Comparison {
     let keys = if keys.is_empty() { vec![usual_key(entries)] } else { keys.to_vec() };
     let mut rows: Vec<(usize, Ranked)> = entries
@@ -295,30 +296,30 @@ pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) ->
 }
 
 impl Comparison {
-    /// Whether all errors are to the same target.
+    /// Returns whether all errors are measured to the same target.
     pub fn same_target(&self) -> bool {
         self.rows.windows(2).all(|w| same_points(&w[0].entry.target, &w[1].entry.target))
     }
 
-    /// Whether all lengths have the same unit.
+    /// Returns whether all lengths have the same unit.
     pub fn same_unit(&self) -> bool {
         self.rows.windows(2).all(|w| w[0].entry.unit == w[1].entry.unit)
     }
 
-    /// What was minimised, where all that is shown minimised one thing and that is not the plain sum: the word for its
-    /// column, and a sentence on it.
+    /// Returns the objective, if all rows minimised the same one and it is not the plain sum: the word for its column,
+    /// and a sentence on it.
     pub(super) fn minimised(&self) -> Option<(&'static str, &'static str)> {
         let measure = self.rows.first()?.entry.measure;
         let one = self.rows.iter().all(|row| row.entry.measure == measure);
         super::words::minimised(measure).filter(|_| one && self.same_target())
     }
 
-    /// Whether every record said what is so.
+    /// Returns whether every record is true.
     pub fn is_true(&self) -> bool {
         self.rows.iter().all(|row| row.entry.untrue.is_empty())
     }
 
-    /// What a reader has to know beside the figures, in sentences.
+    /// Returns the remarks that a reader needs beside the figures, in sentences.
     pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         for row in self.rows.iter().filter(|row| !row.entry.untrue.is_empty()) {
@@ -349,7 +350,7 @@ impl Comparison {
         notes
     }
 
-    /// What the marks of the front mean; `None` where nothing is marked.
+    /// Returns the meaning of the marks of the front; `None` if no row is marked.
     pub fn front_words(&self) -> Option<String> {
         let n = self.rows.iter().filter(|row| row.on_front).count();
         (n > 0).then(|| {
@@ -359,7 +360,7 @@ impl Comparison {
         })
     }
 
-    /// The label of the row that differences are from.
+    /// Returns the label of the row from which differences are taken.
     pub fn reference_label(&self) -> Option<&str> {
         Some(&self.rows.get(self.reference?)?.entry.label)
     }

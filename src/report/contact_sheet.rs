@@ -1,4 +1,4 @@
-//! All candidates side by side, small.
+//! The contact sheet: small drawings of all candidates side by side.
 
 use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, text_width};
 use super::figure::{Detail, draw};
@@ -10,12 +10,12 @@ use crate::record::{Candidate, Record};
 const MARGIN: f64 = 24.0;
 const GAP: f64 = 16.0;
 const CELL: f64 = 276.0;
-/// Where the drawing of a cell ends and its figures begin.
+/// The height at which the drawing of a cell ends and its figures begin.
 const CELL_DRAWING: f64 = 216.0;
 const MOST_COLUMNS: usize = 4;
 const MOST_CELLS: usize = 100;
 
-/// Every candidate with its rank, error, type and verdict (at most a hundred).
+/// Returns every candidate with its rank, error, type and verdict (at most a hundred).
 pub fn contact_sheet_svg(record: &Record) -> String {
     let n = record.candidates.len().min(MOST_CELLS);
     let columns = match n {

@@ -1,5 +1,5 @@
-//! Tables for spreadsheets and scripts. Every number is the shortest text that reads back as the same double;
-//! a cell is empty where there is no number.
+//! Tables for spreadsheets and scripts. Every number is the shortest text that reads back as the same double; a cell
+//! without a number is empty.
 
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
@@ -9,7 +9,7 @@ use crate::linkage::{CouplerCurve, FourBar};
 use crate::record::{Candidate, Record};
 use crate::task::Defect;
 
-/// The head of [`candidates_csv`].
+/// The header row of [`candidates_csv`].
 pub const CANDIDATE_COLUMNS: [&str; 32] = [
     "rank",
     "accepted",
@@ -45,12 +45,12 @@ pub const CANDIDATE_COLUMNS: [&str; 32] = [
     "unmet",
 ];
 
-/// The head of [`curve_csv`].
+/// The header row of [`curve_csv`].
 pub const CURVE_COLUMNS: [&str; 9] =
     ["crank_deg", "t1", "Cx", "Cy", "Dx", "Dy", "Px", "Py", "transmission_deg"];
 
-/// One row a candidate: every parameter and figure, defects as `order:3 7;branch:2` (points from 0), the
-/// names of what isn't met.
+/// Returns one row for each candidate: every parameter and figure, defects as `order:3 7;branch:2` (points from 0), and
+/// the names of the requirements that are not met.
 pub fn candidates_csv(record: &Record) -> String {
     written(&CANDIDATE_COLUMNS, record.candidates.iter().map(|candidate| row(record, candidate)))
 }
@@ -86,7 +86,7 @@ fn row(record: &Record, candidate: &Candidate) -> Vec<String> {
     cells
 }
 
-/// Ax Ay Bx By a b c d e t1 t2.
+/// Returns Ax Ay Bx By a b c d e t1 t2.
 pub(super) fn parameters(linkage: &FourBar) -> [String; 11] {
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
     [
@@ -109,16 +109,16 @@ fn defect(defect: &Defect) -> String {
     format!("{}:{}", defect.name(), at.join(" "))
 }
 
-/// The coupler curve of the circuit of `record.candidates[index]`: where the input turns fully a row for each
-/// degree of the crank from 0 to 359, where it rocks 720 rows there and back (evenly spaced in the circuit's
-/// parameter). Positions in which the loop is open are left out; the head alone without such a candidate.
+/// Returns the coupler curve of the circuit of `record.candidates[index]`: if the input turns fully, one row for each
+/// degree of the crank from 0 to 359; if it rocks, 720 rows there and back (evenly spaced in the circuit's parameter).
+/// Positions at which the loop is open are left out; without such a candidate there is only the header row.
 pub fn curve_csv(record: &Record, index: usize) -> String {
     record.candidates.get(index).map_or_else(|| written(&CURVE_COLUMNS, []), candidate_curve_csv)
 }
 
-/// As [`curve_csv`], of a candidate that need not be among the record's.
+/// Returns the curve as [`curve_csv`] does, for a candidate that need not be in a record.
 pub fn candidate_curve_csv(candidate: &Candidate) -> String {
-    // Numbers alone: nothing needs quotes.
+    // There are only numbers, which need no quotes.
     let mut text = CURVE_COLUMNS.join(",");
     text.push('\n');
     for row in curve(candidate) {
@@ -163,10 +163,10 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
     table
 }
 
-/// Head and rows as CSV with line feeds.
+/// Returns the header row and the rows as CSV with line feeds.
 pub(crate) fn written(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
-    // Writing to memory does not fail; if it did, what is there so far is the answer.
+    // Writing to memory does not fail; if it did, the text so far is returned.
     let mut good = writer.write_record(head).is_ok();
     for row in rows {
         good = good && writer.write_record(&row).is_ok();

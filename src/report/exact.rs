@@ -1,4 +1,4 @@
-//! Every linkage through nine points, in words and as a table.
+//! The linkages through nine points (exact synthesis), in words and as a table.
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
@@ -7,10 +7,10 @@ use super::words;
 use crate::linkage::AssemblyMode;
 use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
 
-/// Rows where not all are asked for.
+/// The number of rows if not all are asked for.
 const FEW: usize = 8;
 
-/// The census and the real linkages, the best of them or `all`; empty for a record without any.
+/// Returns the census and the real linkages, the best of them or `all`; empty for a record without any.
 pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let Some(exact) = &record.exact else { return String::new() };
     let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
@@ -42,7 +42,7 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     out
 }
 
-/// One plain sentence in place of a census where the points are in special position and no solution was found.
+/// Returns one plain sentence instead of a census if the points are in special position and no solution was found.
 pub fn none_through(record: &Record) -> Option<String> {
     let exact = record.exact.as_ref()?;
     if exact.completeness != Completeness::NonGeneric || exact.census.classes > 0 {
@@ -67,7 +67,7 @@ pub fn none_through(record: &Record) -> Option<String> {
     })
 }
 
-/// Whether points lie on one line, within rounding of their extent.
+/// Returns whether points lie on one line, within the rounding of their extent.
 fn on_one_line(points: &[[f64; 2]]) -> bool {
     const ROUNDING: f64 = 1e-9;
     let from = |p: &[f64; 2]| [p[0] - points[0][0], p[1] - points[0][1]];
@@ -79,7 +79,7 @@ fn on_one_line(points: &[[f64; 2]]) -> bool {
     points.iter().map(from).all(|v| (v[0] * far[1] - v[1] * far[0]).abs() <= ROUNDING * extent * extent)
 }
 
-/// How many solutions there are, of what kind, how they were found, and what is proved.
+/// Returns sentences on the number and kind of solutions, the search for them, and the proof.
 pub fn sentences(exact: &ExactRecord) -> [String; 4] {
     [found(exact), real(&exact.census), paths(&exact.census), proof(exact)]
 }
@@ -88,7 +88,7 @@ fn count(n: usize) -> String {
     grouped(n as u64)
 }
 
-/// How many solutions there are, and what kind of points.
+/// Returns the number of solutions, and the kind of points.
 fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
@@ -160,7 +160,7 @@ fn paths(census: &Census) -> String {
     format!("{} paths followed: {} different ends, {rest}.", count(census.tracked), count(census.classes))
 }
 
-/// What is proved, and what is not.
+/// Returns the statement of the proof and its limits.
 fn proof(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let mut text = match (census.certified, census.not_certified) {
@@ -188,7 +188,7 @@ fn proof(exact: &ExactRecord) -> String {
     text
 }
 
-/// What a class can do, by the best of its mechanisms.
+/// Returns the abilities of a class: those of the best of its mechanisms.
 pub fn ability(linkage: &ExactLinkage) -> &'static str {
     match (linkage.free_of_defects, linkage.in_order, linkage.one_circuit) {
         (true, ..) => "free of defects",

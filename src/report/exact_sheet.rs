@@ -1,4 +1,4 @@
-//! Every real linkage through nine points, small, side by side.
+//! Small drawings of every real linkage through nine points, side by side.
 
 use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, text_width};
 use super::exact::ability;
@@ -11,17 +11,18 @@ use crate::record::{ExactLinkage, Record};
 const MARGIN: f64 = 24.0;
 const GAP: f64 = 12.0;
 const CELL: f64 = 190.0;
-/// Where the drawing of a cell ends and its words begin.
+/// The height at which the drawing of a cell ends and its words begin.
 const CELL_DRAWING: f64 = 150.0;
 const HEAD: f64 = 72.0;
 const COLUMNS: usize = 6;
 const MOST_CELLS: usize = 200;
-/// Positions of a circuit: one degree of the crank is below a pixel here.
+/// The number of positions of a circuit: one degree of the crank is below a pixel here.
 const SAMPLES: usize = 360;
-/// What reaches further than this many extents of the target is cut off, or the points would run together.
+/// The number of extents of the target beyond which a curve is cut off, because the points would run together
+/// otherwise.
 const REACH: f64 = 5.0;
 
-/// The listed linkages with curve, type and what they can do (at most two hundred).
+/// Returns the listed linkages with curve, type and abilities (at most two hundred).
 pub fn exact_svg(record: &Record) -> String {
     let linkages = record.exact.as_ref().map_or(&[][..], |exact| &exact.linkages);
     let n = linkages.len().min(MOST_CELLS);
@@ -88,7 +89,7 @@ fn cell(canvas: &mut Canvas, record: &Record, linkage: &ExactLinkage, number: us
     canvas.text(Spot::new(right, first + 16.0), Anchor::End, &text(400, palette::MUTED), &worst);
 }
 
-/// The whole motion; of one that reaches far, what lies about the target.
+/// Returns the box of the whole motion; of a motion that reaches far, the part around the target.
 fn seen(scene: &Scene) -> Bounds {
     let (all, target) = (scene.bounds(), scene.target_bounds());
     if all.extent() <= REACH * target.extent() { all } else { target.padded(0.5 * (REACH - 1.0)) }

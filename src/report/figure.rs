@@ -1,4 +1,4 @@
-//! The drawing of a scene: curve, linkage, target, labels.
+//! The drawing of a scene: curve, linkage, target and labels.
 
 use super::canvas::{Anchor, Canvas, Spot, View, palette, px};
 use super::labels::Labels;
@@ -7,26 +7,26 @@ use super::scene::{Bounds, Pose, Scene};
 use crate::linkage::{Complex, Joints};
 use std::collections::BTreeSet;
 
-/// How much is drawn and how thick.
+/// The amount of detail and the thickness of lines of a drawing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Detail {
-    /// 1 for a page, less for small multiples.
+    /// The scale of lines and marks: 1 for a page, less for small drawings.
     pub(super) weight: f64,
-    /// The same for the target points.
+    /// The scale of the target points.
     pub(super) target_weight: f64,
-    /// Letters at the joints and numbers at the target points.
+    /// Whether there are letters at the joints and numbers at the target points.
     pub(super) letters: bool,
-    /// The numbers of the target points.
+    /// Whether there are numbers at the target points.
     pub(super) numbers: bool,
-    /// The linkage itself; else only the curve and the target.
+    /// Whether the linkage itself is drawn; otherwise only the curve and the target.
     pub(super) linkage: bool,
-    /// Of the coupler curve only what lies in here.
+    /// The box outside of which the coupler curve is left out.
     pub(super) clip: Option<Bounds>,
 }
 
-/// Numbers are drawn at every point up to this many, else at round ones.
+/// The largest number of points that all have numbers; of more, only round ones have.
 const NUMBERED: usize = 20;
-/// More target points than this are plain dots.
+/// The largest number of target points that are drawn as rings; more are plain dots.
 const MARKED: usize = 150;
 
 /// Draws the scene.
@@ -34,7 +34,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Deta
     draw_among(canvas, &mut Labels::default(), scene, view, detail);
 }
 
-/// As [`draw`]; labels keep off what is marked already, and what is drawn is marked for later ones.
+/// Draws the scene as [`draw`] does; labels avoid the marked places, and the drawn parts are marked for later labels.
 pub(super) fn draw_among(
     canvas: &mut Canvas,
     labels: &mut Labels,
@@ -67,7 +67,7 @@ pub(super) fn draw_among(
     }
 }
 
-/// The coupler curve of the first circuit, and others that are used, dashed.
+/// Draws the coupler curve of the first circuit, and those of other used circuits dashed.
 fn curves(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, detail: Detail) {
     for (i, circuit) in scene.circuits.iter().enumerate() {
         let points: Vec<Complex> = circuit.iter().map(|joints| joints.coupler_point).collect();
@@ -90,14 +90,15 @@ fn curves(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, 
     }
 }
 
-/// The parts of a closed curve inside a box, each with its neighbours outside; and whether it is all of it.
+/// Returns the parts of a closed curve inside a box, each with its neighbours outside; and whether that is the whole
+/// curve.
 fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, bool) {
     let Some(clip) = clip.filter(|clip| !points.iter().all(|p| clip.holds(*p))) else {
         return (vec![points.to_vec()], true);
     };
     let n = points.len();
     let inside = |i: usize| clip.holds(points[i % n]);
-    // From a point outside, so that no part is cut in two.
+    // Begins at a point outside, so that no part is cut in two.
     let start = (0..n).find(|i| !inside(*i)).unwrap_or(0);
     let mut strands = Vec::new();
     let mut strand: Vec<Complex> = Vec::new();
@@ -117,7 +118,7 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
     (strands, false)
 }
 
-/// The line A-B, and under each fixed pivot a hatched stand.
+/// Draws the line A-B, and under each fixed pivot a hatched stand.
 fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     let Some(linkage) = &scene.linkage else { return };
     let pivots = [linkage.crank_pivot(), linkage.follower_pivot()].map(|p| view.spot(p));
@@ -127,7 +128,7 @@ fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     pivots.into_iter().for_each(|pivot| stand(canvas, pivot, detail.weight));
 }
 
-/// The paths of C and D.
+/// Draws the paths of C and D.
 fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     let attributes =
         format!(r#"fill="none" stroke="{}" stroke-width="{:.2}""#, palette::FAINT, 1.1 * detail.weight);
@@ -140,7 +141,7 @@ fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     }
 }
 
-/// A, B, C, D, P on the canvas.
+/// Returns A, B, C, D, P on the canvas.
 fn joint_spots(scene: &Scene, view: &View, pose: &Pose) -> Option<[Spot; 5]> {
     let linkage = scene.linkage.as_ref()?;
     let joints = &pose.joints;
@@ -154,13 +155,13 @@ fn joint_spots(scene: &Scene, view: &View, pose: &Pose) -> Option<[Spot; 5]> {
     Some(all.map(|p| view.spot(p)))
 }
 
-/// The coupler's triangle, shaded.
+/// Draws the coupler's triangle, shaded.
 fn coupler_triangle(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
     let Some([_, _, c, d, p]) = joint_spots(scene, view, pose) else { return };
     triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
 }
 
-/// Crank, coupler side C-D and follower as bars, pins on top.
+/// Draws crank, coupler side C-D and follower as bars, with pins on top.
 fn linkage(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
     let Some([a, b, c, d, _]) = joint_spots(scene, view, pose) else { return };
     bars(canvas, [a, b, c, d], palette::BAR, palette::BAR_EDGE, detail.weight);
@@ -170,14 +171,14 @@ fn coupler_point(canvas: &mut Canvas, view: &View, pose: &Pose, detail: Detail) 
     point_mark(canvas, view.spot(pose.joints.coupler_point), detail.weight);
 }
 
-/// A target point's place, and the place of the coupler point instead.
+/// The place of a target point, and the place that the coupler point reaches instead.
 struct Mark {
     index: usize,
     spot: Spot,
     reached: Option<Spot>,
 }
 
-/// How the target points are drawn.
+/// The target points with the style in which they are drawn.
 struct Marks {
     list: Vec<Mark>,
     radius: f64,
@@ -185,7 +186,8 @@ struct Marks {
 }
 
 impl Marks {
-    /// Of many points those that fall on a pixel of their own: a hundred thousand would drown the drawing.
+    /// Returns the marks. Of many points, only those that fall on a pixel of their own are kept: a hundred thousand
+    /// would make the drawing too large.
     fn new(scene: &Scene, view: &View, detail: Detail) -> Self {
         let n = scene.targets.len();
         let many = n > MARKED;
@@ -207,12 +209,12 @@ impl Marks {
     }
 }
 
-/// A line from each target point to where the coupler point is instead, wherever that can be seen.
+/// Draws a line from each target point to the coupler point's place, if it is long enough to be seen.
 fn whiskers(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
     let mut data = String::new();
     for mark in &marks.list {
         let Some(reached) = mark.reached else { continue };
-        // What stays inside the ring is not a whisker but a blot.
+        // A line inside the ring would only look like a blot.
         if mark.spot.distance(reached) > marks.radius {
             labels.mark_line(mark.spot, reached);
             data.push_str(&format!(
@@ -234,7 +236,7 @@ fn whiskers(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Det
     }
 }
 
-/// Target points as rings, dots where there are many, the first one filled and larger.
+/// Draws target points as rings, or as dots if there are many, the first one filled and larger.
 fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
     let spots: Vec<Spot> = marks.list.iter().map(|mark| mark.spot).collect();
     spots.iter().for_each(|spot| labels.mark(*spot));
@@ -263,12 +265,12 @@ fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Deta
     }
 }
 
-/// What labels keep off, apart from the curve and the points.
+/// Marks the places that labels have to avoid, apart from the curve and the points.
 fn mark_linkage(labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
     joint_spots(scene, view, pose).into_iter().for_each(|joints| mark_joints(labels, joints));
 }
 
-/// A B C D P.
+/// Draws the letters A B C D P.
 fn letters(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
     let Some([a, b, c, d, p]) = joint_spots(scene, view, pose) else { return };
     let above = Spot::new(0.0, -1.0);
@@ -284,7 +286,7 @@ fn letters(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View,
     }
 }
 
-/// Numbers at the target points: all where they are few, else 0 and round steps.
+/// Draws the numbers of the target points: all if they are few, otherwise 0 and round steps.
 fn numbers(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, radius: f64) {
     let n = scene.targets.len();
     let few = n <= NUMBERED;
@@ -306,7 +308,7 @@ fn numbers(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View,
     for target in scene.targets.iter().filter(|target| target.index % step == 0) {
         let spot = view.spot(target.at);
         let towards = Spot::new(spot.x - centre.x, spot.y - centre.y);
-        // Points in one place, such as a last one that repeats the first, share a label.
+        // Points at one place, such as a last one that repeats the first, share a label.
         if scene.targets.iter().take(target.index).any(|other| other.at == target.at) && few {
             continue;
         }

@@ -1,8 +1,8 @@
-//! A table of text with aligned columns, and the few colours that a terminal may show.
+//! A table of text with aligned columns, and the colours of a terminal.
 
 use super::text::columns_of;
 
-/// Whether text carries terminal colours. The words say everything by themselves.
+/// The choice whether text has terminal colours. The words are complete without them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colour {
     /// Plain text.
@@ -12,7 +12,7 @@ pub enum Colour {
     Always,
 }
 
-/// What a piece of text is, for its colour.
+/// The role of a piece of text, which determines its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ink {
     Plain,
@@ -39,14 +39,14 @@ impl Colour {
     }
 }
 
-/// How a column stands.
+/// The alignment of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Align {
     Left,
     Right,
 }
 
-/// A table: heads, rows of cells, each with its ink.
+/// A table: the headings, and rows of cells, each with its ink.
 pub(super) struct Grid {
     heads: Vec<(&'static str, Align)>,
     rows: Vec<Vec<(String, Ink)>>,
@@ -57,12 +57,12 @@ impl Grid {
         Grid { heads: heads.to_vec(), rows: Vec::new() }
     }
 
-    /// Cells beyond the heads are left out, missing ones are empty.
+    /// Adds a row. Cells beyond the headings are left out, missing ones are empty.
     pub(super) fn row(&mut self, cells: Vec<(String, Ink)>) {
         self.rows.push(cells);
     }
 
-    /// The lines, each after two spaces, columns two spaces apart.
+    /// Returns the lines, each after two spaces, with columns two spaces apart.
     pub(super) fn render(&self, colour: Colour) -> String {
         let widths: Vec<usize> = (0..self.heads.len())
             .map(|i| {
@@ -73,7 +73,7 @@ impl Grid {
         let heads: Vec<(String, Ink)> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
         let mut out = String::new();
         for row in std::iter::once(&heads).chain(&self.rows) {
-            // Spaces wait until something follows them, so that no line ends in spaces.
+            // Spaces are written only before the next text, so that no line ends in spaces.
             let mut spaces = 0;
             for (i, (&(_, align), &width)) in self.heads.iter().zip(&widths).enumerate() {
                 let (text, ink) = row.get(i).map_or(("", Ink::Plain), |cell| (cell.0.as_str(), cell.1));

@@ -1,20 +1,20 @@
-//! Labels beside their points, placed where they hide least.
+//! Placement of labels beside their points, where they hide least.
 
 use super::canvas::{Spot, text_width};
 
-/// What is on the canvas already.
+/// The places on the canvas that are occupied already.
 #[derive(Default)]
 pub(super) struct Labels {
-    /// Places of lines and marks, a few pixels apart.
+    /// The places of lines and marks, a few pixels apart.
     ink: Vec<Spot>,
-    /// Middles and half sizes of labels.
+    /// The middles and half sizes of labels.
     boxes: Vec<(Spot, f64, f64)>,
 }
 
 impl Labels {
-    /// Directions that are tried around a point.
+    /// The number of directions that are tried around a point.
     const DIRECTIONS: usize = 16;
-    /// How much hiding one mark weighs against turning away from the wished direction.
+    /// The weight of hiding one mark, relative to turning away from the preferred direction.
     const MARK: f64 = 0.5;
 
     pub(super) fn mark(&mut self, spot: Spot) {
@@ -30,8 +30,8 @@ impl Labels {
         }
     }
 
-    /// The middle of the base line for `text` around `point` at `distance` from it, near the direction `towards` where that is
-    /// free; `None` where every place would cover another label and `needed` is false.
+    /// Returns the middle of the base line for `text` around `point` at `distance` from it, near the direction
+    /// `towards` if that is free; `None` if every place would cover another label and `needed` is false.
     pub(super) fn place(
         &mut self,
         text: &str,
@@ -45,7 +45,7 @@ impl Labels {
         let wished = towards.y.atan2(towards.x);
         let mut best: Option<(f64, Spot)> = None;
         for i in 0..Self::DIRECTIONS * 2 {
-            // The wished direction first, then alternately to both sides; then all again farther away.
+            // The preferred direction first, then alternately to both sides; then all again farther away.
             let step = (i % Self::DIRECTIONS).div_ceil(2) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 };
             let angle = wished + step * std::f64::consts::TAU / Self::DIRECTIONS as f64;
             let far = if i < Self::DIRECTIONS { distance } else { 1.7 * distance };

@@ -1,14 +1,14 @@
-//! What a person sees of a run: text, drawings and tables, all pure functions of a
-//! [`Record`](crate::record::Record).
+//! Reports of a run: text, drawings and tables, all pure functions of a [`Record`](crate::record::Record).
 //!
-//! The same record gives the same bytes: nothing here reads a clock, a host or a terminal. A record may come
-//! from anywhere, so names in it are arbitrary text (cleaned for the terminal, escaped for XML) and its lists
-//! may be empty or of unequal lengths: what is missing is left out. Curves are drawn by the linkage's own
-//! kinematics, figures are those of the record. Points count from 0, as everywhere.
+//! The same record gives the same bytes: nothing here reads a clock, a host or a terminal. A record may come from
+//! anywhere, so names in it are arbitrary text (cleaned for the terminal, escaped for XML) and its lists may be empty
+//! or of unequal lengths: missing values are left out. Curves are computed from the linkage's own kinematics, figures
+//! are those of the record. Points count from 0, as everywhere.
 //!
 //! | for | call |
 //! |---|---|
-//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`certificate::certificate_text`], [`plot::terminal_plot`] |
+//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`] |
+//! | | [`certificate::certificate_text`], [`plot::terminal_plot`] |
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
 //! | a browser | [`html::report_html`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |

@@ -1,9 +1,9 @@
-//! The parts that drawings of linkages are made of: stands, bars, the coupler's triangle, letters.
+//! The parts of drawings of linkages: stands, bars, the coupler's triangle, letters.
 
 use super::canvas::{Anchor, Canvas, Spot, palette};
 use super::labels::Labels;
 
-/// Marks a path every few pixels.
+/// Marks points of a path, a few pixels apart, as occupied for labels.
 pub(super) fn mark_path(labels: &mut Labels, spots: &[Spot]) {
     let mut last: Option<Spot> = None;
     for &spot in spots {
@@ -14,7 +14,7 @@ pub(super) fn mark_path(labels: &mut Labels, spots: &[Spot]) {
     }
 }
 
-/// The hatched stand of a fixed pivot.
+/// Draws the hatched stand of a fixed pivot.
 pub(super) fn stand(canvas: &mut Canvas, pivot: Spot, w: f64) {
     let (half, top, base) = (11.0 * w, pivot.y, pivot.y + 16.0 * w);
     let stand = [Spot::new(pivot.x, top), Spot::new(pivot.x + half, base), Spot::new(pivot.x - half, base)];
@@ -34,7 +34,7 @@ pub(super) fn stand(canvas: &mut Canvas, pivot: Spot, w: f64) {
     }
 }
 
-/// A triangle C, D, P, shaded in one colour and edged in another.
+/// Draws a triangle C, D, P, filled with one colour and edged in another.
 pub(super) fn triangle(canvas: &mut Canvas, corners: [Spot; 3], fill: &str, edge: &str, w: f64) {
     let attributes = format!(
         concat!(
@@ -48,7 +48,7 @@ pub(super) fn triangle(canvas: &mut Canvas, corners: [Spot; 3], fill: &str, edge
     canvas.path(&corners, true, &attributes);
 }
 
-/// Bars A-C, C-D and B-D filled in one colour and edged in another, pins on top.
+/// Draws bars A-C, C-D and B-D filled with one colour and edged in another, with pins on top.
 pub(super) fn bars(canvas: &mut Canvas, [a, b, c, d]: [Spot; 4], fill: &str, edge: &str, w: f64) {
     for (from, to) in [(a, c), (c, d), (b, d)] {
         for (colour, width) in [(edge, 9.5 * w), (fill, 6.5 * w)] {
@@ -65,14 +65,14 @@ pub(super) fn bars(canvas: &mut Canvas, [a, b, c, d]: [Spot; 4], fill: &str, edg
     }
 }
 
-/// The mark of a coupler point.
+/// Draws the mark of a coupler point.
 pub(super) fn point_mark(canvas: &mut Canvas, at: Spot, w: f64) {
     let attributes =
         format!(r#"fill="{}" stroke="{}" stroke-width="{:.2}""#, palette::CURVE, palette::PAPER, 1.2 * w);
     canvas.circle(at, 4.4 * w, &attributes);
 }
 
-/// Marks the links and stands of A, B, C, D, P.
+/// Marks the links and stands of A, B, C, D, P as occupied for labels.
 pub(super) fn mark_joints(labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
     for (from, to) in [(a, c), (c, d), (b, d), (c, p), (d, p)] {
         labels.mark_line(from, to);
@@ -85,7 +85,7 @@ pub(super) fn mark_joints(labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
     }
 }
 
-/// The letter of a joint beside it.
+/// Draws the letter of a joint beside it.
 pub(super) fn letter(canvas: &mut Canvas, labels: &mut Labels, name: &str, joint: Spot, towards: Spot) {
     if let Some(at) = labels.place(name, 15.0, joint, 9.0, towards, true) {
         let attributes = format!(
@@ -100,7 +100,7 @@ pub(super) fn letter(canvas: &mut Canvas, labels: &mut Labels, name: &str, joint
     }
 }
 
-/// The direction away from the neighbours, straight up where they cancel.
+/// Returns the direction away from the neighbours, or straight up if they cancel each other.
 pub(super) fn away(joint: Spot, neighbours: &[Spot]) -> Spot {
     let mut sum = Spot::new(0.0, 0.0);
     for neighbour in neighbours {
@@ -113,7 +113,7 @@ pub(super) fn away(joint: Spot, neighbours: &[Spot]) -> Spot {
     if sum.x.hypot(sum.y) < 0.2 { Spot::new(0.0, -1.0) } else { sum }
 }
 
-/// The sum of two steps.
+/// Returns the sum of two vectors.
 pub(super) fn plus(a: Spot, b: Spot) -> Spot {
     Spot::new(a.x + b.x, a.y + b.y)
 }

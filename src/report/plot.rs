@@ -1,4 +1,4 @@
-//! A small plot for the terminal: the target points and the coupler curve, both axes to one scale.
+//! A small plot for the terminal: the target points and the coupler curve, with one scale for both axes.
 
 use super::scene::{Bounds, Scene, round_length};
 use super::text::brief;
@@ -6,31 +6,31 @@ use super::words;
 use crate::linkage::Complex;
 use crate::record::Record;
 
-/// What a plot is drawn with.
+/// The characters with which a plot is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glyphs {
-    /// Braille characters, eight dots each.
+    /// Braille characters, eight dots in each.
     #[default]
     Braille,
-    /// ASCII alone.
+    /// ASCII characters only.
     Ascii,
 }
 
-/// The sizes that a plot is kept within, in characters.
+/// The allowed sizes of a plot, in characters.
 const WIDTHS: (usize, usize) = (16, 400);
 const HEIGHTS: (usize, usize) = (4, 200);
 
-/// The most target points that are marked, evenly chosen.
+/// The largest number of target points that are marked, evenly chosen.
 const MOST_MARKS: usize = 40;
-/// How far everything is set in.
+/// The indentation of every line.
 const INDENT: usize = 2;
 
-/// A target smaller than this part of its curve fills the plot, and the curve runs out of it.
+/// The fraction of its curve below which a target fills the plot, so that the curve runs out of it.
 const SMALL_TARGET: f64 = 0.2;
 
-/// The target points and the coupler curve of `record.candidates[index]` (without such a candidate the points
-/// alone), at most `width` by `height` characters with a line below that says what is what. A character is
-/// taken to be twice as high as wide.
+/// Returns the target points and the coupler curve of `record.candidates[index]` (without such a candidate only the
+/// points), at most `width` by `height` characters with a legend in the line below. A character is assumed to be twice
+/// as high as wide.
 pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize, glyphs: Glyphs) -> String {
     let scene = Scene::new(record, record.candidates.get(index));
     if scene.targets.is_empty() {
@@ -56,7 +56,7 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
         Glyphs::Braille => ('●', '○'),
         Glyphs::Ascii => ('@', 'o'),
     };
-    // Many points would hide the curve. The first one last, so that no other one hides it.
+    // Marking many points would hide the curve. The first one is marked last, so that no other one hides it.
     let every = scene.targets.len().div_ceil(MOST_MARKS);
     for point in scene.targets.iter().rev().filter(|point| point.index % every == 0) {
         raster.mark(point.at, if point.index == 0 { first } else { other });
@@ -84,21 +84,21 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
     out
 }
 
-/// Dots in character cells.
+/// A raster: dots in character cells.
 struct Raster {
     columns: usize,
     rows: usize,
     glyphs: Glyphs,
-    /// Dots a unit of length, and the plane's point at the middle of the raster.
+    /// The number of dots per unit of length, and the plane's point at the middle of the raster.
     scale: f64,
     centre: Complex,
-    /// One byte of Braille dots a cell.
+    /// The Braille dots, one byte for each cell.
     cells: Vec<u8>,
     marks: Vec<Option<char>>,
 }
 
 impl Raster {
-    /// Dots in a cell, across and down.
+    /// Returns the number of dots in a cell, across and down.
     fn dots(glyphs: Glyphs) -> (usize, usize) {
         match glyphs {
             Glyphs::Braille => (2, 4),
@@ -106,7 +106,7 @@ impl Raster {
         }
     }
 
-    /// How many times as high as wide a dot is.
+    /// Returns the height of a dot divided by its width.
     fn aspect(glyphs: Glyphs) -> f64 {
         match glyphs {
             Glyphs::Braille => 1.0,
@@ -114,7 +114,7 @@ impl Raster {
         }
     }
 
-    /// A raster in the shape of the box, inside of `columns` by `rows`.
+    /// Returns a raster in the shape of the box, at most `columns` by `rows`.
     fn fit(bounds: &Bounds, columns: usize, rows: usize, glyphs: Glyphs) -> Self {
         let (across, down) = Self::dots(glyphs);
         let aspect = Self::aspect(glyphs);
@@ -143,7 +143,7 @@ impl Raster {
         Self::dots(self.glyphs).0 as f64 / self.scale
     }
 
-    /// Dots across and down, not yet rounded.
+    /// Returns the position in dots across and down, not rounded.
     fn place(&self, p: Complex) -> (f64, f64) {
         let (across, down) = Self::dots(self.glyphs);
         let x = 0.5 * ((self.columns * across - 1) as f64) + self.scale * (p.re - self.centre.re);
@@ -152,7 +152,7 @@ impl Raster {
         (x, y)
     }
 
-    /// The cell of a dot and its place in there; `None` outside.
+    /// Returns the cell of a dot and the dot's place in it; `None` outside.
     fn cell(&self, x: f64, y: f64) -> Option<(usize, usize, usize)> {
         let (across, down) = Self::dots(self.glyphs);
         let (x, y) = (x.round(), y.round());
@@ -166,7 +166,7 @@ impl Raster {
     fn line(&mut self, from: Complex, to: Complex) {
         let ((x, y), (to_x, to_y)) = (self.place(from), self.place(to));
         let steps = (to_x - x).abs().max((to_y - y).abs()).ceil();
-        // A longer chord runs far outside: its ends say enough.
+        // A longer chord runs far outside: its ends are enough.
         let steps = if steps.is_finite() && steps < 4096.0 { steps.max(1.0) as usize } else { 1 };
         for i in 0..=steps {
             let t = i as f64 / steps as f64;

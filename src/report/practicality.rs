@@ -1,4 +1,4 @@
-//! What stands between a linkage and a workshop, as text: layers, distances, sensitivities.
+//! The practicality of a linkage as text: layers, distances, sensitivities.
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, significant, wrapped};
@@ -9,12 +9,12 @@ use crate::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::practicality::{Closest, Practicality};
 use crate::record::Unit;
 
-/// The width of the page.
+/// The width of the page, in columns.
 const COLUMNS: usize = 100;
-/// Significant digits of lengths and rates.
+/// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
 
-/// Everything, for a standard deviation `tolerance` of each dimension.
+/// Returns the whole text, for a standard deviation `tolerance` of each dimension.
 pub fn practicality_text(
     practicality: &Practicality,
     unit: Option<Unit>,
@@ -65,7 +65,7 @@ impl Words {
         format!("{}{unit}", brief(value, DIGITS))
     }
 
-    /// How the links are made, and over which motion they were looked at.
+    /// Returns the construction of the links, and the motion over which they were examined.
     pub(super) fn made(&self, practicality: &Practicality) -> String {
         let (radius, pin) = (practicality.build.plate_radius, practicality.build.pin_radius);
         let motion = match practicality.sweep.full_turn {
@@ -87,7 +87,7 @@ impl Words {
         )
     }
 
-    /// The stacking and what stands in its way, a line each.
+    /// Returns the stacking and its obstacles, one line for each.
     pub(super) fn layers(&self, layering: &Layering) -> Vec<String> {
         let mut out = Vec::new();
         let mut line = |text: &str| out.push(text.to_owned());
@@ -217,7 +217,7 @@ impl Words {
         out
     }
 
-    /// The worst dimension, and what all of them do together.
+    /// Returns the worst dimension, and the combined effect of all dimensions.
     pub(super) fn together(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
         let worst = felt.worst_dimension().name;
         let most = if at_points { format!(" at point {}", felt.worst_at) } else { String::new() };
@@ -241,12 +241,12 @@ impl Words {
     }
 }
 
-/// What the table of sensitivities holds.
+/// Returns the description of the table of sensitivities.
 pub(super) fn shift(felt: &Sensitivity) -> String {
     format!("Shift of the path for an error of 1 in each dimension alone, {}.", settles(felt.crank))
 }
 
-/// The distances that a link keeps.
+/// Returns the distances between joints that a link keeps fixed.
 pub(super) fn held(distances: &[PivotDistance]) -> String {
     let held: Vec<String> = distances
         .iter()
@@ -256,7 +256,7 @@ pub(super) fn held(distances: &[PivotDistance]) -> String {
     format!("Held by a link: {}.", held.join(", "))
 }
 
-/// What is wrong with a distance that is below a hole; empty where nothing is.
+/// Returns the objection to a distance that is below a hole; empty if there is none.
 pub(super) fn objection(d: &PivotDistance, hole: f64) -> &'static str {
     let pins = d.between.iter().all(|joint| *joint != "P");
     match d.closest.value < hole {
@@ -266,7 +266,7 @@ pub(super) fn objection(d: &PivotDistance, hole: f64) -> &'static str {
     }
 }
 
-/// What the crank does meanwhile.
+/// Returns the behaviour of the crank that the sensitivities assume.
 fn settles(crank: Crank) -> &'static str {
     match crank {
         Crank::Settles => "across the path (along it, a point is only passed earlier or later)",
@@ -289,7 +289,7 @@ fn at(closest: &Closest) -> String {
     format!("crank at {}", degrees(closest.crank_angle))
 }
 
-/// An angle in [0, 360) degrees, to a tenth.
+/// Returns an angle in [0, 360) degrees, to a tenth.
 pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
     format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })

@@ -1,13 +1,13 @@
-//! What requirements cost and what would help, in words.
+//! The costs of requirements and the relaxations that would help, in words.
 
 use super::text::{clean, significant, wrapped};
 use super::words;
 use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue, Unit};
 
-/// The rates are told for a step that changes the error by this part at most.
+/// The largest relative change of the error by a step for which rates are stated.
 const SMALL_STEP: f64 = 0.5;
 
-/// What the limits of the best candidate cost, a line a requirement; empty where it stands on none.
+/// Returns the costs of the limits of the best candidate, one line for each requirement; empty if no limit is active.
 pub fn costs(record: &Record, columns: usize) -> String {
     let Some(best) = record.candidates.first() else { return String::new() };
     if best.costs.is_empty() {
@@ -28,13 +28,13 @@ pub fn costs(record: &Record, columns: usize) -> String {
     out
 }
 
-/// The error that costs are told in: rms, weighted where the points are.
+/// Returns the error in which costs are stated: rms, weighted if the points are.
 fn rms(record: &Record, candidate: &Candidate) -> f64 {
     let weights = record.problem.resolved.task.path.weight.as_ref();
     weights.map_or(candidate.error.rms, |w| (candidate.error.objective / w.iter().sum::<f64>()).sqrt())
 }
 
-/// What a limit costs that a candidate stands on: `costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
+/// Returns the cost of an active limit: `costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
 pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Option<String> {
     let own: Vec<&Cost> = candidate.costs.iter().filter(|cost| cost.name == name).collect();
     let name = clean(name);
@@ -42,7 +42,7 @@ pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Opti
     Some(text.strip_prefix(&name).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
 }
 
-/// `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
+/// Returns a sentence such as `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
 fn sentence(record: &Record, candidate: &Candidate, own: &[&Cost]) -> String {
     let unit = words::unit_suffix(record);
     let with = rms(record, candidate);
@@ -58,7 +58,7 @@ fn sentence(record: &Record, candidate: &Candidate, own: &[&Cost]) -> String {
     }
 }
 
-/// `1 mm more at xmax gives back 0.10 mm`.
+/// Returns a clause such as `1 mm more at xmax gives back 0.10 mm`.
 fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
     let rate = -cost.rms_per_unit?;
     if !(rate > 0.0 && rate.is_finite() && rms > 0.0) {
@@ -86,7 +86,8 @@ fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
     Some(format!("{room} gives back {}{}", significant(rate * step, 2), words::length_suffix(unit)))
 }
 
-/// Which requirements conflict and what would help; empty where something is acceptable or nothing was found.
+/// Returns the requirements that conflict and the relaxations that would help; empty if a candidate is acceptable or
+/// none was found.
 pub fn relaxations(record: &Record, columns: usize) -> String {
     let mut out = String::new();
     if let Some(text) = conflict(record) {
@@ -94,13 +95,13 @@ pub fn relaxations(record: &Record, columns: usize) -> String {
         out.push_str(&wrapped("  ", "  ", &text, columns));
     }
     for (options, rms) in changes(record) {
-        // Not broken into lines: it is there to be copied.
+        // Not broken into lines, so that it can be copied.
         out.push_str(&format!("    {options}   ({rms})\n"));
     }
     out
 }
 
-/// The changes that help, as they are typed, each with the error then.
+/// Returns the changes that help, in the form in which they are typed, each with the resulting error.
 pub(super) fn changes(record: &Record) -> Vec<(String, String)> {
     let unit = words::unit_suffix(record);
     let of = |relaxation: &Relaxation| {
@@ -110,7 +111,7 @@ pub(super) fn changes(record: &Record) -> Vec<(String, String)> {
     record.relaxations.iter().map(of).collect()
 }
 
-/// Which requirements conflict, and how the list of what helps begins.
+/// Returns the requirements that conflict, and the beginning of the list of relaxations.
 pub(super) fn conflict(record: &Record) -> Option<String> {
     let mut parts = Vec::new();
     if let Some(conflict) = &record.conflict {
@@ -135,19 +136,19 @@ pub(super) fn conflict(record: &Record) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(" "))
 }
 
-/// How many keys change; those that are only written out are none.
+/// Returns the number of keys that change; a key with its old value does not count.
 fn changed(relaxation: &Relaxation) -> usize {
     relaxation.set.iter().filter(|change| change.from != change.to).count()
 }
 
-/// `--set require.transmission_deg_min=32.1`, in quotes where a shell would take it apart.
+/// Returns `--set require.transmission_deg_min=32.1`, in quotes if a shell would split it.
 fn option(change: &Change) -> String {
     let typed = clean(&format!("{}={}", change.key, change.to));
     let plain = typed.chars().all(|c| c.is_ascii_alphanumeric() || "._=-".contains(c));
     if plain { format!("--set {typed}") } else { format!("--set '{typed}'") }
 }
 
-/// `transmission_deg_min = 40`; the bare key where its value would be long.
+/// Returns a requirement such as `transmission_deg_min = 40`; only the key if its value would be long.
 fn demand(record: &Record, key: &str) -> String {
     let short = clean(key.rsplit_once("require.").map_or(key, |(_, name)| name));
     let from = |relaxation: &Relaxation| {

@@ -1,13 +1,13 @@
-//! What there is to draw of a candidate: target points, the circuits used, and one position of the linkage.
+//! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
 use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
 use crate::record::{Candidate, Record};
 use std::f64::consts::{PI, TAU};
 
-/// Samples of a circuit for a drawing: half a degree of the crank, far below a pixel.
+/// The number of samples of a circuit for a drawing: half a degree of the crank, far below a pixel.
 pub(super) const SAMPLES: usize = 720;
 
-/// A target point and where the coupler point is instead.
+/// A target point and the coupler point's place at it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target {
     pub(super) index: usize,
@@ -18,7 +18,7 @@ pub(super) struct Target {
 /// The linkage at one position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pose {
-    /// The target point it stands at; `None` where no position of a point closes.
+    /// The index of the target point of this position; `None` if the loop closes at no target point.
     pub(super) target: Option<usize>,
     pub(super) joints: Joints,
 }
@@ -28,7 +28,7 @@ pub(super) struct Pose {
 pub(super) struct Scene {
     pub(super) linkage: Option<FourBar>,
     pub(super) targets: Vec<Target>,
-    /// The joints along each circuit used, the first point's first.
+    /// The joints along each circuit used, the first point's circuit first.
     pub(super) circuits: Vec<Vec<Joints>>,
     pub(super) pose: Option<Pose>,
 }
@@ -41,7 +41,8 @@ impl Scene {
         }
     }
 
-    /// A linkage at crank angle (radians) and assembly at each point, `samples` positions of each circuit.
+    /// Returns the scene of a linkage at crank angle (radians) and assembly at each point, with `samples` positions of
+    /// each circuit.
     pub(super) fn of(
         record: &Record,
         linkage: &FourBar,
@@ -61,7 +62,7 @@ impl Scene {
         Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
     }
 
-    /// The box of the target points and what they are compared with.
+    /// Returns the box of the target points and the coupler points that they are compared with.
     pub(super) fn target_bounds(&self) -> Bounds {
         let mut bounds = Bounds::default();
         for target in &self.targets {
@@ -71,14 +72,14 @@ impl Scene {
         bounds
     }
 
-    /// The box of the target points and the coupler curve.
+    /// Returns the box of the target points and the coupler curve.
     pub(super) fn curve_bounds(&self) -> Bounds {
         let mut bounds = self.target_bounds();
         self.circuits.iter().flatten().for_each(|joints| bounds.hold(joints.coupler_point));
         bounds
     }
 
-    /// The box of everything, over the whole motion.
+    /// Returns the box of everything, over the whole motion.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = self.curve_bounds();
         if let Some(linkage) = &self.linkage {
@@ -93,28 +94,28 @@ impl Scene {
     }
 }
 
-/// The target points that can be drawn, each with where the coupler point is instead.
+/// Returns the target points that can be drawn, each with the coupler point's place at it.
 fn targets(record: &Record, reached: &dyn Fn(usize) -> Option<Complex>) -> Vec<Target> {
     let points = record.problem.resolved.task.path.points.iter().enumerate();
     let usable = points.filter(|(_, p)| p.iter().all(|x| x.abs() <= MAX_MAGNITUDE));
     usable.map(|(index, p)| Target { index, at: point(*p), reached: reached(index) }).collect()
 }
 
-/// Crank angle (radians) and assembly at each point that has both.
+/// Returns the crank angle (radians) and assembly at each point that has both.
 fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
     candidate.crank_deg.iter().map(|angle| angle.to_radians()).zip(candidate.t1_at.iter().copied()).collect()
 }
 
-/// The circuit of the first point: crank angle (radians) and assembly at any position of it.
+/// Returns a position on the circuit of the first point: crank angle (radians) and assembly.
 pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
     let first = positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite());
     first.unwrap_or_else(|| middle_position(&candidate.linkage))
 }
 
-/// A position in the middle of what the input of a linkage can reach; where the loop does not determine the follower
-/// there (C on B, as a rhombus has it at one crank angle), the nearest of others at which it can be joined.
+/// Returns a position in the middle of the input's range; if the loop does not determine the follower there (C on B, as
+/// in a rhombus at one crank angle), the nearest of several others at which the linkage can be assembled.
 pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
-    /// Parts of a half turn, or of half the arc, away from the middle.
+    /// Offsets from the middle, as fractions of a half turn or of half the arc.
     const ASIDE: [f64; 9] = [0.0, 1.0 / 3.0, -1.0 / 3.0, 0.5, -0.5, 2.0 / 3.0, -2.0 / 3.0, 0.1, -0.1];
     let arc = linkage.mobility().arc(crate::linkage::Circuit { index: 0 });
     let (middle, half) = arc.map_or((0.0, PI), |arc| (arc.middle, arc.half_width));
@@ -124,13 +125,13 @@ pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
     (joined.unwrap_or(middle), assembly)
 }
 
-/// The joints along every circuit on which a point is reached, `samples` positions each.
+/// Returns the joints along every circuit on which a point is reached, `samples` positions each.
 pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>> {
     let all = std::iter::once(first_position(candidate)).chain(positions(candidate));
     circuits_through(&candidate.linkage, all, samples)
 }
 
-/// The joints along every circuit that holds one of the positions (crank angle in radians, assembly).
+/// Returns the joints along every circuit that contains one of the positions (crank angle in radians, assembly).
 pub(crate) fn circuits_through(
     linkage: &FourBar,
     positions: impl IntoIterator<Item = (f64, AssemblyMode)>,
@@ -142,7 +143,7 @@ pub(crate) fn circuits_through(
     for (angle, assembly) in positions {
         let circuit = mobility.branch(angle, assembly).circuit;
         let rocks = mobility.arc(circuit).is_some();
-        // Where the input turns fully the assemblies are apart, where it rocks they are one circuit.
+        // If the input turns fully the assemblies are separate circuits; if it rocks they are one circuit.
         let key = (circuit.index, (!rocks).then_some(assembly));
         if !angle.is_finite() || seen.contains(&key) {
             continue;
@@ -162,10 +163,10 @@ pub(crate) fn circuits_through(
     circuits
 }
 
-/// The position at the first target point, or where that is hard to read (joints close together) the one at
+/// Returns the position at the first target point, or, if that is hard to read (joints close together), the one at
 /// which the closest two joints are farthest apart.
 fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
-    /// The first point is kept while its closest joints are at least this part of the best spacing.
+    /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
     let spacing = |joints: &Joints| {
         let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
@@ -179,19 +180,19 @@ fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<
             Some((Pose { target: Some(j), joints }, spacing(&joints)))
         })
         .collect();
-    // The first of equals.
+    // The first of equal ones.
     let best = poses.iter().rev().max_by(|x, y| x.1.total_cmp(&y.1))?;
     let first = poses.first()?;
     Some(if first.0.target == Some(0) && first.1 >= GOOD_ENOUGH * best.1 { first.0 } else { best.0 })
 }
 
-/// The distance of the closest two points.
+/// Returns the distance of the closest two points.
 pub(super) fn closest(all: &[Complex]) -> f64 {
     let pairs = (0..all.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
 }
 
-/// A box that grows.
+/// A bounding box, which grows with the points put into it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
     low: [f64; 2],
@@ -219,17 +220,17 @@ impl Bounds {
         self.hold(Complex::new(other.high[0], other.high[1]));
     }
 
-    /// 0 for an empty box.
+    /// Returns the width, 0 for an empty box.
     pub(super) fn width(&self) -> f64 {
         (self.high[0] - self.low[0]).max(0.0)
     }
 
-    /// 0 for an empty box.
+    /// Returns the height, 0 for an empty box.
     pub(super) fn height(&self) -> f64 {
         (self.high[1] - self.low[1]).max(0.0)
     }
 
-    /// The longer side.
+    /// Returns the longer side.
     pub(super) fn extent(&self) -> f64 {
         self.width().max(self.height())
     }
@@ -238,7 +239,7 @@ impl Bounds {
         self.width().hypot(self.height())
     }
 
-    /// The origin for an empty box.
+    /// Returns the centre, the origin for an empty box.
     pub(super) fn centre(&self) -> Complex {
         if self.low[0] > self.high[0] || self.low[1] > self.high[1] {
             return Complex::new(0.0, 0.0);
@@ -246,7 +247,7 @@ impl Bounds {
         Complex::new(0.5 * (self.low[0] + self.high[0]), 0.5 * (self.low[1] + self.high[1]))
     }
 
-    /// Larger by `part` of the longer side on every side; one unit wide where it had no extent.
+    /// Returns the box enlarged by `part` of the longer side on every side; one unit wide if it had no extent.
     pub(super) fn padded(&self, part: f64) -> Bounds {
         let pad = if self.extent() > 0.0 { part * self.extent() } else { 0.5 };
         let (c, w, h) = (self.centre(), 0.5 * self.width() + pad, 0.5 * self.height() + pad);
@@ -258,7 +259,7 @@ impl Bounds {
     }
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is at most `length`; 1 for what isn't positive.
+/// Returns the largest of 1, 2, 5 times a power of ten that is at most `length`; 1 if `length` is not positive.
 pub(super) fn round_length(length: f64) -> f64 {
     if !(length > 0.0 && length.is_finite()) {
         return 1.0;

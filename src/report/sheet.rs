@@ -1,4 +1,4 @@
-//! Framed drawings with a title each, laid out on one page.
+//! Sheets: framed drawings with a title each, laid out on one page.
 
 use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
 use super::scene::{Bounds, round_length};
@@ -7,38 +7,38 @@ use super::words;
 use crate::linkage::Complex;
 use crate::record::Unit;
 
-/// The width of a page and of the sheets on it.
+/// The width of a page and of the sheets on it, in pixels.
 const WIDTH: f64 = 1080.0;
 const MARGIN: f64 = 28.0;
 const GAP: f64 = 18.0;
 pub(super) const FULL: f64 = WIDTH - 2.0 * MARGIN;
 pub(super) const HALF: f64 = 0.5 * (FULL - GAP);
 
-/// Where the drawing of a sheet begins, below its title and note.
+/// The height at which the drawing of a sheet begins, below its title and note.
 pub(super) const HEAD: f64 = 54.0;
 /// The height of a line below the drawing.
 const LINE: f64 = 17.0;
-/// The sheets' own inner margin.
+/// The inner margin of a sheet.
 pub(super) const INSET: f64 = 16.0;
 
-/// Room for letters, stands and labels around the geometry.
+/// The padding for letters, stands and labels around the geometry.
 const PADDING: f64 = 40.0;
-/// Room for scale bars below the geometry.
+/// The space for scale bars below the geometry.
 pub(super) const FOOTER: f64 = 40.0;
-/// A drawing's height follows its shape between these.
+/// The allowed heights of a drawing, which follows its shape.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 230.0..=440.0;
 
-/// One framed drawing.
+/// A sheet: one framed drawing.
 pub(super) struct Sheet {
     pub(super) title: String,
     /// A line below the title.
     pub(super) note: String,
-    /// The drawing; its origin is the sheet's corner.
+    /// The drawing, with the origin at the sheet's corner.
     pub(super) body: Canvas,
-    /// Lines below the drawing.
+    /// The lines below the drawing.
     pub(super) foot: Vec<String>,
     pub(super) width: f64,
-    /// Where the drawing ends.
+    /// The height at which the drawing ends.
     pub(super) bottom: f64,
 }
 
@@ -47,7 +47,7 @@ impl Sheet {
         self.bottom + LINE * self.foot.len() as f64 + 10.0
     }
 
-    /// The sheet with its corner at `at`, in a frame of the height of its row.
+    /// Draws the sheet with its corner at `at`, in a frame of the height of its row.
     fn put(self, canvas: &mut Canvas, at: Spot, row_height: f64) {
         canvas.raw(&format!(r#"<g transform="translate({} {})">"#, px(at.x), px(at.y)));
         let frame = Area { x: 0.0, y: 0.0, width: self.width, height: row_height };
@@ -68,21 +68,21 @@ impl Sheet {
     }
 }
 
-/// The text, cut to what fits.
+/// Returns the text, cut to the width.
 pub(super) fn fitting(text: &str, font_size: f64, width: f64) -> String {
     // Running text is narrower than its widest letters.
     shortened(text, (1.04 * width / text_width("x", font_size)) as usize)
 }
 
-/// What stands above the sheets.
+/// The heading above the sheets.
 pub(super) struct Heading {
     pub(super) title: String,
-    /// To the right of the title.
+    /// The text to the right of the title.
     pub(super) standing: String,
     pub(super) lines: Vec<String>,
 }
 
-/// The sheets from left to right and from top to bottom on one page.
+/// Returns one page with the sheets from left to right and from top to bottom.
 pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
     let mut canvas = Canvas::default();
     let taken = text_width(&heading.standing, 14.0) + 20.0;
@@ -99,7 +99,7 @@ pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
     let mut row: Vec<Sheet> = Vec::new();
     let mut taken = 0.0;
     for sheet in sheets {
-        // Half a pixel: two halves and their gap make a full width up to rounding.
+        // Half a pixel of slack: two halves and their gap make a full width up to rounding.
         if !row.is_empty() && taken + sheet.width > FULL + 0.5 {
             y = put_row(&mut canvas, std::mem::take(&mut row), y);
             taken = 0.0;
@@ -111,7 +111,7 @@ pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
     canvas.document(WIDTH, y - GAP + MARGIN, &heading.title, &heading.lines.join("; "))
 }
 
-/// A row of sheets, all in frames of the same height; returns where the next one starts.
+/// Draws a row of sheets, all in frames of the same height; returns the height at which the next one starts.
 fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
     if row.is_empty() {
         return y;
@@ -126,7 +126,7 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
     y + height + GAP
 }
 
-/// A view of the box in a sheet of this width, and where the drawing ends (scale bars included).
+/// Returns a view of the box in a sheet of this width, and the height at which the drawing ends (scale bars included).
 pub(super) fn fitted(bounds: &Bounds, width: f64) -> (View, f64) {
     let room = width - 2.0 * PADDING;
     let wanted = room * bounds.height() / bounds.width().max(f64::MIN_POSITIVE) + 2.0 * PADDING;
@@ -135,17 +135,17 @@ pub(super) fn fitted(bounds: &Bounds, width: f64) -> (View, f64) {
     (View::fit(bounds, area.shrunk(PADDING)), HEAD + height + FOOTER)
 }
 
-/// The scale bar at the lower left of a drawing that ends at `bottom`.
+/// Draws the scale bar at the lower left of a drawing that ends at `bottom`.
 pub(super) fn scale_bar(canvas: &mut Canvas, view: &View, unit: Option<Unit>, width: f64, bottom: f64) {
     let length = round_length(0.22 * width / view.scale);
     let label = format!("{}{}", brief(length, 3), words::length_suffix(unit));
     canvas.scale_bar(Spot::new(INSET + 2.0, bottom - 12.0), length * view.scale, &label);
 }
 
-/// An arrow whose head ends at `to`; nothing where it has no length to be seen.
+/// Draws an arrow whose head ends at `to`; nothing if it is too short to be seen.
 pub(super) fn arrow(canvas: &mut Canvas, from: Spot, to: Spot, colour: &str) {
     let length = from.distance(to);
-    // NaN as well.
+    // NaN counts as too short as well.
     if length.is_nan() || length < 1.0 {
         return;
     }
@@ -163,7 +163,7 @@ pub(super) fn arrow(canvas: &mut Canvas, from: Spot, to: Spot, colour: &str) {
     canvas.path(&barbs, true, &format!(r#"fill="{colour}""#));
 }
 
-/// Points of an arc about a centre, radians from `from` to `to`.
+/// Returns points of an arc about a centre, radians from `from` to `to`.
 pub(super) fn arc(centre: Complex, radius: f64, from: f64, to: f64) -> impl Iterator<Item = Complex> {
     const STEPS: usize = 64;
     (0..=STEPS).map(move |i| {

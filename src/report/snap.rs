@@ -1,16 +1,16 @@
-//! What snapping cost, as text: before and after, and the next best.
+//! The cost of snapping as text: before and after, and the next best linkages.
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, exact, grouped, significant, wrapped};
 use crate::record::{Candidate, Unit};
 use crate::snap::{Length, Request, Snapped};
 
-/// The width of the page.
+/// The width of the page, in columns.
 const COLUMNS: usize = 100;
-/// Significant digits of lengths and errors.
+/// The number of significant digits of lengths and errors.
 const DIGITS: usize = 6;
 
-/// The table of one candidate before and after, the answers, and what the plain way would have cost.
+/// Returns the table of one candidate before and after, the linkages found, and the cost of plain rounding.
 pub fn snap_text(
     before: &Candidate,
     request: &Request,
@@ -106,7 +106,7 @@ fn dimensions(
         } else {
             ""
         };
-        // The ground stands in the pivots, to rounding.
+        // The ground follows from the pivots, up to rounding.
         let value = if stock { rounded(length.of(to)) } else { length.of(to) };
         row(length.key(), length.of(from), value, stock, note);
     }
@@ -122,7 +122,7 @@ fn dimensions(
     grid.render(colour)
 }
 
-/// A stock length without the last digits that its place in two pivots has cost.
+/// Returns a stock length without the last digits that were lost because it is stored as two pivots.
 fn rounded(value: f64) -> f64 {
     format!("{value:.12e}").parse().unwrap_or(value)
 }

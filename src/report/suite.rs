@@ -1,17 +1,17 @@
-//! A suite for the terminal and as Markdown: the same sheets, set twice.
+//! A suite for the terminal and as Markdown: the same tables in two formats.
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
 use super::text::{brief, clean, clean_sentence, grouped, percent_up, shortened, significant, wrapped};
 use crate::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
-/// Marks a problem with a sum that is smaller than the best known.
+/// The mark of a problem with a sum that is smaller than the best known.
 const SMALLER: &str = " *";
-/// Digits of figures that are named one by one.
+/// The number of digits of figures that are stated one by one.
 const DIGITS: usize = 10;
-/// Stands where there is no figure.
+/// The text for a missing figure.
 const NOTHING: &str = "-";
-/// Columns of a problem's name on a terminal.
+/// The width of a problem's name on a terminal, in columns.
 const NAME: usize = 30;
 
 const WHAT: &str = "sum of sq: the least sum of squared distances at the crank angles, of all seeds; median: \
@@ -26,7 +26,7 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
 
-/// A table before it is set.
+/// A table before it is formatted.
 struct Sheet {
     heads: &'static [(&'static str, Align)],
     rows: Vec<Vec<String>>,
@@ -54,12 +54,12 @@ impl Sheet {
     }
 }
 
-/// Foreign text as Markdown on one line, nothing in it a mark.
+/// Returns foreign text as Markdown on one line, with its markup characters escaped.
 fn markdown(text: &str) -> String {
     unmarked(&clean(text))
 }
 
-/// Clean text with nothing in it a mark.
+/// Returns clean text with its markup characters escaped.
 fn unmarked(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
@@ -71,7 +71,7 @@ fn unmarked(text: &str) -> String {
     out
 }
 
-/// A suite as text: the answers, what stands beside them, what to look at.
+/// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     let mut out = String::new();
     if !suite.problems.is_empty() {
@@ -98,8 +98,7 @@ pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     out
 }
 
-/// A suite as a Markdown page, with the command that makes it again and every published figure with its
-/// source.
+/// Returns a suite as a Markdown page, with the command that makes it again and every published figure with its source.
 pub fn suite_markdown(suite: &Suite) -> String {
     let paragraph = |text: &str| wrapped("", "", text, COLUMNS + 10) + "\n";
     let mut out = String::from("# Problems of the literature: what is found\n\n");
@@ -146,12 +145,12 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out
 }
 
-/// Whether certificates were asked for.
+/// Returns whether certificates were asked for.
 fn is_certified(suite: &Suite) -> bool {
     suite.problems.iter().any(|p| p.certificate.is_some() || p.no_certificate.is_some())
 }
 
-/// A sentence for each certificate, and for each that cannot be had.
+/// Returns a sentence for each certificate, and for each one that is not possible.
 fn proofs(suite: &Suite) -> Vec<String> {
     let told = |problem: &ProblemResult| {
         let name = clean(&problem.name);
@@ -276,8 +275,8 @@ fn published(suite: &Suite) -> Sheet {
     }
 }
 
-/// What a reader must not miss: a goal that is not the best known, something smaller than the best known, seeds
-/// without an answer, an interruption.
+/// Returns the notes that a reader must not miss: a goal that is not the best known sum, a sum smaller than the best
+/// known, seeds without an answer, an interruption.
 fn notes(suite: &Suite) -> Vec<String> {
     let mut notes = Vec::new();
     for problem in &suite.problems {
@@ -320,7 +319,7 @@ fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or(NOTHING.into(), |value| significant(value, digits))
 }
 
-/// The printed sum with the digits that were printed.
+/// Returns the printed sum with the printed digits.
 fn printed(entry: &PublishedResult) -> String {
     entry.printed_sum_sq.map_or(NOTHING.into(), |sum_sq| brief(sum_sq, DIGITS))
 }

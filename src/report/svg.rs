@@ -1,5 +1,5 @@
-//! One candidate as a drawing: a self-contained SVG with the linkage, its coupler curve, the target and the
-//! figures. A target that is small beside its linkage gets an enlarged view of its own.
+//! The drawing of one candidate: a self-contained SVG with the linkage, its coupler curve, the target and the figures.
+//! A target that is small beside its linkage has an enlarged view of its own.
 
 use super::beside;
 use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
@@ -12,16 +12,16 @@ use crate::record::{Candidate, Record};
 
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 30.0;
-/// The drawing's height follows its shape between these.
+/// The allowed heights of the drawing, which follows its shape.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 320.0..=620.0;
-/// Room for letters and stands around the geometry.
+/// The padding for letters and stands around the geometry.
 const PADDING: f64 = 34.0;
-/// Below this part of the frame the target is drawn again, enlarged.
+/// The fraction of the frame below which the target is drawn again, enlarged.
 const SMALL_TARGET: f64 = 0.2;
-/// The most samples of the coupler curve in the enlarged view.
+/// The largest number of samples of the coupler curve in the enlarged view.
 const MOST_SAMPLES: usize = 144_000;
 
-/// The drawing of `record.candidates[index]`; the target alone where there is no such candidate.
+/// Returns the drawing of `record.candidates[index]`; only the target if there is no such candidate.
 pub fn candidate_svg(record: &Record, index: usize) -> String {
     let candidate = record.candidates.get(index);
     let scene = Scene::new(record, candidate);
@@ -67,13 +67,13 @@ pub fn candidate_svg(record: &Record, index: usize) -> String {
     canvas.document(WIDTH, bottom + 18.0, &format!("{title}, {}", standing(record, candidate)), &description)
 }
 
-/// `candidate 1 of 5`.
+/// Returns a text such as `candidate 1 of 5`.
 fn standing(record: &Record, candidate: Option<&Candidate>) -> String {
     candidate
         .map_or("no candidate".to_owned(), |c| format!("candidate {} of {}", c.rank, record.candidates.len()))
 }
 
-/// Title, standing and source; returns where the drawing starts.
+/// Draws title, rank and source; returns the height at which the drawing starts.
 fn heading(canvas: &mut Canvas, record: &Record, candidate: Option<&Candidate>, title: &str) -> f64 {
     let room = WIDTH - 2.0 * MARGIN;
     let standing = standing(record, candidate);
@@ -93,7 +93,7 @@ fn heading(canvas: &mut Canvas, record: &Record, candidate: Option<&Candidate>, 
     }
 }
 
-/// The target and the curve beside it, in a panel that is tied to its place in the drawing.
+/// Draws the target and the curve beside it, in a panel that is connected to its place in the drawing.
 fn enlarged(
     canvas: &mut Canvas,
     record: &Record,
@@ -105,7 +105,7 @@ fn enlarged(
     let bounds = scene.target_bounds().padded(0.06);
     let inside = Area { x: 0.0, y: 0.0, width: panel.width, height: panel.height };
     let zoom = View::fit(&bounds, inside.shrunk(PADDING));
-    // What the panel shows, in the plane and then in the drawing.
+    // The area that the panel shows, in the plane and then in the drawing.
     let (half_width, half_height) =
         (0.5 * panel.width / zoom.scale * view.scale, 0.5 * panel.height / zoom.scale * view.scale);
     let centre = view.spot(bounds.centre());
@@ -151,14 +151,14 @@ fn enlarged(
     canvas.area(panel, &format!(r#"fill="none" stroke="{}" stroke-width="1.2" rx="3""#, palette::MUTED));
 }
 
-/// A bar of a round length, at most `most` pixels long.
+/// Draws a bar of a round length, at most `most` pixels long.
 fn scale_bar(canvas: &mut Canvas, record: &Record, view: &View, at: Spot, most: f64) {
     let length = round_length(most / view.scale);
     let label = format!("{}{}", brief(length, 3), words::unit_suffix(record));
     canvas.scale_bar(at, length * view.scale, &label);
 }
 
-/// What the marks are, from the right.
+/// Draws the legend of the marks, from the right.
 fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
     let text = format!(r#"font-size="12" fill="{}""#, palette::INK);
     let mut x = WIDTH - MARGIN;
@@ -179,7 +179,7 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
     }
 }
 
-/// The figures in words: errors, then the linkage.
+/// Returns the figures in words: errors, then the linkage.
 fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
     let unit = words::unit_suffix(record);
     let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
@@ -205,7 +205,7 @@ fn figures(record: &Record, candidate: &Candidate) -> [String; 2] {
     ]
 }
 
-/// The figures under the drawing; returns where they end.
+/// Draws the figures under the drawing; returns the height at which they end.
 fn caption(
     canvas: &mut Canvas,
     record: &Record,

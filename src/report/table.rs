@@ -1,4 +1,4 @@
-//! What `synth` prints: the candidates of a run, or one line a file for a batch.
+//! The output of `synth`: the candidates of a run, or one line for each file of a batch.
 
 use super::beside;
 use super::grid::{Align, Colour, Grid, Ink};
@@ -9,14 +9,14 @@ use crate::problem::spec::Measure;
 use crate::record::{Candidate, Record, Unit};
 use crate::task::Defect;
 
-/// The candidates whose distances from the given points are told.
+/// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
 
-/// The width that everything is laid out for.
+/// The width of all text output, in columns.
 pub const COLUMNS: usize = 100;
 
-/// The candidates of a run: what was asked, a row for each, why the others weren't accepted, the best linkage
-/// to copy, and how the search ended.
+/// Returns the candidates of a run: the problem, a row for each candidate, the reasons why the others were not
+/// accepted, the best linkage to copy, and the end of the search.
 pub fn candidates_table(record: &Record, colour: Colour) -> String {
     let mut out = heading(record, colour);
     out.push('\n');
@@ -39,7 +39,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     out
 }
 
-/// Name, source, points, size, timing.
+/// Returns name, source, points, size and timing.
 fn heading(record: &Record, colour: Colour) -> String {
     let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
     out.push('\n');
@@ -50,7 +50,7 @@ fn heading(record: &Record, colour: Colour) -> String {
     out
 }
 
-/// `18 points, size 1.082 m, prescribed timing, offset free, closed`.
+/// Returns a text such as `18 points, size 1.082 m, prescribed timing, offset free, closed`.
 pub(super) fn facts(record: &Record) -> String {
     let path = &record.problem.resolved.task.path;
     let mut facts = vec![count(path.points.len(), "point")];
@@ -79,7 +79,8 @@ fn rows(record: &Record, colour: Colour) -> String {
     use Align::{Left, Right};
     let measure = record.problem.resolved.measure();
     let ranks = words::minimised(measure);
-    // Beside a largest part of the tolerances stands its own point, which need not be that of the largest error.
+    // Beside the largest part of the tolerances the table shows that part's point, which need not be that of the
+    // largest error.
     let parts = measure == Measure::LargestPart;
     let mut grid = Grid::new(&[
         ("#", Right),
@@ -121,17 +122,18 @@ fn rows(record: &Record, colour: Colour) -> String {
     grid.render(colour)
 }
 
-/// The point that ranks: of the largest error, or of the largest in parts of the tolerances where these are minimised.
+/// Returns the point that decides the rank: that of the largest error, or of the largest in parts of the tolerances if
+/// these are minimised.
 pub(super) fn worst_at(record: &Record, candidate: &Candidate) -> usize {
     let parts = record.problem.resolved.measure() == Measure::LargestPart;
     let worst = if parts { words::worst_in_parts(record, candidate) } else { None };
     worst.unwrap_or(candidate.error.max_at)
 }
 
-/// What the columns mean and why candidates weren't accepted.
+/// Returns the meaning of the columns and the reasons why candidates were not accepted.
 fn notes(record: &Record) -> String {
     let unit = record.problem.unit.map_or(String::new(), |unit| {
-        // "in in" would be read twice.
+        // "in in" would look like a mistake.
         format!(" Lengths in {}.", if unit == Unit::In { "inches" } else { unit.label() })
     });
     let mut out = String::from("\n");
@@ -156,7 +158,7 @@ fn notes(record: &Record) -> String {
         out.push('\n');
         out.push_str(&wrapped("  ", "  ", &sentence, COLUMNS));
     }
-    // A hundred refusals for the same reason are one line.
+    // A hundred refusals for the same reason are combined into one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
     for candidate in record.candidates.iter().filter(|c| !c.accepted) {
         let objections = words::objections(record, candidate);
@@ -176,7 +178,7 @@ fn notes(record: &Record) -> String {
     out
 }
 
-/// How near the curves come to the points as they were given, before smoothing and resampling.
+/// Returns the distances of the curves from the points as they were given, before smoothing and resampling.
 pub(super) fn against_raw(record: &Record) -> Option<String> {
     let raw = record.problem.resolved.task.path.raw.as_ref()?;
     let unit = words::unit_suffix(record);
@@ -195,7 +197,7 @@ pub(super) fn against_raw(record: &Record) -> Option<String> {
         .then(|| format!("From the {points} as given to the whole coupler curve: {}.", list.join("; ")))
 }
 
-/// The best linkage: its motion in words, its parameters as TOML.
+/// Returns the best linkage: its motion in words, and its parameters as TOML.
 fn best(record: &Record) -> String {
     let Some(candidate) = record.candidates.first() else { return String::new() };
     let mut out = format!("\n  Best linkage (#{})", candidate.rank);
@@ -207,8 +209,8 @@ fn best(record: &Record) -> String {
     out
 }
 
-/// `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°, clockwise, and back the same way`, or
-/// `crank between 11.459° and 51.566°, to and fro`.
+/// Returns the motion of the crank: `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°,
+/// clockwise, and back the same way`, or `crank between 11.459° and 51.566°, to and fro`.
 pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     let angles = &candidate.crank_deg;
     let (first, last) = (*angles.first()?, *angles.last()?);
@@ -234,7 +236,7 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     Some(format!("crank from {}° to {}°, {way}{way_back}", brief(first, 5), brief(last, 5)))
 }
 
-/// The linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
+/// Returns the linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
 fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
     let pair = |p: crate::linkage::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
@@ -254,12 +256,12 @@ fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
     wrapped("    linkage = { ", "      ", &unbroken, columns).replace('\u{a0}', " ")
 }
 
-/// Method, seed, cost, why it ended.
+/// Returns method, seed, cost and the reason why the search ended.
 fn ending(record: &Record) -> String {
     wrapped("  ", "  ", &ending_sentences(record), COLUMNS)
 }
 
-/// Method, seed, cost, why it ended, on one line.
+/// Returns method, seed, cost and the reason why the search ended, on one line.
 pub fn ending_sentences(record: &Record) -> String {
     let reason = if record.method.used == ["continuation"] && record.termination.reproducible {
         "every solution path was followed to its end"
@@ -285,22 +287,22 @@ pub fn ending_sentences(record: &Record) -> String {
 /// One file of a batch.
 #[derive(Clone, Copy, Debug)]
 pub struct BatchRow<'a> {
-    /// What to call it.
+    /// The name of the file or problem.
     pub name: &'a str,
-    /// What came of it.
+    /// The outcome.
     pub outcome: BatchOutcome<'a>,
 }
 
-/// What came of one file of a batch.
+/// The outcome of one file of a batch.
 #[derive(Clone, Copy, Debug)]
 pub enum BatchOutcome<'a> {
-    /// It ran.
+    /// The file was run.
     Ran(&'a Record),
-    /// It couldn't run, for this reason.
+    /// The file could not be run, for this reason.
     Refused(&'a str),
 }
 
-/// A row for each file of a batch and a line that counts them.
+/// Returns a row for each file of a batch and a line with the counts.
 pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
     use Align::{Left, Right};
     let mut grid = Grid::new(&[

@@ -1,14 +1,14 @@
-//! Numbers and foreign text made fit for a terminal, for XML and for a spreadsheet.
+//! Formatting of numbers and foreign text for a terminal, for XML and for a spreadsheet.
 
 use std::fmt::Write;
 
-/// What stands in place of a number that isn't finite.
+/// The text for a number that is not finite.
 pub const NO_NUMBER: &str = "-";
 
-/// Decimal exponents that are written without `e`: 0.0001 up to below a million.
+/// The decimal exponents that are written without `e`: 0.0001 up to below a million.
 const PLAIN_EXPONENTS: std::ops::RangeInclusive<i32> = -4..=5;
 
-/// `value` with `digits` significant digits, such as `0.02240`, `31.42`, `7.416e-7`; 0 is `0`.
+/// Returns `value` with `digits` significant digits, such as `0.02240`, `31.42`, `7.416e-7`; 0 is `0`.
 ///
 /// ```
 /// use linkwright::report::text::significant;
@@ -35,7 +35,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     format!("{value:.decimals$}")
 }
 
-/// [`significant`] of a positive number, rounded so that what is shown is never more than it is.
+/// Returns a positive number as [`significant`] does, rounded so that the text is never more than the number.
 ///
 /// ```
 /// use linkwright::report::text::{at_least, at_most};
@@ -46,22 +46,22 @@ pub fn at_most(value: f64, digits: usize) -> String {
     on_one_side(value, digits, -1.0, |shown| shown <= value)
 }
 
-/// [`significant`] of a positive number, rounded so that what is shown is never less than it is.
+/// Returns a positive number as [`significant`] does, rounded so that the text is never less than the number.
 pub fn at_least(value: f64, digits: usize) -> String {
     on_one_side(value, digits, 1.0, |shown| shown >= value)
 }
 
-/// A gap in per cent with two digits, never less than it is.
+/// Returns a gap in per cent with two digits, never less than the gap itself.
 pub fn percent_up(gap: f64) -> String {
     let percent = 100.0 * gap;
-    // The product is rounded; the digits that are shown, two places further, are compared with the gap itself.
+    // The product is rounded, so the text, with the point moved by two places, is compared with the gap itself.
     without_zeros(&on_one_side(percent, 2, 1.0, |shown| {
         let (mantissa, exponent) = split(&format!("{shown:e}"));
         format!("{mantissa}e{}", exponent - 2).parse().is_ok_and(|shown: f64| shown >= gap)
     }))
 }
 
-/// [`significant`], and one unit of the last digit further (`way`) where that is not right.
+/// Returns [`significant`] of a number, or one unit of the last digit further (`way`) if that is not right.
 fn on_one_side(value: f64, digits: usize, way: f64, is_right: impl Fn(f64) -> bool) -> String {
     let text = significant(value, digits);
     if text.parse().map_or(true, is_right) {
@@ -69,17 +69,17 @@ fn on_one_side(value: f64, digits: usize, way: f64, is_right: impl Fn(f64) -> bo
     }
     let (_, exponent) = split(&format!("{value:e}"));
     let unit = 10.0_f64.powi(exponent + 1 - digits as i32);
-    // The nearest was at most half a unit on the wrong side.
+    // The nearest text was at most half a unit on the wrong side.
     significant(value + 0.75 * way * unit, digits)
 }
 
-/// Mantissa and exponent of a number in the form `1.5e-3`.
+/// Returns mantissa and exponent of a number in the form `1.5e-3`.
 fn split(scientific: &str) -> (String, i32) {
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((scientific, "0"));
     (mantissa.to_owned(), exponent.parse().unwrap_or(0))
 }
 
-/// As [`significant`] without zeros at the end of the decimals: `30`, `0.5`.
+/// Returns a number as [`significant`] does, without zeros at the end of the decimals: `30`, `0.5`.
 pub fn brief(value: f64, digits: usize) -> String {
     without_zeros(&significant(value, digits))
 }
@@ -97,7 +97,7 @@ fn without_zeros(text: &str) -> String {
     }
 }
 
-/// The shortest text that reads back as the same number; empty for a number that isn't finite.
+/// Returns the shortest text that reads back as the same number; empty for a number that is not finite.
 ///
 /// ```
 /// use linkwright::report::text::exact;
@@ -109,10 +109,10 @@ pub fn exact(value: f64) -> String {
     text
 }
 
-/// Appends [`exact`] of a number.
+/// Appends a number as [`exact`] writes it.
 pub(super) fn push_exact(text: &mut String, value: f64) {
     let start = text.len();
-    // Where both write the digits without an exponent, zmij is several times as fast as `fmt`.
+    // If both write the digits without an exponent, zmij is several times as fast as `fmt`.
     let plain = value == 0.0 || (1e-4..1e15).contains(&value.abs());
     if plain {
         text.push_str(zmij::Buffer::new().format_finite(value));
@@ -125,7 +125,7 @@ pub(super) fn push_exact(text: &mut String, value: f64) {
     }
 }
 
-/// A whole number in groups of three: `12,345`.
+/// Returns a whole number in groups of three digits: `12,345`.
 pub fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
@@ -138,14 +138,14 @@ pub fn grouped(value: u64) -> String {
     text
 }
 
-/// The longest foreign text that is shown.
+/// The largest number of characters of foreign text that are shown.
 pub const LONGEST_TEXT: usize = 200;
-/// The longest sentence that is shown whole.
+/// The largest number of characters of a sentence that is shown whole.
 const LONGEST_SENTENCE: usize = 800;
 
-/// Foreign text on one line, without anything that commands a terminal or turns the reading direction:
-/// control characters become a space or nothing, runs of spaces one space, and what exceeds
-/// [`LONGEST_TEXT`] characters is cut.
+/// Returns foreign text on one line, without characters that act on a terminal or change the reading direction: control
+/// characters become a space or nothing, runs of spaces one space, and the text is cut after [`LONGEST_TEXT`]
+/// characters.
 ///
 /// ```
 /// assert_eq!(linkwright::report::text::clean("a\x1b[31mb\n c\u{202e}"), "a[31mb c");
@@ -154,14 +154,14 @@ pub fn clean(text: &str) -> String {
     clean_to(text, LONGEST_TEXT)
 }
 
-/// As [`clean`] for sentences, which may be longer.
+/// Cleans text as [`clean`] does, for sentences, which may be longer.
 pub(super) fn clean_sentence(text: &str) -> String {
     clean_to(text, LONGEST_SENTENCE)
 }
 
 fn clean_to(text: &str, longest: usize) -> String {
     let mut clean = String::new();
-    // Far more than is shown: a name of a gigabyte costs no more than this.
+    // Far more than is shown, but limited: even a name of a gigabyte costs no more than this.
     for c in text.chars().take(16 * longest) {
         if c.is_whitespace() {
             if !clean.ends_with(' ') {
@@ -174,7 +174,7 @@ fn clean_to(text: &str, longest: usize) -> String {
     shortened(clean.trim(), longest)
 }
 
-/// Marks of reading direction, joiners, separators, tags and non-characters.
+/// Returns whether a character is a mark of reading direction, a joiner, a separator, a tag or a non-character.
 fn is_invisible(c: char) -> bool {
     matches!(c,
         '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
@@ -183,7 +183,7 @@ fn is_invisible(c: char) -> bool {
         || (c as u32) & 0xfffe == 0xfffe
 }
 
-/// At most `columns` columns of a text, with an ellipsis where it was cut.
+/// Returns at most `columns` columns of a text, with an ellipsis if it was cut.
 pub fn shortened(text: &str, columns: usize) -> String {
     if columns_of(text) <= columns {
         return text.to_owned();
@@ -202,18 +202,18 @@ pub fn shortened(text: &str, columns: usize) -> String {
     short
 }
 
-/// As [`shortened`], cut in front: of a path the end tells most.
+/// Shortens a text as [`shortened`] does, but at its beginning: the end of a path is the most useful part.
 pub fn shortened_in_front(text: &str, columns: usize) -> String {
     let reversed: String = text.chars().rev().collect();
     shortened(&reversed, columns).chars().rev().collect()
 }
 
-/// How many columns of a terminal a text takes.
+/// Returns the number of columns of a terminal that a text occupies.
 pub fn columns_of(text: &str) -> usize {
     text.chars().map(columns_of_char).sum()
 }
 
-/// 0 for combining marks, 2 for the blocks that terminals draw wide, else 1.
+/// Returns 0 for combining marks, 2 for the blocks that terminals draw wide, otherwise 1.
 fn columns_of_char(c: char) -> usize {
     match c as u32 {
         0x300..=0x36f | 0x1ab0..=0x1aff | 0x20d0..=0x20ff | 0xfe00..=0xfe0f => 0,
@@ -230,7 +230,7 @@ fn columns_of_char(c: char) -> usize {
     }
 }
 
-/// Cleaned foreign text as XML character data or attribute value.
+/// Returns cleaned foreign text as XML character data or attribute value.
 ///
 /// ```
 /// assert_eq!(linkwright::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
@@ -250,13 +250,13 @@ pub fn xml(text: &str) -> String {
     escaped
 }
 
-/// Cleaned foreign text for a CSV cell: what a spreadsheet would take for a formula gets an apostrophe.
+/// Returns cleaned foreign text for a CSV cell: a text that a spreadsheet would take for a formula gets an apostrophe.
 pub fn cell(text: &str) -> String {
     let clean = clean(text);
     if clean.starts_with(['=', '+', '-', '@']) { format!("'{clean}") } else { clean }
 }
 
-/// Words in lines of at most `columns` columns, each after `indent`, the first after `lead`.
+/// Returns words in lines of at most `columns` columns, each after `indent`, the first after `lead`.
 pub fn wrapped(lead: &str, indent: &str, text: &str, columns: usize) -> String {
     let mut out = String::new();
     let mut line = lead.to_owned();
@@ -329,12 +329,12 @@ mod tests {
                 if i % 2 == 0 { -6.0 + 24.0 * unit(&mut random) } else { -3.0 + 6.0 * unit(&mut random) };
             let mut value = (unit(&mut random) - 0.5) * 10_f64.powf(exponent);
             if i % 3 == 0 {
-                // Few digits, as people write them.
+                // Few digits, as people write numbers.
                 value = format!("{value:.4}").parse().expect("a number");
             }
             let shown = format!("{value:?}");
             let shown = shown.strip_suffix(".0").unwrap_or(&shown);
-            // Of two as short and as near either may be written; zmij takes the even one, as the record does.
+            // Of two equally short and near texts either may be written; zmij takes the even one, as the record does.
             let same = exact(value) == shown || (exact(value).len() == shown.len() && shown.len() > 15);
             assert!(same, "{value:?}: {}", exact(value));
             assert_eq!(exact(value).parse(), Ok(value));

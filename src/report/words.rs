@@ -5,7 +5,7 @@ use crate::problem::spec::{Measure, TransmissionOver};
 use crate::record::{Candidate, Figure, Reason, Record, Requirement, Unit};
 use crate::task::{AngleOffset, Defect};
 
-/// One reason why a candidate isn't accepted.
+/// An objection: one reason why a candidate is not accepted.
 pub(super) struct Objection {
     /// A word for a narrow column: `transmission`.
     pub(super) key: String,
@@ -13,7 +13,8 @@ pub(super) struct Objection {
     pub(super) sentence: String,
 }
 
-/// Why a candidate isn't accepted, in the order: requirements, defects, tolerance. Empty for an accepted one.
+/// Returns the reasons why a candidate is not accepted, in the order: requirements, defects, tolerance. Empty for an
+/// accepted one.
 pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objection> {
     if candidate.accepted {
         return Vec::new();
@@ -39,7 +40,7 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
     list
 }
 
-/// A defect as a sentence part.
+/// Returns a defect as a sentence part.
 pub(super) fn of_defect(defect: &Defect) -> String {
     match defect {
         Defect::Order { .. } if defect.is_to_and_fro() => {
@@ -53,7 +54,8 @@ pub(super) fn of_defect(defect: &Defect) -> String {
     }
 }
 
-/// `point 3`, `points 3, 7 and 9`, `points 1 to 17`, `points 0, 2, 5, 8, 11 and 4 more`.
+/// Returns a list of points such as `point 3`, `points 3, 7 and 9`, `points 1 to 17`, `points 0, 2, 5, 8, 11 and 4
+/// more`.
 fn points(at: &[usize]) -> String {
     const SHOWN: usize = 5;
     match at {
@@ -86,7 +88,7 @@ fn of_requirement(requirement: &Requirement) -> Objection {
         "pivots_in" => ("pivots", format!("fixed pivots span [{value}], outside of [{limit}]")),
         "footprint_in" => ("footprint", format!("the motion spans [{value}], outside of [{limit}]")),
         "direction" => ("direction", format!("turns {value}, {limit} asked")),
-        // Where the record can be evaluated the sentence names the point.
+        // If the record can be evaluated, the sentence names the point.
         "tolerance" => ("tolerance", format!("error {value}, tolerance {limit}")),
         other => {
             if let (Some(key), Figure::Numbers(_)) = (other.strip_prefix("design."), &requirement.limit) {
@@ -118,14 +120,14 @@ pub(super) fn figure(figure: &Figure, number: fn(f64) -> String) -> String {
     }
 }
 
-/// An error at a point beside the tolerance there.
+/// A deviation: the error at a point, with the tolerance there.
 struct Deviation {
     point: usize,
     error: f64,
     tolerance: f64,
 }
 
-/// The errors of a candidate at its points, where tolerances were asked.
+/// Returns the errors of a candidate at its points, if tolerances were asked for.
 fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
     let path = &record.problem.resolved.task.path;
     let Some(tolerance) = path.tolerance.as_ref() else { return Vec::new() };
@@ -141,24 +143,24 @@ fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
 }
 
 impl Deviation {
-    /// The error in parts of its tolerance; 0 where there is none.
+    /// Returns the error in parts of its tolerance; 0 if there is no error.
     fn part(&self) -> f64 {
         if self.error == 0.0 { 0.0 } else { self.error / self.tolerance }
     }
 }
 
-/// The deviation that is the largest part of its tolerance; of equals the first.
+/// Returns the deviation that is the largest part of its tolerance; of equal ones the first.
 fn worst(list: &[Deviation]) -> Option<&Deviation> {
     list.iter().max_by(|x, y| x.part().total_cmp(&y.part()).then(y.point.cmp(&x.point)))
 }
 
-/// Whether a candidate keeps to the tolerances, and by how much and where the nearest does not: a sentence or two;
-/// `None` where no tolerance was asked.
+/// Returns whether a candidate keeps to the tolerances, and if none does, by how much and at which point the nearest
+/// one exceeds them: a sentence or two; `None` if no tolerance was asked for.
 pub(super) fn tolerances(record: &Record) -> Option<String> {
     let band = |candidate: &Candidate| {
         worst(&deviations(record, candidate)).map_or(f64::NEG_INFINITY, Deviation::part)
     };
-    // Among the candidates that keep to everything else, if there are any.
+    // Among the candidates that meet everything else, if there are any.
     let otherwise_good = |c: &&Candidate| {
         let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
         !forbidden && c.requirements.iter().all(|r| r.met || r.name == "tolerance")
@@ -198,14 +200,15 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     );
     let least = band(&best);
     if least.is_finite() {
-        // Never rounded down to what was not found.
+        // Rounded up, so that the text never promises a narrower band than was found.
         let shown = brief((least * 1e4).ceil() / 1e4, 6);
         text.push_str(&format!(" The narrowest band found is {shown} times the tolerances."));
     }
     Some(text)
 }
 
-/// The point whose error is the largest part of its tolerance, where one was asked and is exceeded.
+/// Returns the objection about the point whose error is the largest part of its tolerance, if tolerances were asked for
+/// and are exceeded.
 fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
     let list = deviations(record, candidate);
     let worst = worst(&list)?;
@@ -221,7 +224,7 @@ fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
     })
 }
 
-/// What was minimised where it is not the plain sum of squares: the head of its column and a sentence on it.
+/// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it.
 pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)> {
     match measure {
         Measure::Sum => None,
@@ -240,12 +243,12 @@ pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)
     }
 }
 
-/// The point whose error is the largest in parts of its tolerance, where tolerances were asked.
+/// Returns the point whose error is the largest in parts of its tolerance, if tolerances were asked for.
 pub(super) fn worst_in_parts(record: &Record, candidate: &Candidate) -> Option<usize> {
     worst(&deviations(record, candidate)).map(|worst| worst.point)
 }
 
-/// Why fewer candidates are listed than were asked for; `None` where there are as many, or none at all.
+/// Returns the reason why fewer candidates are listed than were asked for; `None` if there are as many, or none at all.
 pub(super) fn fewer(record: &Record) -> Option<String> {
     let (listed, asked) = (record.candidates.len(), record.problem.resolved.solve.candidates);
     // Snapped and hand-made linkages come from no search.
@@ -276,7 +279,7 @@ pub(super) fn fewer(record: &Record) -> Option<String> {
     Some(text)
 }
 
-/// `accepted`, or `no: transmission, order`, or `no: transmission +2`.
+/// Returns `accepted`, or `no: transmission, order`, or `no: transmission +2`.
 pub(super) fn verdict(record: &Record, candidate: &Candidate) -> String {
     let objections = objections(record, candidate);
     match objections.as_slice() {
@@ -291,12 +294,12 @@ pub(super) fn verdict(record: &Record, candidate: &Candidate) -> String {
     }
 }
 
-/// `order, branch`.
+/// Returns the names of the defects: `order, branch`.
 pub(super) fn defect_names(candidate: &Candidate) -> String {
     candidate.defects.iter().map(Defect::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Over which motion a transmission angle was judged.
+/// Returns the motion over which a transmission angle was judged.
 pub(super) fn over(over: TransmissionOver) -> &'static str {
     match over {
         TransmissionOver::Cycle => "cycle",
@@ -304,7 +307,7 @@ pub(super) fn over(over: TransmissionOver) -> &'static str {
     }
 }
 
-/// As it stands in records: `time-limit`.
+/// Returns the reason as it is written in records: `time-limit`.
 pub(super) fn reason_name(reason: Reason) -> &'static str {
     match reason {
         Reason::Converged => "converged",
@@ -318,7 +321,7 @@ pub(super) fn reason_name(reason: Reason) -> &'static str {
     }
 }
 
-/// Why the search ended, as a clause after "ended:".
+/// Returns the reason why the search ended, as a clause after "ended:".
 pub(super) fn reason(reason: Reason) -> &'static str {
     match reason {
         Reason::Converged => "converged, the best answer was found again and again from different starts",
@@ -334,14 +337,14 @@ pub(super) fn reason(reason: Reason) -> &'static str {
     }
 }
 
-/// Said where a run was asked for its answers alone: what is missing then was not looked for.
+/// Returns the sentence for a run without advice: its missing parts were not looked for.
 pub(super) fn without_advice(record: &Record) -> Option<&'static str> {
     let said = "No advice was asked for (solve.advice = false): what conflicts, what can be built and what limits cost \
                 was not looked for.";
     (!record.problem.resolved.solve.advice).then_some(said)
 }
 
-/// The timing of the target.
+/// Returns the timing of the target.
 pub(super) fn timing(record: &Record) -> &'static str {
     match record.problem.resolved.task.path.timing.as_ref().map(|timing| timing.offset) {
         None => "free timing",
@@ -351,23 +354,23 @@ pub(super) fn timing(record: &Record) -> &'static str {
     }
 }
 
-/// The problem's name; never empty.
+/// Returns the problem's name; never empty.
 pub(super) fn problem_name(record: &Record) -> String {
     let name = clean(&record.problem.name);
     if name.is_empty() { "unnamed problem".to_owned() } else { name }
 }
 
-/// ` mm`, or nothing where lengths have no unit.
+/// Returns ` mm`, or nothing if lengths have no unit.
 pub(super) fn unit_suffix(record: &Record) -> String {
     length_suffix(record.problem.unit)
 }
 
-/// ` mm`, or nothing without a unit.
+/// Returns ` mm`, or nothing without a unit.
 pub(super) fn length_suffix(unit: Option<Unit>) -> String {
     unit.map_or(String::new(), |unit| format!(" {}", unit.label()))
 }
 
-/// The names of what stands in the way of acceptance, for files: the problem file's keys where they exist.
+/// Returns the names of the obstacles to acceptance, for files: the problem file's keys if there are any.
 pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
     let forbidden = candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect));
     let mut names: Vec<String> = forbidden.map(|defect| defect.name().to_owned()).collect();

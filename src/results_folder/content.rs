@@ -1,21 +1,21 @@
-//! The contents of a result's files: a file of a user under one of their names is told from them and stays.
+//! Recognition of a result's files by their contents: a user's file with the name of such a file is left alone.
 
 use crate::generator::FileKind;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// So much of a file is looked at; linkage files are smaller.
+/// The number of bytes of a file that are examined; linkage files are smaller.
 const HEAD: u64 = 1 << 16;
-/// The beginnings of the tables, whose columns may become more.
+/// The beginnings of the header rows of the tables, to which columns may be added.
 const CANDIDATES: &[u8] = b"rank,accepted,";
 const CURVE: &[u8] = b"crank_deg,t1,";
-/// The drawings of versions that wrote no mark yet.
+/// The beginning of drawings by versions that did not write a mark yet.
 const UNMARKED_DRAWING: &[u8] =
     b"font-family=\"Inter, 'Helvetica Neue', Helvetica, Arial, 'DejaVu Sans', sans-serif\">";
 
-/// Whether the file of this name holds what a run writes under it. An empty file is one that a machine has lost; records
-/// and files of a search half done are judged where they are read.
+/// Returns whether the file of this name contains what a run writes under it. An empty file counts: a crash of the
+/// machine may have lost its contents. Records and files of an unfinished search are checked when they are read.
 pub(super) fn is_of_a_run(path: &Path, name: &str) -> bool {
     let known: fn(&[u8]) -> bool = match name {
         "timing.json" => is_timing,
@@ -30,7 +30,7 @@ pub(super) fn is_of_a_run(path: &Path, name: &str) -> bool {
     match File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head)) {
         Ok(0) => true,
         Ok(_) => known(&head),
-        // One that has vanished is a neighbour's; one that cannot be read cannot be told from a user's.
+        // A file that has vanished was another run's; a file that cannot be read might be a user's.
         Err(e) => e.kind() == std::io::ErrorKind::NotFound,
     }
 }

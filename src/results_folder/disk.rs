@@ -1,79 +1,79 @@
-//! What is done to the disk, a step each, so that tests can let every step fail in turn.
+//! Disk operations, one step each, so that tests can let every step fail in turn.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// A new folder.
+/// Creates a folder.
 pub(super) fn create_folder(path: &Path) -> io::Result<()> {
     step()?;
     fs::create_dir(path)
 }
 
-/// A folder with those above it, where they are missing.
+/// Creates a folder and the missing folders above it.
 pub(super) fn create_folders(path: &Path) -> io::Result<()> {
     step()?;
     fs::create_dir_all(path)
 }
 
-/// A new file with its bytes.
+/// Creates a file with these bytes.
 pub(super) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     step()?;
     fill(&mut File::create_new(path)?, bytes)
 }
 
-/// Bytes into a file that is open.
+/// Writes bytes into an open file.
 pub(super) fn fill(file: &mut File, bytes: &[u8]) -> io::Result<()> {
-    // In halves where a step may fail; in one go otherwise.
+    // In tests in two halves, with a step between them that may fail; otherwise in one go.
     let (first, second) = bytes.split_at(if cfg!(test) { bytes.len() / 2 } else { 0 });
     file.write_all(first)?;
-    // A full disk is found in the midst of a file.
+    // A full disk is found in the middle of a file.
     step()?;
     file.write_all(second)
 }
 
-/// A file's bytes on the disk when this returns. Many files are written first and synchronised then: that is
-/// several times as fast as one after the other.
+/// Waits until a file's bytes are on the disk. Writing many files first and synchronising them afterwards is several
+/// times as fast as doing both for one after the other.
 pub(super) fn sync_file(path: &Path) -> io::Result<()> {
     step()?;
     sync(&File::options().write(true).open(path)?)
 }
 
-/// The bytes of an open file on the disk when this returns.
+/// Waits until the bytes of an open file are on the disk.
 pub(super) fn sync(file: &File) -> io::Result<()> {
-    // No test takes the power away: they would only wait.
+    // No test switches the power off, so waiting would be useless there.
     if cfg!(test) { Ok(()) } else { file.sync_data() }
 }
 
-/// A file or a folder under another name.
+/// Renames a file or a folder.
 pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     step()?;
     fs::rename(from, to)
 }
 
-/// A file taken away.
+/// Removes a file.
 pub(super) fn remove_file(path: &Path) -> io::Result<()> {
     step()?;
     fs::remove_file(path)
 }
 
-/// A folder taken away with all that is in it; links in it are taken away, not followed.
+/// Removes a folder with all its contents; links in it are removed, not followed.
 pub(super) fn remove_folder(path: &Path) -> io::Result<()> {
     step()?;
-    // Most are empty by then.
+    // Most folders are empty by then.
     fs::remove_dir(path).or_else(|_| fs::remove_dir_all(path))
 }
 
-/// The names in a folder on the disk when this returns, where the system can do that.
+/// Waits until the names in a folder are on the disk, if the system can do that.
 pub(super) fn sync_folder(path: &Path) -> io::Result<()> {
     step()?;
     if cfg!(all(unix, not(test))) { File::open(path)?.sync_all() } else { Ok(()) }
 }
 
-/// All that was written to the file systems of these folders is on the disk when this returns.
+/// Waits until everything that was written to the file systems of these folders is on the disk.
 ///
 /// # Errors
-/// Also where the system cannot do that.
+/// Also if the system cannot do that.
 pub(super) fn sync_file_systems<'p>(folders: impl Iterator<Item = &'p Path>) -> io::Result<()> {
     step()?;
     if cfg!(test) { Ok(()) } else { systems::sync(folders) }
@@ -90,7 +90,7 @@ mod systems {
     pub(super) fn sync<'p>(folders: impl Iterator<Item = &'p Path>) -> io::Result<()> {
         let mut systems = BTreeMap::new();
         for folder in folders {
-            // A folder that has vanished is found out when its result is put in place.
+            // A folder that has vanished is noticed when its result is put in place.
             let Ok(found) = fs::metadata(folder) else { continue };
             systems.entry(found.dev()).or_insert(folder);
         }
@@ -116,7 +116,7 @@ fn step() -> io::Result<()> {
 #[cfg(test)]
 use faults::step;
 
-/// Steps that fail, chosen by a test.
+/// Failing steps, chosen by a test.
 #[cfg(test)]
 pub(super) mod faults {
     use std::cell::Cell;
@@ -128,13 +128,13 @@ pub(super) mod faults {
         static FAILING: Cell<(usize, usize)> = const { Cell::new((usize::MAX, usize::MAX)) };
     }
 
-    /// Lets the steps of this thread with these numbers, from now and from 0, fail as on a full disk.
+    /// Lets the steps of this thread with these numbers, counted from 0 from now on, fail as on a full disk.
     pub(in super::super) fn fail(steps: Range<usize>) {
         COUNT.set(0);
         FAILING.set((steps.start, steps.end));
     }
 
-    /// How many steps there were since then.
+    /// Returns the number of steps since [`fail`] was called.
     pub(in super::super) fn steps() -> usize {
         COUNT.get()
     }

@@ -1,18 +1,18 @@
-//! One run at a time has a results folder: an advisory lock on its `.lock`, which the system lets go when the process
-//! ends, however it ends.
+//! The lock of a results folder, for one run at a time: an advisory lock on its `.lock`, which the system releases when
+//! the process ends, however it ends.
 //!
-//! The file is taken away by the one who holds it. Another may have opened it just before: it then locks a file that
-//! nobody finds any more, while a third creates a new one. So a lock counts only if the file that was locked is the
-//! one that stands there, and only that is taken away.
+//! The process that holds the lock removes the file. Another process may have opened it just before: it then locks a
+//! file that has no name any more, while a third creates a new one. So a lock counts only if the locked file is the one
+//! that the path leads to, and only that file is removed.
 
 use super::{FolderError, LOCK};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// As often another run may let go of the folder while this one takes it.
+/// The number of attempts to take the lock while other runs release it.
 const TRIES: usize = 100;
 
-/// A lock that is held.
+/// A lock that this process holds.
 #[derive(Debug)]
 pub(super) struct Lock {
     path: PathBuf,
@@ -23,7 +23,7 @@ impl Lock {
     /// Takes the lock of a folder.
     ///
     /// # Errors
-    /// [`FolderError::Locked`] where another run has it, [`FolderError::Io`] where there can be none.
+    /// [`FolderError::Locked`] if another run has it, [`FolderError::Io`] if the lock file cannot be created or locked.
     pub(super) fn take(folder: &Path) -> Result<Self, FolderError> {
         let path = folder.join(LOCK);
         for _ in 0..TRIES {
@@ -39,19 +39,19 @@ impl Lock {
         Err(FolderError::Locked { path: folder.display().to_string() })
     }
 
-    /// Whether another run has the folder now.
+    /// Returns whether another run has the folder now.
     pub(super) fn is_taken(folder: &Path) -> bool {
         let file = File::options().write(true).open(folder.join(LOCK));
         file.is_ok_and(|file| matches!(file.try_lock(), Err(TryLockError::WouldBlock)))
     }
 
-    /// Whether it still is the folder's: not where somebody took the folder away.
+    /// Returns whether the lock is still the folder's: false if the folder was removed.
     pub(super) fn stands(&self) -> bool {
         stands_at(&self.file, &self.path)
     }
 
-    /// Takes the file away, unless it is another's by now: a folder that was taken away may have been made anew. What
-    /// cannot be taken away is harmless; the next run takes it over.
+    /// Removes the lock file, unless it belongs to another run by now: a folder that was removed may have been created
+    /// again. A file that cannot be removed is harmless; the next run takes it over.
     pub(super) fn release(&self) {
         if self.stands() {
             let _ = fs::remove_file(&self.path);
@@ -59,7 +59,7 @@ impl Lock {
     }
 }
 
-/// Whether an open file is the one that a path leads to.
+/// Returns whether an open file is the one that a path leads to.
 #[cfg(unix)]
 fn stands_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -70,7 +70,7 @@ fn stands_at(file: &File, path: &Path) -> bool {
     }
 }
 
-/// A file that is open cannot be taken away there.
+/// Returns whether the path exists: on these systems, an open file cannot be removed.
 #[cfg(not(unix))]
 fn stands_at(_: &File, path: &Path) -> bool {
     path.exists()

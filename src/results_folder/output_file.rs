@@ -1,4 +1,4 @@
-//! A file that a person named, written as a whole or not at all.
+//! Output files that a person named, each written as a whole or not at all.
 
 use super::{FolderError, TEMPORARY, disk};
 use crate::generator::{self, FileKind};
@@ -7,38 +7,39 @@ use std::io::{self, Read};
 use std::path::Path;
 use tempfile::NamedTempFile;
 
-/// A file that a person named, with what is to be in it.
+/// An output file that a person named, with its contents.
 #[derive(Clone, Copy, Debug)]
 pub struct OutputFile<'a> {
-    /// Its place, as it was named.
+    /// The path, as it was named.
     pub path: &'a Path,
-    /// Its kind.
+    /// The kind of file.
     pub kind: FileKind,
-    /// Its bytes.
+    /// The contents.
     pub bytes: &'a [u8],
 }
 
-/// When a file that is there already may be replaced.
+/// The condition under which an existing file may be replaced.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Replace<'a> {
-    /// Where this program wrote it as a file of the same kind and it is none of these: the files that the command reads.
+    /// Only if this program wrote it as a file of the same kind, and it is none of these files, which the command
+    /// reads.
     Ours(&'a [&'a Path]),
-    /// Never.
+    /// Never: existing files are kept.
     Nothing,
-    /// Whatever it is: `--force`.
+    /// Always: `--force`.
     Anything,
 }
 
-/// Whether files may be written, before any of them is. A table is known by its header row, so that its bytes need to
-/// hold that much.
+/// Checks whether files may be written, before any of them is. A table is recognised by its header row, so that the
+/// bytes need to contain at least that.
 ///
 /// # Errors
-/// [`FolderError::NotOurs`], [`FolderError::OwnInput`], [`FolderError::Exists`], [`FolderError::NamedTwice`] or, where a
-/// file that is there cannot be read, [`FolderError::Io`].
+/// [`FolderError::NotOurs`], [`FolderError::OwnInput`], [`FolderError::Exists`], [`FolderError::NamedTwice`] or, if an
+/// existing file cannot be read, [`FolderError::Io`].
 pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(), FolderError> {
     for (i, file) in files.iter().enumerate() {
         let there = may_replace(file, replace)?;
-        // A stream takes whatever comes.
+        // A stream may be written to twice.
         if there != There::Stream && files[..i].iter().any(|other| is_same(other.path, file.path)) {
             return Err(FolderError::NamedTwice { path: file.path.display().to_string() });
         }
@@ -46,18 +47,18 @@ pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
     Ok(())
 }
 
-/// Writes files that a person named, after all of them were looked at: each in the place of the one that is there, so
-/// that a reader sees the old one or the new one, never half of either. A link is followed; a device or a pipe is
-/// written to as it is.
+/// Writes files that a person named, after all of them have been checked: each replaces the existing file, so that a
+/// reader sees the old one or the new one, never half of either. A link is followed; a device or a pipe is written to
+/// directly.
 ///
 /// # Errors
-/// Those of [`check_files`], with nothing written; [`FolderError::Io`] with the path that cannot be written, where what
-/// was there before stays and new files are taken away again.
+/// Those of [`check_files`], with nothing written; [`FolderError::Io`] with the path that cannot be written: the old
+/// file is kept, and new files are removed again.
 pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(), FolderError> {
     check_files(files, replace)?;
     let mut made = Vec::new();
     for file in files {
-        // Looked at once more: another program may have written it in between.
+        // Checked once more: another program may have written it in between.
         let written = may_replace(file, replace).and_then(|there| {
             write(file, there, replace).map_err(|e| FolderError::io(file.path, e)).map(|()| there)
         });
@@ -66,7 +67,7 @@ pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
             Ok(_) => {}
             Err(e) => {
                 for path in made {
-                    // One that was made a moment ago and stays is replaced by the next try.
+                    // A file that cannot be removed was made by this program, so that the next attempt may replace it.
                     let _ = fs::remove_file(path);
                 }
                 return Err(e);
@@ -76,10 +77,10 @@ pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
     Ok(())
 }
 
-/// The file that a new one would replace.
+/// The existing entry that a new file would replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum There {
-    /// None.
+    /// No entry.
     Nothing,
     /// A file.
     File,
@@ -87,7 +88,8 @@ enum There {
     Stream,
 }
 
-/// Looks at what is there. The one place that decides about every file that a person can name.
+/// Returns the existing entry, if it may be replaced. This function alone decides about every file that a person can
+/// name.
 fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, FolderError> {
     let shown = || file.path.display().to_string();
     let found = match fs::metadata(file.path) {
@@ -96,7 +98,7 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
         }
         Ok(found) if !found.is_file() => return Ok(There::Stream),
         Ok(found) => found,
-        // A link to nothing is found out when a new file is to take its name.
+        // A link to nothing is noticed when a new file is to take its name.
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(There::Nothing),
         Err(e) => return Err(FolderError::io(file.path, e)),
     };
@@ -121,7 +123,7 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     Err(FolderError::NotOurs { path: shown(), kind: file.kind.described() })
 }
 
-/// Whether two paths lead to one file, which may not be there yet.
+/// Returns whether two paths lead to one file, which need not exist yet.
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| {
         path.canonicalize().ok().or_else(|| {
@@ -140,7 +142,7 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
     match there {
         There::Stream => fs::write(file.path, file.bytes),
         There::Nothing if replace == Replace::Anything => over(file.path, file.bytes),
-        // Whoever else makes this file meanwhile keeps it.
+        // A file that another program creates meanwhile is kept.
         There::Nothing => match temporary(file.path, file.bytes)?.persist_noclobber(file.path) {
             Ok(_) => Ok(()),
             Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => Err(e.error),
@@ -158,14 +160,14 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
     }
 }
 
-/// Puts the bytes in the place of a path.
+/// Replaces the file at a path by these bytes.
 pub(super) fn over(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let file = temporary(path, bytes)?;
     file.persist(path).map_err(|e| e.error)?;
     Ok(())
 }
 
-/// A temporary file beside a path, with the bytes in it.
+/// Creates a temporary file beside a path, with these bytes.
 fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
@@ -173,7 +175,7 @@ fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // Readable as any new file: what the user's mask leaves of it.
+        // Readable like any new file: the permissions that the user's mask allows.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;

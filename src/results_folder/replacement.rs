@@ -1,12 +1,12 @@
-//! A result replaced as a whole: whenever it is broken off, the folder holds the old result or the new one.
+//! Replacement of a result as a whole: even if it is interrupted, the folder holds the old result or the new one.
 //!
 //! ```text
-//! .linkwright-new      the new files are written here; broken off, they are thrown away
-//! .linkwright-whole    all are there: from this renaming on the new result is the result
-//! .linkwright-moving   what is left of the old result is gone, the new files are moved to their places
+//! .linkwright-new      the new files are written here; if that is interrupted, they are removed
+//! .linkwright-whole    all new files are written: from this renaming on the new result counts
+//! .linkwright-moving   the old files are removed, and the new ones are moved to their places
 //! ```
 //!
-//! Whoever takes the folder next brings the last two to their end.
+//! The next run that takes the folder completes the replacement in the last two cases.
 
 use super::{TEMPORARY, disk, is_ours};
 use std::fs;
@@ -25,11 +25,11 @@ fn about(path: &Path) -> impl FnOnce(io::Error) -> Failure + use<> {
     move |error| (path, error)
 }
 
-/// Writes `files` beside what the folder holds, after what was broken off before has been ended. They need not be on
-/// the disk yet when this returns.
+/// Writes `files` beside the contents of the folder, after completing an earlier interrupted replacement. The files
+/// need not be on the disk yet when this returns.
 ///
 /// # Errors
-/// The file that could not be written; the old result stays as it was.
+/// The file that could not be written; the old result is kept.
 pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -> Result<(), Failure> {
     if [NEW, WHOLE, MOVING].iter().any(|name| is_folder(&folder.join(name))) {
         finish(folder, kept)?;
@@ -38,7 +38,7 @@ pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -
     let written = || {
         disk::create_folder(&new).map_err(about(&new))?;
         for (name, bytes) in files {
-            // The error names the file as it was to be.
+            // The error names the file with its final path.
             disk::write_new(&new.join(name), bytes).map_err(about(&folder.join(name)))?;
         }
         Ok(())
@@ -46,19 +46,19 @@ pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -
     written().inspect_err(|_| forget(folder))
 }
 
-/// When the names in a folder are to be on the disk.
+/// The time at which the names in a folder have to be on the disk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wait {
-    /// Before what they replace is thrown away.
+    /// Before the staging folder of the new files is removed.
     Now,
-    /// The caller waits for them.
+    /// Later: the caller waits for them.
     Later,
 }
 
-/// What was written is on the disk when this returns.
+/// Waits until the written files are on the disk.
 ///
 /// # Errors
-/// The file for which that failed; the old result stays as it was.
+/// The file for which that failed; the old result is kept.
 pub(super) fn sync(folder: &Path) -> Result<(), Failure> {
     let new = folder.join(NEW);
     let synced = || {
@@ -70,34 +70,35 @@ pub(super) fn sync(folder: &Path) -> Result<(), Failure> {
     synced().inspect_err(|_| forget(folder))
 }
 
-/// Puts what was written into the place of what the folder holds of ours, but for the names in `kept`.
+/// Replaces the old result in the folder by the written files, except for the names in `kept`.
 ///
 /// # Errors
-/// The old result stays as it was; or a file could not be moved, and the next to take the folder ends it.
+/// The old result is kept; or a file could not be moved, and the next run that takes the folder completes the
+/// replacement.
 pub(super) fn put(folder: &Path, kept: &[&str], names: Wait) -> Result<(), Failure> {
     let whole = folder.join(WHOLE);
     disk::rename(&folder.join(NEW), &whole).map_err(about(&whole)).inspect_err(|_| forget(folder))?;
     move_in(folder, kept, names)
 }
 
-/// Throws away what was written and is not whole.
+/// Removes the written files of a replacement that is not complete.
 fn forget(folder: &Path) {
     if not_of_ours(folder, NEW).is_none() {
-        // What cannot be taken away here is taken away by the next run.
+        // A folder that cannot be removed here is removed by the next run.
         let _ = disk::remove_folder(&folder.join(NEW));
     }
 }
 
-/// Brings a replacement that was broken off to its end and throws temporary files away.
+/// Completes an interrupted replacement and removes temporary files.
 ///
 /// # Errors
-/// The path that could not be moved or taken away.
+/// The path that could not be moved or removed.
 pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
     move_in(folder, kept, Wait::Now)?;
     take_away(folder, |name| !name.starts_with(TEMPORARY))
 }
 
-/// Brings a replacement that is whole to its end.
+/// Completes a replacement whose files are all written.
 fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
     let (whole, moving) = (folder.join(WHOLE), folder.join(MOVING));
     for name in [WHOLE, MOVING] {
@@ -115,7 +116,7 @@ fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
     }
     if is_folder(&moving) {
         let mut staged: Vec<String> = names(&moving)?.into_iter().filter(|name| is_ours(name)).collect();
-        // The record first: it is what everything else is drawn from.
+        // The record first: everything else is made from it.
         staged.sort_by_key(|name| name != super::RECORD);
         for name in staged {
             let target = folder.join(&name);
@@ -129,7 +130,8 @@ fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Where the record of a folder is: that of a new result which is whole but not yet in its place, or the visible one.
+/// Returns the possible paths of a folder's record: of a new result that is complete but not yet in its place, and the
+/// usual one.
 pub(super) fn records(folder: &Path) -> [PathBuf; 3] {
     [
         folder.join(MOVING).join(super::RECORD),
@@ -138,40 +140,40 @@ pub(super) fn records(folder: &Path) -> [PathBuf; 3] {
     ]
 }
 
-/// Whether there is a folder of this name; a link to one is none.
+/// Returns whether there is a folder at this path; a link to a folder does not count.
 fn is_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
-/// Whether a name is that of a folder of a replacement.
+/// Returns whether a name is that of a folder of a replacement.
 pub(super) fn is_staging(name: &str) -> bool {
     [NEW, WHOLE, MOVING].contains(&name)
 }
 
-/// The part of a folder's entry `name` that no run writes under this name, if there is one: a run writes files, no
-/// folders and no links, and its staging folders hold such files alone.
+/// Returns the part of a folder's entry `name` that no run writes under this name, if there is one: a run writes files,
+/// no folders and no links, and its staging folders contain only such files.
 pub(super) fn not_of_ours(folder: &Path, name: &str) -> Option<String> {
     let path = folder.join(name);
-    // An entry that has vanished since is a neighbour's.
+    // An entry that has vanished since was another run's.
     let Ok(found) = fs::symlink_metadata(&path) else { return None };
     if is_staging(name) && found.is_dir() {
         let inside = names(&path).unwrap_or_default();
         let foreign = inside.iter().find(|inner| !is_ours(inner) || !is_file(&path.join(inner)));
         return foreign.map(|inner| format!("{name}/{inner}"));
     }
-    // A link in the place of a staging folder is taken away and not followed.
+    // A link in the place of a staging folder is removed and not followed.
     if found.is_file() || (is_staging(name) && found.is_symlink()) {
         return None;
     }
     Some(if found.is_dir() { format!("a folder {name}") } else { format!("{name}, which is no file") })
 }
 
-/// Whether there is a file of this name; a link to one is none.
+/// Returns whether there is a file at this path; a link to a file does not count.
 fn is_file(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
 }
 
-/// The names in a folder, sorted.
+/// Returns the names in a folder, sorted.
 pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     let listed = fs::read_dir(folder).and_then(|entries| {
         entries.map(|entry| entry.map(|e| e.file_name().to_string_lossy().into_owned())).collect()
@@ -181,11 +183,12 @@ pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     Ok(listed)
 }
 
-/// Takes away what is ours and does not stay.
+/// Removes the files that runs write, except for those that `stays` keeps.
 fn take_away(folder: &Path, stays: impl Fn(&str) -> bool) -> Result<(), Failure> {
     for name in names(folder)?.iter().filter(|name| is_ours(name) && !stays(name)) {
         let path = folder.join(name);
-        // Put there after the folder was looked at: it stays, and where it is in the way of a new file that is told.
+        // It was put there after the folder was checked: it is kept, and if it is in the way of a new file, an error
+        // says so.
         if not_of_ours(folder, name).is_some() {
             continue;
         }

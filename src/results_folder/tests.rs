@@ -1,4 +1,4 @@
-//! Every write fails in turn, and every instant is the last one.
+//! Tests of the results folder: every write fails in turn, and the process ends at every step.
 
 use super::disk::faults;
 use super::*;
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 type Files = Vec<(String, Vec<u8>)>;
 type Shown = BTreeMap<String, Vec<u8>>;
 
-/// A record that can be read, as small as one is.
+/// Returns a valid record, as small as possible.
 fn record(name: &str) -> Vec<u8> {
     let text = include_str!("../../tests/corpora/record/accepted.json");
     let mut record: Record = serde_json::from_str(text).expect("it is a record");
@@ -16,7 +16,7 @@ fn record(name: &str) -> Vec<u8> {
     serde_json::to_vec_pretty(&record).expect("it is data")
 }
 
-/// A file as a run writes it, with `text` somewhere in it.
+/// Returns a file as a run writes it, with `text` somewhere in it.
 fn file(name: &str, text: &str) -> (String, Vec<u8>) {
     let mark = crate::generator::mark();
     let content = match name.rsplit_once('.').map(|(_, ending)| ending) {
@@ -53,7 +53,7 @@ fn as_shown(files: &Files) -> Shown {
     files.iter().cloned().collect()
 }
 
-/// Every file of a folder whose name has no dot in front.
+/// Returns every file of a folder whose name does not begin with a dot.
 fn shown(folder: &Path) -> Shown {
     let names = replacement::names(folder).expect("it can be listed");
     let visible = names.into_iter().filter(|name| !name.starts_with('.'));
@@ -65,7 +65,7 @@ fn hidden(folder: &Path) -> Vec<String> {
     names.into_iter().filter(|name| name.starts_with('.')).collect()
 }
 
-/// A folder with the old result, or none.
+/// Creates a folder with the old result, or an empty one.
 fn place(holds_old: bool) -> tempfile::TempDir {
     faults::fail(0..0);
     let place = tempfile::tempdir().expect("a folder");
@@ -81,7 +81,7 @@ fn run(path: &Path) -> Result<(), FolderError> {
     ResultsFolder::take(path)?.replace(&new())
 }
 
-/// How many steps a run has that nothing disturbs.
+/// Returns the number of steps of an undisturbed run.
 fn steps(holds_old: bool) -> usize {
     let place = place(holds_old);
     faults::fail(0..0);
@@ -106,7 +106,7 @@ fn a_write_that_fails_is_told_and_leaves_a_whole_result() {
             let FolderError::Io { path: named, source } = &error else { panic!("{error}") };
             assert!(Path::new(named).starts_with(&path), "{named}");
             assert_eq!(source.kind(), io::ErrorKind::StorageFull);
-            // What was there before the first file was in its place, or a new result that the next run ends.
+            // The state before the first file was in its place, or a new result that the next run completes.
             let before = if holds_old { as_shown(&old()) } else { Shown::new() };
             let is_before = if path.exists() { shown(&path) == before } else { !holds_old };
             kept += usize::from(is_before);
@@ -133,7 +133,7 @@ fn whatever_instant_is_the_last_the_folder_holds_one_result_as_a_whole() {
         for k in 0..steps(holds_old) {
             let place = place(holds_old);
             let path = place.path().join("r");
-            // From here on nothing reaches the disk: no clearing up either.
+            // From here on nothing reaches the disk: nothing is cleaned up either.
             faults::fail(k..usize::MAX);
             run(&path).expect_err("the process is gone");
             faults::fail(0..0);
@@ -170,7 +170,7 @@ fn breaking_off_again_and_again_comes_to_the_same_end() {
         run(&path).expect_err("the process is gone");
         faults::fail(0..0);
         let read = read_record(&path).expect("one of the two").problem.name;
-        // Each of those who take it up comes one step further.
+        // Each run that takes the folder next comes one step further.
         for further in 0.. {
             faults::fail(further..usize::MAX);
             let taken = ResultsFolder::take(&path);
@@ -243,7 +243,7 @@ fn results_that_wait_for_the_disk_together_are_replaced_each_as_a_whole() {
             one += usize::from(!last && good == 1);
         }
     }
-    // A wait for all that fails is a wait for each; other failures are those of one result.
+    // If the common wait for the disk fails, each result is waited for alone; other failures concern only one result.
     assert!(both >= 2 && one > new().len(), "{both} {one} of {count}");
 }
 
@@ -253,14 +253,14 @@ fn a_lock_that_nobody_finds_any_more_is_none() {
     let place = place(false);
     let path = place.path().join("r");
     let first = ResultsFolder::take(&path).expect("it is free");
-    // Opened before the first takes it away: locked by nobody from then on, and no longer the folder's lock.
+    // Opened before the first removes it: from then on nobody holds its lock, and it is no longer the folder's lock.
     let late = File::options().write(true).open(path.join(LOCK)).expect("it is there");
     drop(first);
     fs::create_dir_all(&path).expect("a folder");
     let mut second = ResultsFolder::take(&path).expect("it is free");
     late.try_lock().expect("nobody has this one");
     assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })));
-    // A folder that was taken away and is another's by now: its lock is left alone.
+    // A folder that was removed and belongs to another run by now: its lock is left alone.
     fs::remove_dir_all(&path).expect("it is ours");
     let mut third = ResultsFolder::take(&path).expect("it is free");
     third.replace(&new()).expect("there is room");
@@ -268,7 +268,7 @@ fn a_lock_that_nobody_finds_any_more_is_none() {
     drop(second);
     assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })), "the third has it");
     assert_eq!(shown(&path), as_shown(&new()));
-    // Half of the third's result, while it is moved to its place, is no foreign file.
+    // Half of the third's result, while it is moved to its place, does not count as a foreign file.
     fs::remove_file(path.join(RECORD)).expect("it is ours");
     assert!(matches!(ResultsFolder::take(&path), Err(FolderError::Locked { .. })));
     drop(third);
@@ -316,12 +316,12 @@ fn a_folder_that_vanished_is_made_anew() {
     assert!(hidden(&path).is_empty());
 }
 
-/// Writes a table over whatever is there.
+/// Writes a table and replaces any existing file.
 fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     write_files(&[OutputFile { path, kind: FileKind::Csv, bytes }], Replace::Anything)
 }
 
-/// Writes a table that is not there yet.
+/// Writes a table that does not exist yet.
 fn create_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     write_files(&[OutputFile { path, kind: FileKind::Csv, bytes }], Replace::Nothing)
 }
@@ -349,7 +349,7 @@ fn a_file_is_written_as_a_whole_or_stays_what_it_was() {
     assert_eq!(fs::read(&path).expect("it is there"), b"first");
     write_file(&path, b"second").expect("there is room");
     assert_eq!(fs::read(&path).expect("it is there"), b"second");
-    // Of several files all are written or none.
+    // Of several files, either all are written or none.
     let [one, other] = ["one.csv", "other.csv"].map(|name| place.path().join(name));
     let both = [&one, &other].map(|path| OutputFile { path, kind: FileKind::Csv, bytes: b"new" });
     faults::fail(1..2);
@@ -474,7 +474,7 @@ fn a_file_of_a_user_under_the_name_of_a_results_file_is_refused_and_stays() {
             assert!(error.to_string().contains(name), "{error}");
             assert_eq!(fs::read_to_string(path.join(name)).expect("it is there"), text);
         }
-        // An empty one holds nothing that could be lost.
+        // An empty file contains nothing that could be lost.
         fs::write(path.join(name), "").expect("there is room");
         run(&path).expect("it is free");
     }

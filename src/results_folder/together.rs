@@ -1,18 +1,18 @@
-//! Many results on the disk with one wait for it.
+//! Writing many results to the disk with one wait for it.
 //!
-//! To wait until a file is on the disk takes milliseconds, as long as a small search; to wait for all that was written
-//! to a file system takes hardly longer. So the results of a batch are written as they come, and those that came while
-//! the disk was busy are waited for together. Each is put in its place only when its files are on the disk: a power cut
-//! finds the old result or the new one, as it does where a result is replaced alone.
+//! Waiting until a file is on the disk takes milliseconds, as long as a small search; waiting for everything that was
+//! written to a file system takes hardly longer. So the results of a batch are written as they come, and those that
+//! came while the disk was busy are waited for together. Each is put in its place only when its files are on the disk:
+//! after a power cut there is the old result or the new one, as there is if a result is replaced alone.
 
 use super::replacement::Wait;
 use super::{FolderError, ResultsFolder, disk};
 
-/// Puts results that were written ([`ResultsFolder::write`]) in the places of the old ones, each by itself as
-/// [`ResultsFolder::replace`] does. All are on the disk when this returns, where the system can do that.
+/// Puts the results that were written ([`ResultsFolder::write`]) in the places of the old ones, each as
+/// [`ResultsFolder::replace`] does. All are on the disk when this returns, if the system can do that.
 ///
 /// # Errors
-/// For each folder as [`ResultsFolder::replace`].
+/// Those of [`ResultsFolder::replace`], for each folder.
 pub fn put_together(folders: &mut [&mut ResultsFolder]) -> Vec<Result<(), FolderError>> {
     let all_on_disk = |folders: &[&mut ResultsFolder]| {
         folders.len() > 1 && disk::sync_file_systems(folders.iter().map(|folder| folder.path())).is_ok()

@@ -1,10 +1,10 @@
-//! A reference page of a file's keys, made from its schema: a section for each table, a row for each key.
+//! The reference page of a file's keys, generated from its schema: a section for each table, a row for each key.
 
 use super::{SchemaKind, schema};
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
-/// The order of the tables at the top of a problem file; others follow by name.
+/// The order of the tables at the top of a problem file; the others follow by name.
 const ORDER: [&str; 6] = ["task", "design", "require", "solve", "certify", "expect"];
 
 /// The beginning of the page of linkage files: a whole file of each kind.
@@ -49,13 +49,45 @@ beta_deg = 30.0
 t1 = 1
 ```
 
+A compound mechanism, stage by stage: a crank turns the joint C about A, a dyad hangs the joint D between C and the fixed
+pivot B, and P is a point of the link C-D, 2 along it and 1 to its left. Further `[[chain.dyad]]`, `[[chain.slider]]` and
+`[[chain.guide]]` add stages; `problems/linkages/` has six-bars, a walking leg and a quick-return drive.
+
+```toml
+format = 1
+name = "chain"
+
+[chain]
+trace = "P"
+
+[chain.pivots]
+A = [0.0, 0.0]
+B = [4.0, 0.0]
+
+[chain.crank]
+pivot = "A"
+joint = "C"
+length = 1.0
+
+[[chain.dyad]]
+joint = "D"
+from = ["C", "B"]
+lengths = [4.0, 3.0]
+side = 1
+
+[[chain.point]]
+name = "P"
+on = ["C", "D"]
+at = [2.0, 1.0]
+```
+
 A file that linkwright wrote says so in its first line, "written by linkwright", whatever is edited below it: such a
 file may be replaced by a command that writes a linkage file under the same name. Without that line, and where it is the
 command's own input, it is replaced with `--force` alone.
 "#;
 
-/// The reference of a kind of file as a page of Markdown: every table with its keys, what each may be, its default and
-/// its meaning.
+/// Returns the reference of a kind of file as a page of Markdown: every table with its keys, their allowed values,
+/// defaults and meanings.
 ///
 /// ```
 /// use linkwright::schema::{SchemaKind, reference};
@@ -73,7 +105,7 @@ pub fn reference(kind: SchemaKind) -> String {
             ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
         }
     };
-    // A string takes whatever is written to it: the results of `write!` below cannot be errors.
+    // Writing to a string never fails, so the results of `write!` below are ignored.
     let _ = write!(
         page.text,
         "# The {title}\n\n\
@@ -85,14 +117,14 @@ pub fn reference(kind: SchemaKind) -> String {
     page.text
 }
 
-/// The page while it is written.
+/// The page that is being written.
 struct Page<'a> {
     schema: &'a Value,
     text: String,
 }
 
 impl<'a> Page<'a> {
-    /// What a value's schema says, with references followed and the alternative `null` (key absent) left out.
+    /// Returns a value's schema, with references followed and the alternative `null` (key absent) left out.
     fn resolved(&self, value: &'a Value) -> &'a Value {
         if let Some(place) = value["$ref"].as_str() {
             return self.schema.pointer(place.trim_start_matches('#')).unwrap_or(value);
@@ -103,7 +135,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// A table's rows; then the tables in it, each under its name.
+    /// Writes a table's rows, then the tables in it, each under its name.
     fn table(&mut self, name: &str, table: &'a Value) {
         let Some(keys) = table["properties"].as_object() else { return };
         let required: Vec<&str> =
@@ -141,7 +173,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// The table that a key holds, and whether it holds a list of them.
+    /// Returns the table that a key holds, and whether it holds a list of such tables.
     fn inner(&self, value: &'a Value) -> Option<(&'a Value, bool)> {
         let value = self.resolved(value);
         let (value, list) = match &value["items"] {
@@ -151,7 +183,7 @@ impl<'a> Page<'a> {
         value["properties"].is_object().then_some((value, list))
     }
 
-    /// The words that a key may be, where it is one of several words or a list of such.
+    /// Returns the allowed words of a key, if its value is one of several words or a list of such.
     fn words(&self, value: &'a Value) -> Option<&'a Vec<Value>> {
         let value = self.resolved(value);
         if let Some(alternatives) = value["anyOf"].as_array() {
@@ -160,7 +192,7 @@ impl<'a> Page<'a> {
         value["oneOf"].as_array().filter(|choices| choices.iter().all(|choice| choice["const"].is_string()))
     }
 
-    /// What a key may be, in words.
+    /// Returns the allowed values of a key, in words.
     fn what(&self, value: &'a Value) -> String {
         let value = self.resolved(value);
         if let Some(alternatives) = value["anyOf"].as_array() {
@@ -180,7 +212,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// What a list holds, in words.
+    /// Returns the contents of a list, in words.
     fn list(&self, value: Option<&'a Map<String, Value>>) -> String {
         let Some(value) = value else { return "list".into() };
         let item = value.get("items").map_or("anything".into(), |items| self.what(items));
@@ -194,7 +226,7 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The JSON type of a value that may be absent.
+/// Returns the JSON type of a value that may be absent.
 fn kind(value: &Value) -> Option<String> {
     match &value["type"] {
         Value::String(one) => Some(one.clone()),
@@ -205,7 +237,7 @@ fn kind(value: &Value) -> Option<String> {
     }
 }
 
-/// The description in one line, fit for a cell of a table; names of Rust items lose their brackets.
+/// Returns the description in one line, fit for a cell of a table; names of Rust items lose their brackets.
 fn description(value: &Value) -> String {
     let text = value["description"].as_str().unwrap_or_default();
     let text = text.replace('\n', " ").replace("[`", "`").replace("`]", "`");

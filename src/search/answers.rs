@@ -1,4 +1,5 @@
-//! What a record says besides its ranked candidates: warnings, a family of exact answers, what can be built.
+//! The parts of a record beside its ranked candidates: warnings, the family of exact answers, and a buildable
+//! candidate.
 
 use super::buildable::buildable;
 use super::family::family;
@@ -9,26 +10,26 @@ use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Candidate, Family};
 
-/// What stands beside the candidates.
+/// The results reported beside the ranked candidates.
 #[derive(Clone, Debug, Default)]
 pub struct Beside {
     /// The family that the first candidate belongs to.
     pub family: Option<Family>,
-    /// What to build where the first candidate has warnings.
+    /// The best buildable candidate, if the first candidate has warnings.
     pub buildable: Option<Candidate>,
 }
 
-/// Notes on a candidate what follows from it and its problem: its warnings, and whether its mirror image serves as well.
+/// Annotates a candidate with its warnings and with whether its mirror image serves as well.
 pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
     candidate.warnings = warnings(problem, candidate);
     candidate.mirror_serves = mirror_image_serves(problem, candidate);
 }
 
-/// Gives the candidates their warnings and says what stands beside them.
+/// Annotates the candidates and returns the family and the buildable candidate.
 ///
-/// Where the first has warnings, the method is `auto` and advice is asked for, a second search looks for something to build, with at
-/// most as many evaluations as the first one took and the budget still has; they are added to the outcome's,
-/// and where the clock or a cancellation cuts it short that becomes the outcome's reason.
+/// If the first candidate has warnings, the method is `auto` and advice is asked for, a second search looks for a
+/// buildable linkage. It uses at most as many evaluations as the first search used and the budget still has; they are
+/// added to the outcome's. If the time limit or a cancellation cuts it short, that becomes the outcome's reason.
 pub fn beside(
     problem: &Problem,
     outcome: &mut SearchOutcome,

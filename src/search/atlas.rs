@@ -1,21 +1,23 @@
-//! An atlas of coupler curves: which linkages draw something like a given target?
+//! An atlas of coupler curves: a table of linkages from which those whose curves resemble a given target are taken as
+//! starts.
 //!
-//! *Closed targets.* Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier coefficients,
+//! *Closed targets.* Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier
+//! coefficients,
 //!
 //! ```text
 //! F_k = sum_m P_m e^{-2 pi i k m / M},   k = +-1 .. +-K,   divided by sqrt(sum |F_k|^2)
 //! ```
 //!
-//! at M points spaced evenly along the curve. They do not change when the curve is moved, turned, scaled or
-//! begun elsewhere; run backwards, F_k and F_-k change places. (Descriptors of closed curves: Zahn and Roskies
-//! 1972; for coupler curves McGarva and Mullineux 1993.) The nearest entries are then laid onto the target by
-//! similarity at every shift (Procrustes), and the best give starts.
+//! at M points spaced evenly along the curve. They do not change if the curve is moved, turned, scaled or started
+//! elsewhere; if it is run backwards, F_k and F_-k change places. (Descriptors of closed curves: Zahn and Roskies 1972;
+//! for coupler curves McGarva and Mullineux 1993.) The nearest entries are then fitted to the target by similarity at
+//! every shift (Procrustes), and the best give starts.
 //!
-//! *Open targets.* `ARCS` stretches of each entry's curve, of random begin and length, stand in a second
-//! atlas as M points c_m evenly along them, centred and of unit norm. With the target t_m alike, what a
-//! similarity leaves of the target is 1 - |sum conj(c_m) t_m|^2.
+//! *Open targets.* A second atlas holds `ARCS` arcs of each entry's curve, of random begin and length, each as M points
+//! c_m evenly along it, centred and of unit norm. For a target t_m normalised alike, the relative residual after the
+//! best similarity is 1 - |sum conj(c_m) t_m|^2.
 //!
-//! Both are drawn from a fixed stream, once in a process, when they are first asked for, on all cores.
+//! Both are drawn from a fixed stream, once in a process, when they are first needed, on all cores.
 
 use super::starts::{Start, Starts, draw_ratios};
 use crate::linkage::mobility::{Mobility, linkage_type};
@@ -26,24 +28,24 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::OnceLock;
 
-/// Entries.
+/// Number of entries drawn.
 pub const ENTRIES: usize = 30_000;
-/// Entries drawn from one stream.
+/// Entries drawn from one random stream.
 const CHUNK: usize = 500;
 /// The seed of the atlas: it is the same for every problem and run.
 const SEED: u64 = 0x61_746c_6173;
-/// Positions at which a curve is traced.
+/// Positions at which a curve is sampled.
 const TRACED: usize = 72;
-/// Points evenly along it.
+/// Points evenly along a curve.
 const EVEN: usize = 32;
-/// Harmonics on each side.
+/// Fourier harmonics of each sign.
 const HARMONICS: usize = 6;
-/// Entries that are laid onto the target.
+/// Number of nearest entries that are fitted to the target by similarity.
 const LAID: usize = 2400;
 
 type Descriptor = [f32; 2 * HARMONICS];
 
-/// x and y of points evenly along a closed curve, centred and of unit norm.
+/// The x and y coordinates of points evenly along a closed curve, centred and of unit norm.
 #[derive(Clone, Copy, Debug)]
 struct Even([[f32; EVEN]; 2]);
 
@@ -59,9 +61,10 @@ impl Even {
         norm.is_normal().then_some(Even(out))
     }
 
-    /// What a similarity leaves of a target laid onto this from each of its points on, along it or against it.
+    /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
+    /// `ahead`: in the same direction, else reversed.
     fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
-        // Twice around, so that every shift is a plain stretch.
+        // Twice around, so that every shift is a contiguous range.
         let mut around = [[0.0f32; 2 * EVEN]; 2];
         for (around, own) in around.iter_mut().zip(&self.0) {
             around[..EVEN].copy_from_slice(own);
@@ -86,29 +89,30 @@ impl Even {
 struct Entry {
     kind: LinkageType,
     ratios: Ratios,
-    /// P from C in the coupler's frame, in parts of the ground.
+    /// The coupler point P from C in the coupler's frame, in units of the ground.
     offset: Complex,
-    /// t1 of a crank that turns fully.
+    /// Assembly sign t1, if the crank turns fully.
     assembly: f64,
     arc: Option<InputArc>,
     descriptor: Descriptor,
     even: Even,
 }
 
-/// A traced curve with its length along the parameter.
+/// A sampled curve with its arc length.
 struct Traced {
     points: Vec<Complex>,
-    /// Up to each point, in parts of the whole; one more than points.
+    /// The arc length up to each point over the whole length; one more than points.
     along: Vec<f64>,
 }
 
 impl Entry {
-    /// The position at a parameter in [0, 1): (e, u) from the ground line.
+    /// Returns the position at a parameter in [0, 1): the crank and coupler directions (e, u) relative to the ground
+    /// line.
     fn at(&self, parameter: f64) -> Option<[Complex; 2]> {
         let (e, t) = match self.arc {
             None => (Complex::from_polar(1.0, TAU * parameter), self.assembly),
             Some(arc) => {
-                // A hair off the toggles, where the assembly is undecided.
+                // Slightly off the toggles, where the assembly is undecided.
                 let psi = TAU * parameter;
                 let angle = arc.middle + (1.0 - 1e-9) * arc.half_width * psi.sin();
                 (Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
@@ -120,7 +124,7 @@ impl Entry {
     fn trace(&self) -> Option<Traced> {
         let mut points = Vec::with_capacity(TRACED);
         for (i, circle) in unit_circle().iter().enumerate() {
-            // Half a step off, so that no sample stands on a toggle.
+            // Half a step off, so that no sample lies on a toggle.
             let [e, u] = match self.arc {
                 None => [*circle, coupler_direction(&self.ratios, *circle, self.assembly)?],
                 Some(_) => self.at((i as f64 + 0.5) / TRACED as f64)?,
@@ -132,7 +136,7 @@ impl Entry {
     }
 }
 
-/// The crank directions at which a full turn is traced.
+/// Returns the crank directions at which a full turn is sampled.
 fn unit_circle() -> &'static [Complex; TRACED] {
     static CIRCLE: OnceLock<[Complex; TRACED]> = OnceLock::new();
     CIRCLE.get_or_init(|| {
@@ -141,7 +145,7 @@ fn unit_circle() -> &'static [Complex; TRACED] {
 }
 
 impl Traced {
-    /// The corner before a place in [0, 1) of the curve, and the part of the way to the next.
+    /// Returns the index of the sample before a place in [0, 1) of the curve, and the fraction of the way to the next.
     fn locate(&self, place: f64) -> (usize, f64) {
         let corner = self.along.partition_point(|length| *length <= place).clamp(1, TRACED) - 1;
         let (from, to) = (self.along[corner], self.along[corner + 1]);
@@ -160,7 +164,7 @@ impl Traced {
     }
 }
 
-/// The length along a closed polygon up to each corner and back at the first, in parts of the whole.
+/// Returns the length along a closed polygon up to each corner and back at the first, in parts of the whole.
 fn lengths(points: &[Complex]) -> Option<Vec<f64>> {
     let mut along = vec![0.0];
     for i in 0..points.len() {
@@ -171,7 +175,7 @@ fn lengths(points: &[Complex]) -> Option<Vec<f64>> {
     (whole > 0.0 && whole.is_finite()).then(|| along.iter().map(|s| s / whole).collect())
 }
 
-/// `count` points evenly along a closed polygon, from its first corner on.
+/// Returns `count` points evenly along a closed polygon, from its first corner on.
 fn evenly(points: &[Complex], along: &[f64], count: usize) -> Vec<Complex> {
     let mut corner = 0;
     (0..count)
@@ -218,12 +222,12 @@ const KINDS: [LinkageType; 5] = [
     LinkageType::TripleRocker,
 ];
 
-/// Every so many entries almost have a change point: their curves have the sharpest corners.
+/// One in this many entries is close to a change point: such curves have the sharpest corners.
 const NEAR_CHANGE_POINT_EVERY: usize = 4;
-/// How far from it, in parts of the shortest link.
+/// Range of the distance |s + l - p - q| from the change point, in units of the shortest link.
 const FROM_CHANGE_POINT: (f64, f64) = (1e-4, 0.1);
 
-/// The same links with the longest one changed so that s + l - p - q is almost zero, on either side.
+/// Returns the same links with the longest one changed so that s + l - p - q is almost zero, on either side.
 fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, LinkageType)> {
     let mut links = [1.0, ratios.crank, ratios.coupler, ratios.follower];
     let (mut shortest, mut longest) = (0, 0);
@@ -280,26 +284,26 @@ fn atlas() -> &'static [Entry] {
     })
 }
 
-/// A stretch of an entry's curve.
+/// An arc of an entry's curve.
 #[derive(Clone, Copy, Debug)]
 struct Arc {
     entry: u32,
-    /// Where it begins and how long it is, in parts of the curve's length.
+    /// Begin and length of the arc, in parts of the curve's length.
     begin: f32,
     span: f32,
-    /// Whether it keeps to one assembly.
+    /// Whether the arc stays on one branch (assembly).
     one_branch: bool,
     points: [[f32; 2]; ON_ARC],
 }
 
-/// Points on an arc.
+/// Number of points on an arc.
 const ON_ARC: usize = 12;
-/// Arcs of an entry.
+/// Number of arcs per entry.
 const ARCS: usize = 3;
-/// Their least and greatest length, in parts of the curve's.
+/// Least and greatest length of an arc, in parts of the curve's.
 const SPANS: (f64, f64) = (0.1, 0.97);
 
-/// Centred and of unit norm; `None` where all points are one.
+/// Returns the points centred and scaled to unit norm; `None` if all points coincide.
 fn normalised(points: &[Complex]) -> Option<[[f32; 2]; ON_ARC]> {
     let middle = points.iter().sum::<Complex>() / points.len() as f64;
     let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
@@ -320,7 +324,7 @@ impl Arc {
             *p = traced.point((begin + span * m as f64 / (ON_ARC - 1) as f64).rem_euclid(1.0));
         }
         let one_branch = entry.arc.is_none() || {
-            // psi = 2 pi parameter: the toggles stand at a quarter and at three quarters.
+            // psi = 2 pi parameter: the toggles are at a quarter and at three quarters.
             let half = |s: f64| (traced.parameter(s.rem_euclid(1.0)) + 0.25).rem_euclid(1.0) < 0.5;
             let halves: Vec<bool> = (0..=24).map(|m| half(begin + span * f64::from(m) / 24.0)).collect();
             halves.iter().all(|h| *h == halves[0])
@@ -329,7 +333,8 @@ impl Arc {
         Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })
     }
 
-    /// What a similarity leaves of a target, when the arc runs as the target does and when it runs against it.
+    /// Returns the relative residual of a target after the best similarity, for the arc in the target's direction and
+    /// reversed.
     fn misfits(&self, target: &[[f32; 2]; ON_ARC]) -> [f32; 2] {
         let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
         for ((t, c), r) in target.iter().zip(&self.points).zip(self.points.iter().rev()) {
@@ -358,28 +363,28 @@ fn arcs() -> &'static [Arc] {
     })
 }
 
-/// An entry laid onto a target.
+/// An entry fitted to a target by similarity.
 #[derive(Clone, Copy, Debug)]
 struct Laid {
     entry: &'static Entry,
-    /// Where on the curve (in parts of its length from its first traced point) the target begins.
+    /// The place on the curve at which the target begins, in parts of its length from its first sample.
     begin: f64,
-    /// How much of the curve it takes.
+    /// The part of the curve's length that the target covers.
     span: f64,
-    /// +1: the target runs as the parameter grows, -1: against it.
+    /// The direction: +1 if the target runs as the parameter grows, -1 if against it.
     direction: f64,
-    /// The part of the target's spread that is left.
+    /// The residual of the similarity fit, relative to the target's spread.
     misfit: f64,
 }
 
-/// The nearest entries to a closed target, best first.
+/// The nearest entries to a target, best first.
 #[derive(Debug)]
 pub struct Matches {
     laid: Vec<Laid>,
 }
 
 impl Matches {
-    /// Matches for the target of a problem; none where no entry may be used.
+    /// Finds the matches for the target of a problem; empty if no entry may be used.
     pub fn of(starts: &Starts<'_>) -> Matches {
         let task = starts.problem().task();
         if task.closed() || task.repeats_first() { Matches::closed(starts) } else { Matches::open(starts) }
@@ -492,17 +497,17 @@ impl Matches {
         Matches { laid }
     }
 
-    /// How many.
+    /// Returns the number of matches.
     pub fn len(&self) -> usize {
         self.laid.len()
     }
 
-    /// Whether there is none.
+    /// Returns whether there are no matches.
     pub fn is_empty(&self) -> bool {
         self.laid.is_empty()
     }
 
-    /// The start of the match of a rank.
+    /// Returns the start made from the match of a rank, counted from 0.
     pub fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
         let laid = self.laid.get(rank)?;
         let traced = laid.entry.trace()?;

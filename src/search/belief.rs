@@ -1,55 +1,55 @@
-//! When the best answer of a random search is believed: a stopping rule by repeated hits.
+//! Stopping rule of a multistart search: the best answer is accepted as the global optimum after repeated hits.
 //!
-//! Batches are independent draws. The best objective is believed when it has come back, within one part in 1e6,
-//! from [`HITS`] different batches, the one that found it included. Where it is approached and never reached (at
-//! a toggle or a change point every end is a little better than the last) it is enough that [`FLAT_HITS`]
-//! batches came within one part in a thousand. A better answer starts the count anew. If a batch finds the true
-//! optimum with probability P and another with probability p, that other one is believed in its stead with a
+//! Batches are independent draws. The best objective is *believed* (the search may stop) once [`HITS`] different
+//! batches have reached it within one part in 1e6, the one that found it included. If it is approached but never
+//! reached (at a toggle or a change point every end is a little better than the last), it is enough that [`FLAT_HITS`]
+//! batches came within one part in a thousand. A better answer restarts the count. If a batch finds the true optimum
+//! with probability P and another optimum with probability p, that other one is believed in its stead with a
 //! probability below (p / (p + P))^HITS.
 
 use crate::solve::exact_float;
 use serde::{Deserialize, Serialize};
 
-/// The best objective has to come from this many batches.
+/// Batches that have to reach the best objective.
 pub const HITS: usize = 4;
-/// Or within a thousandth from this many.
+/// Batches that suffice if they only come within a thousandth of it.
 pub const FLAT_HITS: usize = 16;
-/// Errors that differ by less than this part are the same optimum.
+/// Relative difference of objectives below which they are the same optimum.
 const SAME: f64 = 1e-6;
-/// Errors that differ by less than this part are near the same optimum.
+/// Relative difference of objectives below which they are near the same optimum.
 const NEAR: f64 = 1e-3;
 
-/// What is believed of the best objective.
+/// The state of the stopping rule: the best objective and its repeated hits.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Belief {
-    /// Objectives up to this are exact, and equal.
+    /// The objective up to which answers are exact, and count as equal.
     exact: f64,
     #[serde(with = "exact_float")]
     best: f64,
     hits: usize,
     near_hits: usize,
-    /// Whether the present batch came to the best, or near it.
+    /// Whether the present batch reached the best objective; `near`: whether it came near it.
     hit: bool,
     near: bool,
 }
 
 impl Belief {
-    /// Nothing found; objectives up to `exact` count as equal.
+    /// Creates the state before anything is found; objectives up to `exact` count as equal.
     pub fn new(exact: f64) -> Self {
         Belief { exact, best: f64::INFINITY, hits: 0, near_hits: 0, hit: false, near: false }
     }
 
-    /// The best acceptable objective so far; infinite where there is none.
+    /// Returns the best acceptable objective so far; infinite if there is none.
     pub fn best(&self) -> f64 {
         self.best
     }
 
-    /// Whether an objective would be a better optimum than the best.
+    /// Returns whether an objective would be a better optimum than the best.
     pub fn would_improve(&self, objective: f64) -> bool {
         self.best.is_infinite() || (self.best > self.exact && objective < self.best * (1.0 - SAME))
     }
 
-    /// The present batch came to an acceptable answer with this objective.
+    /// Records an acceptable answer of this objective in the present batch.
     pub fn came_to(&mut self, objective: f64) {
         if self.would_improve(objective) {
             (self.hits, self.hit) = (0, false);
@@ -62,7 +62,8 @@ impl Belief {
         self.near |= self.within(NEAR, objective);
     }
 
-    /// The present batch has an end of this objective that no one has judged: at most a return to the best.
+    /// Records an unjudged local optimum of this objective in the present batch. It counts at most as a repeated hit of
+    /// the best, never as a better answer.
     pub fn came_back_to(&mut self, objective: f64) {
         if self.best.is_finite() && !self.would_improve(objective) {
             self.hit |= self.within(SAME, objective);
@@ -74,19 +75,19 @@ impl Belief {
         objective <= self.best + (part * self.best).max(self.exact)
     }
 
-    /// The present batch is over.
+    /// Ends the present batch and counts its hits.
     pub fn end_batch(&mut self) {
         self.hits += usize::from(self.hit);
         self.near_hits += usize::from(self.near);
         (self.hit, self.near) = (false, false);
     }
 
-    /// How many batches came to the best, and how many near it.
+    /// Returns the number of batches that reached the best objective, and the number that came near it.
     pub fn hits(&self) -> (usize, usize) {
         (self.hits, self.near_hits)
     }
 
-    /// Whether the best is believed.
+    /// Returns whether the best objective has enough repeated hits to be believed.
     pub fn is_firm(&self) -> bool {
         self.hits >= HITS || self.near_hits >= FLAT_HITS
     }
@@ -96,7 +97,7 @@ impl Belief {
 mod tests {
     use super::*;
 
-    /// The belief after batches that came to these objectives.
+    /// Returns the state after batches that reached these objectives.
     fn after(batches: &[&[f64]]) -> Belief {
         let mut belief = Belief::new(1e-20);
         for batch in batches {

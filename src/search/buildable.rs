@@ -1,9 +1,9 @@
-//! The best candidate that can be built, where the best by error has something against it.
+//! The best buildable candidate, for a problem whose best candidate by error has warnings.
 //!
-//! First among all that was found. Where the warning is of the linkage itself (transmission angle, link ratio,
-//! change point) a second search follows, of the same problem with its limits tightened to what can be built:
-//! from the answers found so far, then in rounds of fresh starts, until the best has come back [`HITS`] times,
-//! nothing better has come of [`QUIET`] rounds, or as much has been spent as the caller allows.
+//! It is first looked for among all candidates found. If the warning is of the linkage itself (transmission angle, link
+//! ratio, change point), a second search follows, of the same problem with its limits tightened to those of a buildable
+//! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached [`HITS`]
+//! times, [`QUIET`] rounds have brought nothing better, or the evaluations that the caller allows are used.
 
 use super::costs::marginal;
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, RoundOutcome, judged, polish, round};
@@ -19,57 +19,58 @@ use crate::problem::spec::ProblemSpec;
 use crate::record::{Candidate, Evaluations, WarningKind};
 use rayon::prelude::*;
 
-/// The best answer of the second search has to come back from this many rounds,
+/// Rounds that have to reach the best answer of the second search.
 pub const HITS: usize = 4;
-/// or so many rounds have to bring nothing better.
+/// Rounds without a better answer after which the second search ends.
 pub const QUIET: usize = 24;
-/// Errors that differ by less than this part are the same optimum.
+/// Relative difference of errors below which they are the same optimum.
 const SAME_OPTIMUM: f64 = 1e-6;
-/// Rounds side by side: the same number whatever the threads.
+/// Rounds per parallel batch: the same number for any number of threads.
 const BATCH: u64 = 8;
 /// Distinct answers of the main search that the second one starts from.
 const WARM: usize = 8;
-/// Starts from each, with the shortest link brought to this part of itself. On the boundary between two types
-/// there is no derivative where the links align, and nothing moves from there.
+/// Factors of the shortest link for the starts from each answer. On the boundary between two types, where the links
+/// align, there is no derivative, and a solver does not move from there.
 const SHORTER: [f64; 3] = [1.0, 0.9, 0.5];
-/// Starts with a shorter link first meet this transmission angle (degrees; where more is asked, that)
-/// and approach the limit from inside.
+/// The transmission angle (degrees; or the problem's limit, if that is larger) that starts with a shorter link meet
+/// first, so that they approach the limit from inside.
 const STRICT_DEG: f64 = 30.0;
-/// Steps and rounds of the multipliers that this is given.
+/// Solver steps and rounds of the multipliers for that first fit.
 const STRICT_STEPS: usize = 100;
 const STRICT_ROUNDS: usize = 6;
-/// The part of what is allowed that the warm starts get, and the part that is kept for the way off a change
+/// The share of the allowed evaluations for the warm starts, and the share reserved for the move away from a change
 /// point.
 const WARM_SHARE: f64 = 0.5;
 const LAST_SHARE: f64 = 0.1;
-/// Degrees by which the limit of the transmission angle is raised on that way, and how often the least raise that
-/// suffices is halved then.
+/// Degrees by which the limit of the transmission angle is raised in that move, and the number of bisections of the
+/// least raise that suffices.
 const RAISES: [f64; 5] = [1.0, 3.0, 8.0, 18.0, 35.0];
 const HALVINGS: usize = 5;
-/// So many of the best go that way, until one of them need not.
+/// Number of the best candidates from which that move is made, until one of them needs no move.
 const MOST_FROM: usize = 3;
-/// Rounds of the second search draw from streams that the main search does not reach.
+/// Index of the first round of the second search: its random streams are apart from those of the main search.
 const FIRST_ROUND: u64 = 1 << 40;
-/// The transmission angle aimed at above the least, degrees: rounding must not fall below it.
+/// Margin in degrees of the transmission angle aimed at over the least: rounding must not fall below it.
 const ABOVE: f64 = 1e-6;
 
-/// The outcome of looking for something to build.
+/// The outcome of the search for a buildable candidate.
 #[derive(Clone, Debug, Default)]
 pub struct Buildable {
-    /// The best accepted candidate without what the first one is warned of; with its own warnings, its rank
-    /// that of the equal one among the ranked, else 0.
+    /// The best accepted candidate without the first one's kind of warnings; with its own warnings, and with the rank
+    /// of the equal one among the ranked, else 0.
     pub candidate: Option<Candidate>,
-    /// Whether a second search was called for.
+    /// Whether a second search was needed.
     pub searched: bool,
-    /// What the second search cost.
+    /// The evaluations of the second search.
     pub evaluations: Evaluations,
 }
 
-/// Looks for the best accepted candidate without warnings beside `ranked`, whose first has some; `others` is
-/// what else was found, `allowance` the evaluations that a second search may use. Without warnings of the
-/// first, or where the first is not accepted, it does nothing.
+/// Looks for the best accepted candidate without warnings beside `ranked`, whose first has some; `others` are the other
+/// candidates found, `allowance` the evaluations that a second search may use. Does nothing if the first has no
+/// warnings or is not accepted.
 ///
-/// On a limit of the problem nothing is searched: a candidate that lies on none is taken where one was found.
+/// If the only warning is that the first lies on a limit of the problem, nothing is searched: a candidate that lies on
+/// none is taken if one was found.
 pub fn buildable(
     problem: &Problem,
     ranked: &[Candidate],
@@ -99,7 +100,7 @@ pub fn buildable(
     };
     ranked.iter().for_each(&mut offer);
     others.iter().for_each(&mut offer);
-    // As the main search: a far target is searched around its own centre.
+    // As in the main search, a far target is moved to the origin.
     let centre = problem.task().centre();
     let away = if centre.norm() > FAR * problem.task().size() { centre } else { Complex::new(0.0, 0.0) };
     let spec = tightened(problem.spec()).shifted([-away.re, -away.im]);
@@ -128,8 +129,8 @@ pub fn buildable(
     outcome
 }
 
-/// The problem with its limits on transmission angle and link ratio brought to what can be built. Where any type
-/// will do, each of the proper ones is aimed at: the search then keeps off the boundaries between them.
+/// Returns the problem with its limits on transmission angle and link ratio tightened to those of a buildable linkage.
+/// If any type is allowed, each of the proper ones is aimed at: the search then keeps off the boundaries between them.
 fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     let mut spec = spec.clone();
     let require = &mut spec.require;
@@ -148,7 +149,7 @@ fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     spec
 }
 
-/// The tightened problem with a transmission angle well above its limit.
+/// Returns the tightened problem with a limit of the transmission angle well above its own.
 fn stricter(tight: &Problem) -> Option<Problem> {
     let mut spec = tight.spec().clone();
     let asked = spec.require.transmission_deg_min?;
@@ -156,7 +157,7 @@ fn stricter(tight: &Problem) -> Option<Problem> {
     Problem::new(spec).ok()
 }
 
-/// Accepted candidates of the tightened problem, and what they cost.
+/// Returns accepted candidates of the tightened problem, and the evaluations used.
 fn second_search(
     tight: &Problem,
     known: &[Candidate],
@@ -168,7 +169,8 @@ fn second_search(
     let mut spent = Evaluations::default();
     let mut found: Vec<Candidate> = Vec::new();
     let warm = chosen(tight, known, WARM);
-    // Shared out evenly among the warm starts; then fresh ones, then the way off a change point.
+    // Evaluations: first shared evenly among the warm starts, then for fresh ones, then for the move away from a change
+    // point.
     let warm_share = (allowance as f64 * WARM_SHARE) as u64;
     let until = allowance - (allowance as f64 * LAST_SHARE) as u64;
     let each = warm_share / (WARM * SHORTER.len()) as u64;
@@ -245,7 +247,7 @@ fn second_search(
     let mut moved = Vec::new();
     for i in chosen(tight, &found, MOST_FROM) {
         if !is_near_change_point(tight, &found[i]) {
-            // What comes after it is worse.
+            // The candidates after it are worse.
             break;
         }
         let (candidate, evaluations) = off_the_change_point(tight, &found[i], each.min(left), budget);
@@ -262,8 +264,8 @@ fn is_near_change_point(problem: &Problem, candidate: &Candidate) -> bool {
     warnings(problem, candidate).iter().any(|warning| warning.kind == WarningKind::ChangePoint)
 }
 
-/// From an answer that is almost a change point the nearest that is not: the Grashof margin grows with the worst
-/// transmission angle, so that limit is raised until the margin suffices, and the least such limit is bisected.
+/// Finds the nearest answer that is not almost a change point, from one that is: the Grashof margin grows with the
+/// worst transmission angle, so that limit is raised until the margin suffices, and the least such limit is bisected.
 fn off_the_change_point(
     tight: &Problem,
     from: &Candidate,

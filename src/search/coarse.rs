@@ -1,7 +1,7 @@
-//! Dense targets in fewer points: a search explores the coarse problem and fits the answer to all points.
+//! Coarsening of dense targets: a search explores the problem with fewer points and fits the answer to all points.
 //!
-//! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group weighs
-//! what its points weigh together. The pivots, bounds and requirements stay the problem's own.
+//! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group has the total
+//! weight of its points. The pivots, bounds and requirements stay the problem's own.
 
 use super::starts::Start;
 use crate::linkage::Complex;
@@ -10,33 +10,33 @@ use crate::problem::torus::{Positions, TorusFit};
 use crate::task::Timing;
 use std::ops::Range;
 
-/// A target of more points than this is explored in groups.
+/// The number of points above which a target is explored in groups.
 const DENSE: usize = 48;
-/// How many groups.
+/// Number of groups.
 const GROUPS: usize = 32;
 
-/// A dense problem with its coarse image.
+/// The coarse problem of a dense one, with the groups of points.
 #[derive(Clone, Debug)]
 pub struct Coarse {
-    /// The problem of the groups.
+    /// The problem whose points are the groups' means.
     pub problem: Problem,
     groups: Vec<Range<usize>>,
     cyclic: bool,
 }
 
-/// The points of a target, a closing one not counted twice.
+/// Returns the number of points of a target, a repeated closing point not counted twice.
 fn points_of(problem: &Problem) -> usize {
     let task = problem.task();
     if task.repeats_first() { task.len() - 1 } else { task.len() }
 }
 
 impl Coarse {
-    /// Whether a target has so many points, at whatever crank angles, that it is explored in groups.
+    /// Returns whether a target has free timing and so many points that it is explored in groups.
     pub fn is_for(problem: &Problem) -> bool {
         points_of(problem) > DENSE && matches!(problem.task().timing(), Timing::Free)
     }
 
-    /// The coarse image; `None` where the target has few points, is timed, or cannot be grouped.
+    /// Returns the coarse problem; `None` if the target has few points, is timed, or cannot be grouped.
     pub fn of(problem: &Problem) -> Option<Coarse> {
         let task = problem.task();
         let n = points_of(problem);
@@ -61,8 +61,8 @@ impl Coarse {
         Some(Coarse { problem: Problem::new(spec).ok()?, groups, cyclic })
     }
 
-    /// The start of the dense problem from one of the coarse one: each point between its group's position and
-    /// the next group's, in equal steps of crank and coupler, brought back to the curve.
+    /// Returns the start of the dense problem from one of the coarse problem: the positions are interpolated between a
+    /// group's and the next group's, in equal steps of crank and coupler, and brought back to the curve.
     pub fn refine(&self, dense: &Problem, coarse: &Start) -> Option<Start> {
         let (at, count) = (&coarse.positions, self.groups.len());
         let between = |from: [Complex; 2], to: [Complex; 2], part: f64| -> [Complex; 2] {
@@ -81,7 +81,7 @@ impl Coarse {
                 };
                 positions.push(match neighbour {
                     Some(next) => between(at[k], at[next], part.abs()),
-                    // Beyond the ends the motion goes on as it came.
+                    // Beyond the ends the motion is extrapolated.
                     None if part < 0.0 => between(at[k], at[k + 1], part),
                     None => between(at[k], at[k - 1], -part),
                 });

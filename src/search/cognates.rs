@@ -1,16 +1,16 @@
-//! The same curve by another linkage: each candidate's Roberts cognates, judged under the problem.
+//! Roberts cognates of the candidates: the other linkages of the same curve, judged under the problem.
 //!
-//! With free timing both cognates meet every point with the candidate's error. With prescribed timing only one
-//! whose crank turns in step with the candidate's does. With z = (P - C)/(D - C) that is the cognate at B,
-//! driven at G = A + z (B - A): its crank is (1 - z)(C - A), so that phi' = phi + arg(1 - z) for the whole
-//! motion. Where its angles may be counted from:
+//! With free timing both cognates meet every point with the candidate's error. With prescribed timing only one whose
+//! crank turns in step with the candidate's does. With z = (P - C)/(D - C) that is the cognate at B, driven at G = A +
+//! z (B - A): its crank is (1 - z)(C - A), so that phi' = phi + arg(1 - z) for the whole motion. By the reference of
+//! the crank angles:
 //!
 //! - offset free: the increments are the same, it keeps the timing;
 //! - offset ground: its ground line is B - G = (1 - z)(B - A), turned by the same angle: it keeps the timing;
-//! - offset fixed: it keeps it only where 1 - z is real and positive (P on the line C-D, on the side of C).
+//! - offset fixed: it keeps the timing only if 1 - z is real and positive (P on the line C-D, on the side of C).
 //!
-//! Its coupler turns in step with the candidate's follower and its follower with the candidate's coupler, so
-//! that its transmission angle is the candidate's too; what it may have better is its size and its place.
+//! Its coupler turns in step with the candidate's follower and its follower with the candidate's coupler, so that its
+//! transmission angle is the candidate's too; it can only be better in size and place.
 
 use super::Budget;
 use super::multistart::unwrapped;
@@ -24,17 +24,17 @@ use crate::record::{Alternative, Candidate};
 use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 
-/// Sums of squares that differ by less than this part are the same error.
+/// Relative difference of sums of squares below which they are the same error.
 pub const SAME_ERROR: f64 = 1e-6;
-/// Cognates of a linkage beside itself.
+/// Number of cognates of a linkage beside itself.
 const COGNATES: usize = 2;
-/// A phase below this (radians) is none.
+/// The phase (radians) below which it counts as zero.
 const NO_PHASE: f64 = 1e-13;
 
-/// Gives each candidate its cognates as alternatives; where a cognate is the better linkage (accepted, or of a
-/// better worst transmission angle, or smaller) the two change places. Ranks are given anew.
+/// Adds to each candidate its cognates as alternatives; if a cognate is the better linkage (accepted, or of a better
+/// worst transmission angle, or smaller) the two change places. Ranks are given anew.
 ///
-/// Once the budget has stopped, those that would take long to judge stay without alternatives.
+/// Once the budget has stopped, candidates that would take long to judge stay without alternatives.
 pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget<'_>) {
     let points = COGNATES * problem.task().len() * candidates.len();
     candidates.par_iter_mut().filter(|_| budget.leaves_time_for(points)).for_each(|candidate| {
@@ -44,14 +44,14 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget
         forms.sort_by_cached_key(Merit::of);
         let first = forms.remove(0);
         if first.linkage != candidate.linkage {
-            // It takes the place with figures of its own.
+            // The cognate takes the place, with its own figures.
             match assess(problem, &first.linkage, &first.crank_deg, &first.t1_at) {
                 Some(judged) => *candidate = judged,
                 None => return,
             }
         }
-        // Near a change point far from the origin a cognate's own rounding can move its curve: none is offered. And what
-        // was the candidate's error before the two changed places need not be the other's.
+        // Near a change point far from the origin a cognate's own rounding can move its curve: such a cognate is not
+        // offered. Besides, after the two have changed places their errors need not be equal.
         let size = problem.task().size();
         forms.retain(|form| {
             let one: At<'_> = (&candidate.linkage, &candidate.crank_deg, &candidate.t1_at);
@@ -70,11 +70,12 @@ pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget
     }
 }
 
-/// Coupler points of cognates agree within this part of the larger linkage and the target's size.
+/// Tolerance for the coupler points of cognates, in parts of the larger linkage and the target's size.
 const SAME_POINT: f64 = 1e-7;
 
-/// The first point at which two linkages with their crank angles (degrees) and assemblies do not have one coupler
-/// point, to `SAME_POINT` of the target's `size` or their longest link; `None` where they have everywhere.
+/// Returns the index of the first point at which the coupler points of two linkages, at their crank angles (degrees)
+/// and assemblies, differ by more than `SAME_POINT` of the target's `size` or their longest link; `None` if they agree
+/// everywhere.
 pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
     let span = one.0.longest_link().max(other.0.longest_link()).max(size);
     let point = |(linkage, crank_deg, t1_at): At<'_>, i: usize| {
@@ -86,13 +87,13 @@ pub fn first_apart(size: f64, one: At<'_>, other: At<'_>) -> Option<usize> {
     })
 }
 
-/// A coupler point is rounded by less than this part of the largest number that it is computed from, where no toggle is
-/// near: two roots, two divisions and a dozen sums and products.
+/// Bound of the rounding error of a coupler point, in parts of the largest number that it is computed from, if no
+/// toggle is near: two roots, two divisions and a dozen sums and products.
 const ROUNDED: f64 = 32.0 * f64::EPSILON;
 
-/// Whether the sum of squares of a linkage is that of the candidate whose curve it draws: to [`SAME_ERROR`], to what
-/// counts as exact, or to what rounding makes of it. The margins are taken `times` over: who checks what was computed
-/// elsewhere takes them twice.
+/// Returns whether the sum of squares of a linkage is that of the candidate whose curve it draws: within
+/// [`SAME_ERROR`], within the bound for exact answers, or within rounding. The margins are multiplied by `times`: a
+/// check of results that were computed elsewhere doubles them.
 ///
 /// Each error vector is the difference of a point and a coupler point, off by at most r, `ROUNDED` of the largest
 /// coordinate or length of the two linkages and the points; so that |sqrt(s_1) - sqrt(s_2)| <= 2 r sqrt(n).
@@ -107,7 +108,7 @@ pub fn has_error_of(problem: &Problem, candidate: &Candidate, form: (&FourBar, f
     sum_sq <= same.max(times * exact_sum_sq(problem)).max((own.sqrt() + times * rounded).powi(2))
 }
 
-/// The largest number that a coupler point of a linkage is computed from.
+/// Returns the largest number that a coupler point of a linkage is computed from.
 fn magnitude(linkage: &FourBar) -> f64 {
     let pivots = linkage.crank_pivot().norm().max(linkage.follower_pivot().norm());
     pivots.max(linkage.longest_link()).max(linkage.crank_side())
@@ -116,7 +117,7 @@ fn magnitude(linkage: &FourBar) -> f64 {
 /// A linkage with its crank angle (degrees) and assembly at each point.
 pub type At<'a> = (&'a FourBar, &'a [f64], &'a [AssemblyMode]);
 
-/// What tells linkages of the same curve and error apart, on a grid above rounding; the less, the better.
+/// The order of linkages of the same curve and error, on a grid above rounding; less is better.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Merit {
     refused: bool,
@@ -154,13 +155,13 @@ fn alternative(form: &Candidate) -> Alternative {
     }
 }
 
-/// The names of the requirements that a candidate does not meet.
+/// Returns the names of the requirements that a candidate does not meet.
 pub fn not_met(candidate: &Candidate) -> Vec<String> {
     candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone()).collect()
 }
 
-/// The cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem; its
-/// distances to the whole curve are theirs, for the curve is the same.
+/// Returns the cognates of a candidate that meet the points as it does, [at A, at B], each judged under the problem;
+/// they share the distances to the whole curve, since the curve is the same.
 pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     let Some((angle, t1)) = candidate.crank_deg.first().zip(candidate.t1_at.first()) else {
         return Vec::new();
@@ -180,7 +181,7 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
 
 type Placed = (FourBar, Vec<f64>, Vec<AssemblyMode>);
 
-/// The cognate at the candidate's positions.
+/// Returns the cognate's crank angles and assemblies at the candidate's positions.
 fn positions(candidate: &Candidate, cognate: &Cognate) -> Option<Vec<(f64, AssemblyMode)>> {
     let at = |(deg, t1): (&f64, &AssemblyMode)| cognate.position_of(deg.to_radians(), *t1);
     candidate.crank_deg.iter().zip(&candidate.t1_at).map(at).collect()
@@ -219,7 +220,7 @@ fn in_step(
     Some((linkage, crank_deg, t1_at))
 }
 
-/// +1 where the crank runs through the prescribed angles as they are written, -1 where it runs the other way.
+/// Returns +1 if the crank runs through the prescribed angles as they are written, -1 if it runs the other way.
 pub(super) fn direction(written: &[f64], crank_deg: &[f64]) -> f64 {
     let first = written.first().copied().unwrap_or(0.0);
     let away = |i: &usize| (written[*i] - first).abs();

@@ -1,17 +1,18 @@
-//! Why nothing is acceptable: which requirements conflict, and the least change after which something is.
+//! Conflict analysis: which requirements cannot be met together, and the least relaxation after which an answer is
+//! acceptable.
 //!
-//! A demand helps when a search without it ends with something acceptable. Every set of demands that cannot be
-//! met together (a conflict) holds all that help; a minimal one is what is left when whatever can be left out
-//! without ending the conflict is left out, one after the other. For each demand that helps the smallest
-//! loosening is looked for between its limits and what was attained without it: steps inward, each taken when
-//! a fit from what is known, or else a short search, ends acceptable there. The limits are then rounded outward
-//! to what reads well, and proposed only if the search itself, run with them as it would be when they are
-//! typed, ends with an accepted candidate. Where no single demand helps, pairs are tried.
+//! A demand *helps* if a search without it ends with something acceptable. Every set of demands that cannot be met
+//! together (a conflict) contains all that help. A minimal conflict is found by deletion: each demand that can be left
+//! out without ending the conflict is left out, one after the other. For each demand that helps the smallest loosening
+//! is looked for between its limits and the values attained without it: steps inward, each taken if a fit from known
+//! candidates, or else a short search, ends acceptable there. The limits are then rounded outward to few digits, and
+//! proposed only if the search itself, run with them as it would be when they are typed, ends with an accepted
+//! candidate. If no single demand helps, pairs are tried.
 //!
-//! Every design that a trial meets is also judged by the problem as it is, and the nearest ones are fitted under all of
-//! it. One that is acceptable refutes the conflict: it becomes an answer, and nothing is explained.
+//! Every design that a trial finds is also judged by the problem itself, and the nearest ones are fitted under all of
+//! its requirements. An acceptable one refutes the conflict: it becomes an answer, and nothing is explained.
 //!
-//! All of it says what was found, not what exists: a search that finds nothing is no proof that there is nothing.
+//! The results are findings, not proofs: a search that finds nothing does not prove that there is nothing to find.
 
 use super::cognates;
 use super::loosen::{Demand, changes, judged_under, rounded_outward};
@@ -27,35 +28,37 @@ use crate::record::{Candidate, Conflict, Relaxation};
 use crate::solve::population::PopulationError;
 use crate::task::error::rms;
 
-/// Evaluations of a trial at most ..
+/// Most evaluations of a trial.
 const TRIAL: u64 = 20_000;
-/// .. and at most one part in this many of the problem's own budget.
+/// A trial also uses at most one part in this many of the problem's own budget.
 const TRIAL_SHARE: u64 = 4;
-/// No new trial begins once as much as this many trials is spent. (A proof is the whole search, and apart.)
+/// Budget of all trials, in trials: no new one begins once it is spent. (A proof is the whole search, and counted
+/// apart.)
 const ALLOWANCE: u64 = 40;
-/// A fit from what is known gets one part in this many of a trial: what succeeds does so soon.
+/// A fit from a known candidate gets one part in this many of a trial: one that succeeds does so soon.
 const FIT_SHARE: u64 = 16;
-/// Evaluations of a fit that leads a design of a trial to the problem as it is, at most: each is a convex program.
+/// Most evaluations of a fit that starts from a design of a trial under all requirements of the problem: each is a
+/// convex program.
 const LED_IN: u64 = 150;
-/// Answers of a trial that further fits start from.
+/// Number of answers of a trial from which further fits start.
 const WARM: usize = 4;
-/// Limits between asked and attained that are tried.
+/// Most limits tried between the asked and the attained ones.
 const STEPS: usize = 30;
-/// The way inward is given up when a step of this part of it leads to nothing.
+/// Relative step below which the steps inward end.
 const SHORTEST_STEP: f64 = 0.02;
-/// A short search is worth its price where the step is at least this part of the way.
+/// Least relative step at which a short search is worth its cost.
 const SEARCHED_STEP: f64 = 0.2;
-/// How much longer the next step is after one that succeeded, and shorter after one that did not.
+/// Factor of the next step after one that succeeded, and after one that did not.
 const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.5;
-/// Proposals at most.
+/// Most proposals.
 const PROPOSALS: usize = 5;
-/// A bound that is this near, in parts of what it is measured against, is stood on.
+/// Distance from a bound, in parts of its scale, within which the bound is active.
 const STANDS_ON: f64 = 1e-6;
-/// A change that has no measure (another type, any order) counts as one of the whole.
+/// The distance counted for a change that has no measure (another type, any order): one of the whole.
 const WHOLE: f64 = 1.0;
 
-/// What was found out.
+/// The conflict and the relaxations found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Explained {
     /// Requirements that cannot be met together.
@@ -64,12 +67,12 @@ pub struct Explained {
     pub relaxations: Vec<Relaxation>,
 }
 
-/// Explains a search that found nothing acceptable; nothing where it found something or the budget has stopped.
+/// Explains a search that found nothing acceptable; returns nothing if it found something or the budget has stopped.
 ///
-/// Where a trial meets a design that is acceptable after all, there is nothing to explain, and where the method is `auto`
-/// the outcome's candidates are chosen anew with it.
+/// If a trial finds a design that is acceptable after all, there is nothing to explain, and if the method is `auto` the
+/// outcome's candidates are chosen anew with it.
 ///
-/// Where the clock or a cancellation ends it early there is no explanation, and that becomes the reason why the
+/// If the time limit or a cancellation ends it early there is no explanation, and that becomes the reason why the
 /// search ended: the record cannot be repeated then.
 ///
 /// # Errors
@@ -80,7 +83,7 @@ pub fn explain(
     budget: &Budget<'_>,
     observer: &Observer<'_>,
 ) -> Result<Explained, PopulationError> {
-    // Of exact linkages all are known, each with what it does not meet.
+    // All exact linkages are known, each with the requirements that it does not meet.
     let listed = problem.spec().solve.method == Method::Continuation;
     if listed || budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
@@ -106,7 +109,7 @@ pub fn explain(
         return Ok(if budget.stopped() { Explained::default() } else { explained });
     }
     if problem.spec().solve.method != Method::Auto {
-        // The answers are to be those of the method that was asked for.
+        // The answers have to be those of the method that was asked for.
         return Ok(Explained::default());
     }
     let mut found = std::mem::take(&mut outcome.candidates);
@@ -114,7 +117,7 @@ pub fn explain(
     found.extend(met);
     (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
     cognates::offer(problem, &mut outcome.candidates, budget);
-    // How often the best came back was counted of another one.
+    // The repeated hits were counted for another best answer.
     outcome.repeats = None;
     if !outcome.used.iter().any(|used| used == RELAXED) {
         outcome.used.push(RELAXED.into());
@@ -134,7 +137,7 @@ struct Inquiry<'a> {
     refused: Vec<Candidate>,
     /// Designs that are acceptable after all.
     met: Vec<Candidate>,
-    /// What was acceptable without these demands.
+    /// Acceptable candidates found without these demands, for each set tried.
     tried: Vec<(Vec<Demand>, Vec<Candidate>)>,
 }
 
@@ -175,8 +178,8 @@ impl Inquiry<'_> {
         })
     }
 
-    /// The demands of the problem; of the design's those that a refused candidate stands on or exceeds, since a
-    /// bound that nothing touches stands in no way.
+    /// Returns the demands of the problem; of the design's bounds only those that are active at a refused candidate or
+    /// exceeded by it, since an inactive bound does not restrict.
     fn demands(&self, refused: &[Candidate]) -> Vec<Demand> {
         let spec = self.problem.spec();
         let stands_on = |demand: &Demand, candidate: &Candidate| {
@@ -194,7 +197,7 @@ impl Inquiry<'_> {
         Demand::of(self.problem).into_iter().filter(keep).collect()
     }
 
-    /// Acceptable candidates of the problem without some demands.
+    /// Returns acceptable candidates of the problem without some demands.
     fn without(&mut self, demands: &[Demand]) -> Result<Vec<Candidate>, PopulationError> {
         if let Some((_, found)) = self.tried.iter().find(|(tried, _)| tried == demands) {
             return Ok(found.clone());
@@ -206,7 +209,7 @@ impl Inquiry<'_> {
         let mut spec = all.fold(self.problem.spec().clone(), |spec, d| d.dropped(self.problem, spec));
         spec.solve.candidates = WARM;
         let mut found = self.known_under(&spec);
-        // A tolerance leads no fit: the search that is explained has already looked for the nearest to it.
+        // A tolerance does not guide a fit: the search that is explained has already looked for the nearest to it.
         if found.is_empty() || demands != [Demand::Tolerance] {
             found.extend(self.short_search(spec, self.trial, WARM)?);
         }
@@ -214,14 +217,15 @@ impl Inquiry<'_> {
         Ok(found)
     }
 
-    /// The refused candidates that are acceptable under a looser specification.
+    /// Returns the refused candidates that are acceptable under a looser specification.
     fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
         let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
         let judged = |c: &Candidate| assess(&problem, &c.linkage, &c.crank_deg, &c.t1_at);
         self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
     }
 
-    /// A search of `auto` with a budget of its own: what it accepts. `fits` as for [`Inquiry::outcome`].
+    /// Runs a search of `auto` with a budget of its own and returns the candidates that it accepts. `fits` as for
+    /// [`Inquiry::outcome`].
     fn short_search(
         &mut self,
         mut spec: ProblemSpec,
@@ -235,8 +239,8 @@ impl Inquiry<'_> {
         Ok(accepted)
     }
 
-    /// What the search accepts of a problem, and what it cost. What it meets is judged by the problem as it is, and this
-    /// many of its ends are fitted under all of it.
+    /// Returns the candidates of a problem that the search accepts, and its evaluations. All that it finds are judged
+    /// by the problem itself, and `fits` of its ends are fitted under all of its requirements.
     fn outcome(&mut self, spec: ProblemSpec, fits: usize) -> Result<(Vec<Candidate>, u64), PopulationError> {
         let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
         (self.observer)(&Progress {
@@ -262,15 +266,15 @@ impl Inquiry<'_> {
         Ok((accepted, outcome.evaluations.objective))
     }
 
-    /// A minimal set of demands that cannot be met together; `helping` are in every such set.
+    /// Returns a minimal set of demands that cannot be met together; `helping` are in every such set.
     fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
-        // Left out first: bounds and policies, which often are defaults that nobody has asked for.
+        // Bounds and policies are left out first: they often are defaults that nobody has asked for.
         let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
         if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
             return Ok(helping.to_vec());
         }
         if helping.is_empty() && self.without(&others)?.is_empty() {
-            // Nothing is acceptable even without all of them: it is not they that conflict.
+            // Nothing is acceptable even without all of them, so they are not in conflict.
             return Ok(Vec::new());
         }
         let mut left_out: Vec<Demand> = Vec::new();
@@ -282,13 +286,13 @@ impl Inquiry<'_> {
             }
         }
         if self.exhausted() {
-            // Those that help belong to every conflict; whether they are one by themselves was not found out.
+            // Those that help belong to every conflict; it was not found out if they are one by themselves.
             return Ok(Vec::new());
         }
         Ok(demands.iter().copied().filter(|d| !left_out.contains(d)).collect())
     }
 
-    /// The least loosening of some demands together, with its distance.
+    /// Returns the least loosening of some demands together, with its distance.
     fn relaxation(&mut self, demands: &[Demand]) -> Result<Option<(f64, Relaxation)>, PopulationError> {
         let found = self.without(demands)?;
         let mut types = Vec::new();
@@ -326,7 +330,7 @@ impl Inquiry<'_> {
         Ok(None)
     }
 
-    /// The least loosening of the limits of `demands` from `base`, which has the others of them loosened.
+    /// Returns the least loosening of the limits of `demands` from `base`, in which their other parts are loosened.
     fn least(
         &mut self,
         demands: &[Demand],
@@ -352,8 +356,8 @@ impl Inquiry<'_> {
         let outermost = reached.swap_remove(first);
         warm.swap(0, first);
         let mut outer = outermost.clone();
-        // The error is judged by the tolerance, but no fit is led by it: what was found is what there is. Beside
-        // other limits it follows: it becomes what the last fit leaves.
+        // The tolerance judges the error but does not guide a fit: the error found is the best known. Beside other
+        // limits it follows: it becomes the error that the last fit leaves.
         if measured != [Demand::Tolerance] && !measured.is_empty() {
             let mut step: f64 = 0.5;
             for _ in 0..STEPS {
@@ -373,7 +377,7 @@ impl Inquiry<'_> {
                 }
             }
         }
-        // What a fit from nearby attains a search from anywhere need not: a little more room, then all of it.
+        // A fit from nearby may attain more than a search from anywhere: allow a little more room, then all of it.
         let tries = [outer.clone(), ladder.between(1.1, &outer), outermost];
         let mut before: Option<Vec<f64>> = None;
         for limits in tries {
@@ -387,7 +391,7 @@ impl Inquiry<'_> {
             let spec = ladder.spec(base, &limits);
             before = Some(limits.clone());
             let Some(set) = changes(self.problem, &spec, demands) else { return Ok(None) };
-            // With the settings of the problem: what comes out is what comes out when it is typed.
+            // With the settings of the problem: the result is the one obtained when the change is typed.
             let (accepted, _) = self.outcome(spec, 0)?;
             if let Some(best) = accepted.first() {
                 let without_measure = (demands.len() - measured.len()) as f64 * WHOLE;
@@ -399,7 +403,7 @@ impl Inquiry<'_> {
         Ok(None)
     }
 
-    /// A candidate that is acceptable under other limits: by fits from what is known, else (`search`) by a
+    /// Returns a candidate that is acceptable under other limits: by fits from known candidates, else (`search`) by a
     /// short search.
     fn accepted_at(
         &mut self,
@@ -427,7 +431,7 @@ impl Inquiry<'_> {
     }
 }
 
-/// What the change of a demand's limits is measured against: the limit itself, or the extent of its bounds.
+/// Returns the scale by which a change of a demand's limits is measured: the limit itself, or the extent of its bounds.
 fn scale(demand: Demand, spec: &ProblemSpec) -> f64 {
     let limits = demand.limits(spec).unwrap_or_default();
     let largest = limits.iter().map(|l| l.value.abs()).fold(0.0, f64::max);
@@ -442,7 +446,7 @@ fn scale(demand: Demand, spec: &ProblemSpec) -> f64 {
     }
 }
 
-/// The limits of several demands side by side, with their outward sides.
+/// The limits of several demands, with their outward sides.
 struct Ladder {
     demands: Vec<Demand>,
     asked: Vec<f64>,
@@ -453,7 +457,7 @@ struct Ladder {
 }
 
 impl Ladder {
-    /// `None` where one of the demands has no limits as numbers.
+    /// Collects the limits; `None` if one of the demands has no limits as numbers.
     fn new(problem: &Problem, demands: &[Demand]) -> Option<Ladder> {
         let mut ladder = Ladder {
             demands: demands.to_vec(),
@@ -476,7 +480,7 @@ impl Ladder {
         Some(ladder)
     }
 
-    /// The limits that a candidate just meets, none inside of what is asked.
+    /// Returns the limits that a candidate just meets, none stricter than asked.
     fn reached(&self, problem: &Problem, candidate: &Candidate) -> Option<Vec<f64>> {
         let judged = judged_under(problem, candidate)?;
         let mut limits = Vec::new();
@@ -489,13 +493,13 @@ impl Ladder {
         (limits.len() == self.asked.len()).then(|| (0..limits.len()).map(outer).collect())
     }
 
-    /// The greatest relative change.
+    /// Returns the greatest relative change of the limits.
     fn distance(&self, limits: &[f64]) -> f64 {
         let each = limits.iter().zip(&self.asked).zip(&self.scale);
         each.map(|((limit, asked), scale)| (limit - asked).abs() / scale).fold(0.0, f64::max)
     }
 
-    /// A share of the way out; lengths never below 0.
+    /// Returns limits at a fraction of the way from the asked to the `outer` ones; lengths never below 0.
     fn between(&self, share: f64, outer: &[f64]) -> Vec<f64> {
         let at = |i: usize| {
             let limit = self.asked[i] + share * (outer[i] - self.asked[i]);
@@ -504,7 +508,7 @@ impl Ladder {
         (0..outer.len()).map(at).collect()
     }
 
-    /// The same limits with a tolerance that everything meets.
+    /// Returns the same limits with a tolerance that everything meets.
     fn without_tolerance(&self, mut limits: Vec<f64>) -> Vec<f64> {
         for (limit, _) in limits.iter_mut().zip(&self.tolerances).filter(|(_, is)| **is) {
             *limit = f64::MAX;
@@ -512,7 +516,7 @@ impl Ladder {
         limits
     }
 
-    /// The stricter of two in each place.
+    /// Returns the stricter limit of two in each place.
     fn inner(&self, one: &[f64], other: &[f64]) -> Vec<f64> {
         let at = |i: usize| if self.outward[i] * (one[i] - other[i]) > 0.0 { other[i] } else { one[i] };
         (0..one.len()).map(at).collect()

@@ -1,9 +1,10 @@
-//! `continuation`: every linkage through nine precision points, as candidates, and beside what `auto` approximates.
+//! The method `continuation`: all linkages through nine precision points, as candidates, alone or beside the
+//! approximate answers of `auto`.
 //!
-//! The points are solved once ([`crate::exact`]); bounds and requirements do not enter the equations, they choose among the answers.
-//! Where `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate. Exact linkages
-//! that a requirement forbids are no starts for that: they led to no better answer than those that are drawn, at a
-//! tenth to a third more evaluations.
+//! The points are solved once ([`crate::exact`]); bounds and requirements do not enter the equations, they choose among
+//! the answers. If `auto` gets fewer acceptable exact answers than it was asked for, it goes on to approximate. Exact
+//! linkages that a requirement forbids are not used as starts for that: they led to no better answer than those that
+//! are drawn, at a tenth to a third more evaluations.
 
 use super::exact_linkages::{Class, Depth, classes};
 use super::rank::{count_distinct, divided, exact_sum_sq};
@@ -21,19 +22,19 @@ use crate::record::{
 };
 use rayon::prelude::*;
 
-/// How the record calls it.
+/// The name of the method in the record.
 const NAME: &str = "continuation";
 
 /// The exact answers of a problem.
 #[derive(Clone, Debug)]
 pub struct Exact {
-    /// Census and list, for the record.
+    /// The census and the list of linkages, for the record.
     pub record: ExactRecord,
-    /// The real classes, better first.
+    /// The real classes, best first.
     pub classes: Vec<Class>,
 }
 
-/// Counts what is listed into a census of paths and classes, and lists the classes, each with its proof where it has one.
+/// Lists the real classes with their certificates, if they have one, and counts them in the census.
 pub fn listed(
     problem: &Problem,
     target: &Target,
@@ -46,7 +47,8 @@ pub fn listed(
     counted((census, completeness), real.len(), classes, proofs)
 }
 
-/// All real linkages of what was solved at a glance, for a target that moves: without proofs and distances to whole curves.
+/// Lists all real linkages of a quick solve, for a target that moves: without certificates and without distances to
+/// whole curves.
 pub fn glanced(problem: &Problem, solved: &Solved) -> Exact {
     let real = solved.classes.iter().filter(|class| class.reality == Reality::Real);
     let real: Vec<Solution> = real.map(|class| class.solution).collect();
@@ -55,7 +57,7 @@ pub fn glanced(problem: &Problem, solved: &Solved) -> Exact {
     counted(ended(solved), real.len(), classes, proofs)
 }
 
-/// How the paths ended, as the record says it; nothing is certified yet.
+/// Returns the census of the paths and the completeness, in the record's terms; nothing is certified yet.
 fn ended(solved: &Solved) -> (Census, Completeness) {
     let paths = &solved.census;
     let census = Census {
@@ -80,7 +82,7 @@ fn ended(solved: &Solved) -> (Census, Completeness) {
     (census, completeness)
 }
 
-/// Counts what is listed into the census.
+/// Counts the listed classes in the census.
 fn counted(
     (census, completeness): (Census, Completeness),
     real: usize,
@@ -105,7 +107,7 @@ impl Exact {
         self.classes.iter().map(|class| class.best.clone()).collect()
     }
 
-    /// Whether nothing else is to be looked for: exact answers alone were asked for, or there are enough of them.
+    /// Returns whether no further search is needed: exact answers alone were asked for, or there are enough of them.
     pub fn suffices(&self, problem: &Problem) -> bool {
         let solve = &problem.spec().solve;
         let accepted: Vec<Candidate> = self.candidates().into_iter().filter(|c| c.accepted).collect();
@@ -113,7 +115,7 @@ impl Exact {
             || count_distinct(problem, &accepted, solve.candidates) >= solve.candidates
     }
 
-    /// The exact answers as the end of a search.
+    /// Returns the exact answers as the outcome of a search.
     pub fn alone(self, problem: &Problem, budget: &Budget<'_>) -> SearchOutcome {
         let (candidates, others) = divided(problem, self.candidates(), problem.spec().solve.candidates);
         let exact = exact_sum_sq(problem);
@@ -130,7 +132,7 @@ impl Exact {
         }
     }
 
-    /// The exact answers together with what a search by approximation found.
+    /// Returns the exact answers together with the outcome of a search by approximation.
     pub fn beside(self, problem: &Problem, mut outcome: SearchOutcome, budget: &Budget<'_>) -> SearchOutcome {
         let mut found = self.candidates();
         found.append(&mut outcome.candidates);
@@ -144,18 +146,19 @@ impl Exact {
         outcome.reason = budget.stop_reason().unwrap_or(outcome.reason);
         outcome.used.insert(0, NAME.into());
         outcome.exact = Some(self.record);
-        // They are of approximate answers.
+        // The hits were counted for approximate answers.
         outcome.repeats = None;
         outcome
     }
 }
 
-/// Certificates and places of the final candidates: a cognate may have taken its candidate's place, and ranks are
-/// given anew. Nothing where there are no exact answers.
+/// Adds certificates to the final candidates and their ranks to the list: a cognate, or a design that was met while a
+/// conflict was looked for, may have taken a candidate's place, and ranks are given anew. Does nothing if there are no exact answers.
 pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
     let Some(exact) = &mut outcome.exact else { return };
     let Some(target) = target(problem) else { return };
     let bar = nearly_exact(problem);
+    exact.linkages.iter_mut().for_each(|class| class.rank = 0);
     for candidate in outcome.candidates.iter_mut().filter(|c| c.error.sum_sq <= bar) {
         candidate.certified = certified(&target, candidate);
         for class in &mut exact.linkages {
@@ -167,19 +170,19 @@ pub fn finish(problem: &Problem, outcome: &mut SearchOutcome) {
     }
 }
 
-/// The sum of squares up to which a candidate passes for one of the exact linkages, and a proof is tried.
+/// Returns the sum of squares up to which a candidate passes for one of the exact linkages, and a certificate is tried.
 pub fn nearly_exact(problem: &Problem) -> f64 {
     1e6 * exact_sum_sq(problem)
 }
 
-/// Linkages that differ by less than this part of their longest link are the same.
+/// Tolerance for the same linkage, in parts of its longest link.
 const SAME: f64 = 1e-7;
 
-/// .. and this part of their coordinates: what is computed from those of one, far from the origin, is the other to a
-/// thousand roundings.
+/// Tolerance for the same linkage, in parts of its coordinates: far from the origin, a linkage computed from another's
+/// numbers agrees with it to a thousand roundings.
 const ROUNDED: f64 = 1e3 * f64::EPSILON;
 
-/// Whether two linkages are the same but for rounding.
+/// Returns whether two linkages are the same up to rounding.
 pub fn same(one: &FourBar, other: &FourBar) -> bool {
     let numbers = |l: &FourBar| {
         let (a, b, offset) = (l.crank_pivot(), l.follower_pivot(), l.coupler_offset());
@@ -190,15 +193,16 @@ pub fn same(one: &FourBar, other: &FourBar) -> bool {
     numbers(one).iter().zip(numbers(other)).all(|(x, y)| (x - y).abs() <= reach)
 }
 
-/// The nine points of a problem that has exact answers.
+/// Returns the nine points of a problem that has exact answers.
 pub fn target(problem: &Problem) -> Option<Target> {
     Target::new(precision_points(problem).ok()?).ok()
 }
 
-/// The proof that an exact linkage stands where a candidate does; `None` where it does not succeed.
+/// Returns the certificate that an exact linkage exists near a candidate; `None` if certification fails.
 ///
-/// The distance of the exact pivots and pins from those of the candidate: from it to the refined solution, plus what
-/// that may be off by ([`certify`]), plus what computing that distance rounds.
+/// Its radius bounds the distance of the exact pivots and pins from those of the candidate: the distance from the
+/// candidate to the refined solution, plus the refined solution's own error bound ([`certify`]), plus the rounding in
+/// computing that distance.
 pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
     let linkage = &candidate.linkage;
     let angles: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
@@ -217,16 +221,17 @@ pub fn certified(target: &Target, candidate: &Candidate) -> Option<Certified> {
     radius.is_finite().then_some(Certified { radius })
 }
 
-/// More roundings than a sum of three points and its length take.
+/// Bound of the number of roundings in a sum of three points and its length.
 const ROUNDINGS: f64 = 16.0;
 
-/// The proof of a class by another of its cognates: what is badly conditioned in one may be well in the next.
+/// Certifies a class by another of its cognates: a solution that is badly conditioned in one may be well conditioned in
+/// the next.
 fn of_a_cognate(target: &Target, solution: &Solution) -> Option<Certificate> {
     let images = solution.images(&target.displacements);
     images[1..3].iter().filter(|image| image.is_finite()).find_map(|image| certify(target, image).ok())
 }
 
-/// The exact answers; `None` where the points have none or the method does not ask for them.
+/// Computes the exact answers; `None` if the points have none or the method does not ask for them.
 pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) -> Option<Exact> {
     if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
         return None;
@@ -251,7 +256,7 @@ pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) ->
         .map(|(proof, solution)| proof.ok().or_else(|| of_a_cognate(&target, solution)))
         .collect();
     let certificates: Vec<Certificate> = proofs.iter().flatten().copied().collect();
-    // Real ones as the proof has refined them.
+    // Real solutions, as refined by the certificate.
     let real: Vec<Solution> = solved
         .classes
         .iter()

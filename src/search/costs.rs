@@ -1,4 +1,4 @@
-//! What the requirements cost that a candidate stands on.
+//! Costs of the active requirements: Lagrange multipliers at a candidate, as rates of the error per unit of a limit.
 //!
 //! At an optimum of f(x) = sum_j w_j |r_j|^2 under g_i(x) >= 0 (Karush 1939, Kuhn and Tucker 1951)
 //!
@@ -7,10 +7,10 @@
 //! df*/dL = -sum_i m_i dg_i/dL                                      for a limit L that g_i depends on
 //! ```
 //!
-//! with grad f = 2 sum_j w_j J_j^T r_j, the points' own unknowns eliminated. Bounds of single unknowns are rows
-//! like the others. The multipliers come from non-negative least squares on the rows that the candidate stands
-//! on; where they do not explain the gradient, or not uniquely, nothing is said. Errors are
-//! sqrt(f / sum_j w_j), so that d(rms) = df / (2 W rms).
+//! with grad f = 2 sum_j w_j J_j^T r_j, the points' own unknowns eliminated. Bounds of single unknowns are rows like
+//! the others. The multipliers come from non-negative least squares on the active rows (the active set); if they do not
+//! explain the gradient, or not uniquely, no rate is given. Errors are sqrt(f / sum_j w_j), so that d(rms) = df / (2 W
+//! rms).
 
 use super::loosen::{Demand, judged_under};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
@@ -28,26 +28,27 @@ use crate::record::{Candidate, Cost, LimitUnit};
 use crate::solve::levenberg_marquardt::BlockLeastSquares;
 use crate::solve::nonnegative::nonnegative_least_squares;
 
-/// A candidate stands on a row that is this near to its limit, in parts of the target's size.
+/// Distance from a row's limit, in parts of the target's size, within which the row is active.
 const ACTIVE: f64 = 1e-6;
-/// .. and on a bound that is this near: bounds are met to rounding.
+/// Relative distance within which a bound is active: bounds are met to rounding.
 const ON_BOUND: f64 = 1e-9;
-/// A multiplier counts as known when what the gradient leaves unexplained can move it by this part at most.
+/// A multiplier counts as known if the unexplained part of the gradient can move it by this part at most.
 const UNEXPLAINED: f64 = 0.02;
-/// A rate below this part of the error for a unit as large as the limit itself (or the target) is no cost.
+/// A rate below this part of the error for a unit as large as the limit itself (or the target) is negligible.
 const NEGLIGIBLE: f64 = 1e-6;
-/// A row that depends on where the points sit on the curve: a crank angle moves it by more than this part of the
-/// target's size a radian. Free timing leaves those angles to each point, and the rates are not told.
+/// Change of a row with the crank angle, in target sizes per radian, above which it depends on the points' places on
+/// the curve. Free timing leaves those angles to each point, and the rates are not given.
 const MOVED_BY_POINTS: f64 = 1e-3;
-/// Evaluations of the search without a requirement, at most; and its part of what the search itself needed.
+/// Most evaluations of the search without a requirement; one part in `SHORT_SHARE` of the evaluations of the search
+/// itself.
 const SHORT_SEARCH: u64 = 20_000;
 const SHORT_SHARE: u64 = 4;
 
-/// A row of the optimality conditions: its gradient by the scaled unknowns and what it belongs to.
+/// An active row of the optimality conditions: its gradient by the scaled unknowns and the limit that it belongs to.
 struct Active {
     gradient: Vec<f64>,
     moved_by_points: bool,
-    /// `None`: a bound that the user has not set.
+    /// The limit; `None` for a bound that the user has not set.
     label: Option<Label>,
 }
 
@@ -57,21 +58,21 @@ struct Label {
     side: Option<&'static str>,
     limit: f64,
     unit: LimitUnit,
-    /// dg for one unit more of room.
+    /// The change dg of the row for one unit more of room.
     by_room: f64,
-    /// What a change of the limit is measured against.
+    /// The scale of a change of the limit.
     scale: f64,
 }
 
-/// The root of the weighted mean squared error: rms where no point has a weight.
+/// Returns the root of the weighted mean squared error: the rms if no point has a weight.
 pub fn weighted_rms(problem: &Problem, objective: f64) -> f64 {
     (objective / problem.task().weights().iter().sum::<f64>()).sqrt()
 }
 
-/// What the limits that a candidate stands on cost, in a fixed order; without [`Cost::rms_without`].
+/// Returns the costs of the limits that are active at a candidate, in a fixed order; without [`Cost::rms_without`].
 ///
-/// Empty where it stands on none, is not accepted, is exact, or is no optimum that the limits explain; and where no
-/// advice is asked for.
+/// Empty if no limit is active, or the candidate is not accepted, is exact, or is not an optimum that the limits
+/// explain; and if no advice is asked for.
 pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     if !candidate.accepted
         || !problem.spec().solve.advice
@@ -157,7 +158,7 @@ impl At<'_> {
         self.priced(&active, &scaled(&gradient))
     }
 
-    /// The bounds that the design lies on. Those that come from the box of the pivots are rows already.
+    /// Adds the active bounds of the design. Those that come from the box of the pivots are rows already.
     fn bounds(&self, space: &DesignSpace, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
         for (place, &(i, by)) in unknowns.iter().enumerate() {
             let Some((name, is_angle)) = space.coordinate(i) else { continue };
@@ -212,7 +213,7 @@ impl At<'_> {
             };
         let length = LimitUnit::Length;
         match kind {
-            // Where no type is asked for, the crank has to turn fully to come back to the first point.
+            // If no type is asked for, the crank has to turn fully to come back to the first point.
             RowKind::Type if require.types.is_empty() => label("closing", None, 0.0, length, 1.0, size),
             RowKind::Type => label("type", None, 0.0, length, 1.0, size),
             RowKind::LinkRatio(longer) => {
@@ -283,7 +284,7 @@ impl At<'_> {
             if !found.sensitivity.is_finite()
                 || others_explain(active, &columns, gradient, found.residual, &own)
             {
-                // Another limit stands in the same way: moving this one alone gains nothing.
+                // Another limit restricts in the same way: moving this one alone gains nothing.
                 continue;
             }
             if told && !known {
@@ -302,7 +303,7 @@ impl At<'_> {
     }
 }
 
-/// Whether the gradient is explained as well without the rows of a label. (Of a known multiplier the rest would
+/// Returns whether the gradient is explained as well without the rows of a label. (Of a known multiplier the rest would
 /// be fifty times the residual.)
 fn others_explain(
     active: &[Active],
@@ -317,11 +318,11 @@ fn others_explain(
     nonnegative_least_squares(&others, gradient).residual <= 10.0 * residual + 1e-9 * size
 }
 
-/// The costs of every candidate of a search; those of the first with the error that is left without each
-/// requirement, as far as the budget goes. `evaluations` is what the search itself needed.
+/// Attaches the costs to every candidate of a search; to those of the first also the error that is left without each
+/// requirement, as far as the budget goes. `evaluations` in the outcome are those of the search itself.
 ///
-/// The error without a requirement is looked for by a fit from the candidate and by a short search, and only
-/// where the candidate comes from a search that polishes.
+/// The error without a requirement is looked for by a fit from the candidate and by a short search, and only if the
+/// candidate comes from a search that polishes.
 pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_>) {
     for candidate in &mut outcome.candidates {
         candidate.costs = marginal(problem, candidate);
@@ -331,7 +332,7 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
         return;
     };
     if let Some(reason) = budget.stop_reason() {
-        // The errors without the limits are not looked for.
+        // The errors without the limits are not computed.
         outcome.reason = reason;
         return;
     }
@@ -346,7 +347,7 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     for demand in distinct {
         let without = error_without(problem, best, demand, share.min(SHORT_SEARCH), budget);
         if let Some(reason) = budget.stop_reason() {
-            // What a clock cut short cannot be repeated.
+            // A result cut short by the time limit cannot be repeated.
             outcome.reason = reason;
             return;
         }
@@ -356,7 +357,7 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     }
 }
 
-/// The least error found without a demand; `None` where nothing better than with it was found.
+/// Returns the least error found without a demand; `None` if nothing better than with it was found.
 fn error_without(
     problem: &Problem,
     best: &Candidate,
@@ -372,7 +373,7 @@ fn error_without(
         judged(&loose, &polish(&loose, start, LONG_STEPS, LONG_ROUNDS, evaluations.max(1), budget).end?)
     });
     let found = plan::approximate(&loose, budget, &|_| {}).map_or(Vec::new(), |outcome| outcome.candidates);
-    // A better answer that keeps the demand as well says nothing of its cost.
+    // A better answer that meets the demand as well does not measure its cost.
     let costs_less = |c: &Candidate| {
         c.accepted
             && c.error.objective < best.error.objective

@@ -1,7 +1,8 @@
-//! Real solutions as candidates: of each class the best of its six mechanisms, judged as every candidate is.
+//! Real solutions of the continuation as candidates: of each class the best of its six mechanisms, judged as every
+//! candidate is.
 //!
-//! The better first: accepted, then lighter defects, then fewer requirements unmet, the better worst transmission
-//! angle, the smaller linkage. That is the order of ranks ([`super::rank`]), for exact errors are equal.
+//! They are ordered better first: accepted, then lighter defects, then fewer requirements unmet, the better worst
+//! transmission angle, the smaller linkage. That is the order of ranks ([`super::rank`]), since exact errors are equal.
 
 use super::cognates::{Merit, not_met};
 use super::multistart::unwrapped;
@@ -16,33 +17,33 @@ use crate::task::error::rms;
 use crate::task::referee::judge;
 use rayon::prelude::*;
 
-/// A real class with its mechanisms judged.
+/// A class of real solutions with its six mechanisms judged.
 #[derive(Clone, Debug)]
 pub struct Class {
-    /// The best of the six.
+    /// The best of the six mechanisms.
     pub best: Candidate,
-    /// Whether one of the six stays on one circuit.
+    /// Whether one of the six mechanisms stays on one circuit.
     pub one_circuit: bool,
     /// Whether one of the six passes the points in order.
     pub in_order: bool,
     /// Whether one of the six has no defect.
     pub free_of_defects: bool,
-    /// The other five, better first.
+    /// The other mechanisms, better first.
     pub others: Vec<ExactForm>,
 }
 
-/// How much is found out of a class.
+/// The amount of computation for a class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// Every figure.
+    /// All figures are computed.
     Whole,
-    /// All but the distances to the whole curve, most of the cost, in whose place those at the points stand: of an exact
-    /// linkage both are rounding, and the curve is nowhere farther from a point.
+    /// All figures but the distances to the whole curve, which are most of the cost; the distances at the points are
+    /// used instead: for an exact linkage both are rounding, and the curve is nowhere farther from a point.
     Glance,
 }
 
-/// The classes of real solutions, better first. One that makes no linkage (a link of no length, or of one too large)
-/// is left out.
+/// Returns the classes of real solutions, better first. One that gives no linkage (a link of no length, or one too
+/// large) is left out.
 pub fn classes(problem: &Problem, target: &Target, real: &[Solution], depth: Depth) -> Vec<Class> {
     let judged: Vec<Option<Class>> =
         real.par_iter().map(|solution| class(problem, target, solution, depth)).collect();
@@ -52,7 +53,7 @@ pub fn classes(problem: &Problem, target: &Target, real: &[Solution], depth: Dep
     classes
 }
 
-/// A real solution's class; `None` where none of the six is a linkage that passes the points.
+/// Returns a real solution's class; `None` if none of the six is a linkage that passes the points.
 pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Depth) -> Option<Class> {
     let list = mechanisms(problem.task(), target, solution);
     let any = |of: fn(&Mechanism) -> bool| list.iter().any(of);
@@ -61,7 +62,8 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
     for mechanism in list.iter().filter(|m| m.passes) {
         let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
         let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
-        // One curve, and on it one circuit through the first point: its distances are known after the first.
+        // All six draw one curve, and on it one circuit through the first point: its distances are known after the
+        // first.
         if depth == Depth::Glance {
             to_curve = at_points(problem, &mechanism.linkage, &crank_deg, &t1_at);
         }
@@ -75,7 +77,7 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
     let mut forms = forms.into_iter();
     let mut best = forms.next()?;
     if depth == Depth::Whole {
-        // Its figures are its own.
+        // The best gets its own figures.
         best = assess(problem, &best.linkage, &best.crank_deg, &best.t1_at)?;
     }
     let other =
@@ -89,7 +91,7 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
     })
 }
 
-/// The errors at the points, as those to the curve.
+/// Returns the errors at the points, in place of those to the curve.
 fn at_points(
     problem: &Problem,
     linkage: &FourBar,
@@ -106,7 +108,7 @@ fn at_points(
 }
 
 impl Class {
-    /// The class as it stands in the record.
+    /// Returns the class as it is written to the record.
     pub fn listed(&self, certified: Option<Certified>) -> ExactLinkage {
         let best = &self.best;
         ExactLinkage {
@@ -130,32 +132,44 @@ impl Class {
     }
 }
 
-/// Whether a class can do something, as far as that is known from one linkage of it with its rounding.
+/// Whether some mechanism of a class has a property, as far as that is known from one rounded linkage of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ability {
-    /// A mechanism that passes the points beyond doubt can.
+    /// Whether a mechanism that certainly passes the points has it.
     pub certain: bool,
-    /// A mechanism that may pass them can.
+    /// Whether a mechanism that possibly passes them has it.
     pub possible: bool,
 }
 
-/// What is found again of a listed class.
+/// A listed class, computed again from its linkage.
 #[derive(Clone, Debug)]
 pub struct Recomputed {
-    /// The listed linkage, judged; `None` where it cannot be.
+    /// The listed linkage, judged; `None` if it cannot be.
     pub judged: Option<Candidate>,
-    /// On one circuit, in order, free of defects, by one of the six.
+    /// The properties of the class: on one circuit, in order, free of defects.
     pub abilities: [Ability; 3],
     /// All mechanisms of the class, each with whether it passes the points beyond doubt.
     pub forms: Vec<(ExactForm, bool)>,
 }
 
-/// A mechanism that misses the points by at most this part of what it may passes them whatever rounding does; beyond the
-/// other it does not. (A class is found again from a rounded linkage, which may be worse conditioned than the others.)
+/// Bounds of a mechanism's miss in units of its limit: up to `BEYOND_DOUBT` it passes the points whatever rounding
+/// does, beyond `IN_DOUBT` it does not. (A class is found again from a rounded linkage, which may be worse conditioned
+/// than the others.)
 const BEYOND_DOUBT: f64 = 0.1;
 const IN_DOUBT: f64 = 100.0;
+/// The least sine of the transmission angle at which a point's assembly is beyond doubt.
+const CLEAR_OF_TOGGLES: f64 = 1e-4;
 
-/// The class of a linkage at its positions, found from these alone; `None` where it does not pass the points.
+/// The change of crank angles (radians) that leaves the defects as they are, unless the order hangs on rounding: on a step
+/// of half a turn, or on two ways round of one length.
+const NUDGE: f64 = 1e-7;
+
+/// Returns whether a mechanism passes the points, each in its assembly, whatever rounding does.
+fn is_beyond_doubt(mechanism: &Mechanism) -> bool {
+    mechanism.miss_over_limit <= BEYOND_DOUBT && mechanism.least_sine >= CLEAR_OF_TOGGLES
+}
+
+/// Computes the class of a linkage from its positions alone; `None` if it does not pass the points.
 pub fn class_at(
     problem: &Problem,
     target: &Target,
@@ -168,10 +182,14 @@ pub fn class_at(
     if list.is_empty() {
         return None;
     }
-    let certain = |m: &&Mechanism| m.miss_over_limit <= BEYOND_DOUBT;
     let ability = |defects: &[&str]| {
         let can = |m: &Mechanism| !m.defects.iter().any(|defect| defects.contains(&defect.name()));
-        Ability { certain: list.iter().filter(certain).any(can), possible: list.iter().any(can) }
+        // At a toggle the defects are rounding too.
+        let perhaps = |m: &Mechanism| can(m) || m.least_sine < CLEAR_OF_TOGGLES;
+        Ability {
+            certain: list.iter().filter(|m| is_beyond_doubt(m)).any(can),
+            possible: list.iter().any(perhaps),
+        }
     };
     Some(Recomputed {
         judged: assess(problem, linkage, crank_deg, t1_at),
@@ -182,16 +200,25 @@ pub fn class_at(
         ],
         forms: list
             .iter()
-            .filter_map(|m| Some((form(problem, m)?, m.miss_over_limit <= BEYOND_DOUBT)))
+            .filter_map(|m| {
+                let found = form(problem, m, 0.0)?;
+                let stays =
+                    |by: f64| form(problem, m, by).is_some_and(|moved| moved.defects == found.defects);
+                let beyond_doubt = is_beyond_doubt(m) && stays(NUDGE) && stays(-NUDGE);
+                Some((found, beyond_doubt))
+            })
             .collect(),
     })
 }
 
-/// A mechanism with its type and its defects; `None` where its links are those of no type.
-fn form(problem: &Problem, mechanism: &Mechanism) -> Option<ExactForm> {
+/// Returns a mechanism with its type and its defects, its crank angles moved by `by` (radians) to and fro from point to
+/// point; `None` if its links are those of no type.
+fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> {
     let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
     let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
-    let radians: Vec<f64> = crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let signs = [1.0, -1.0].into_iter().cycle();
+    let radians: Vec<f64> =
+        crank_deg.iter().zip(signs).map(|(deg, sign)| deg.to_radians() + sign * by).collect();
     Some(ExactForm {
         linkage: mechanism.linkage,
         linkage_type: mechanism.linkage.linkage_type()?,

@@ -1,10 +1,10 @@
-//! Is an exact answer one of a whole family of them?
+//! Local dimension of the set of exact answers: detects whether an exact answer belongs to a family.
 //!
-//! At an exact answer x the points' residuals are r(x) = 0, and where their derivative J by the free unknowns
-//! has rank k < m the answer moves on a manifold of dimension m - k (locally, at a regular point) on which all
-//! points stay met. Prescribed timing has two rows a point; with free timing a point may slide along its own
-//! tangent, and the one row normal to it counts. Fixed derived quantities (a ground of a given length between
-//! free pivots) are equations too; limits that are none take nothing of the dimension away.
+//! At an exact answer x the points' residuals are r(x) = 0, and if their derivative J by the free unknowns has rank k <
+//! m, the answer moves on a manifold of dimension m - k (locally, at a regular point) on which all points stay met.
+//! Prescribed timing has two rows a point; with free timing a point may slide along its own tangent, and the one row
+//! normal to it counts. Fixed derived quantities (a ground of a given length between free pivots) are equations too;
+//! inequality limits do not reduce the dimension.
 
 use super::rank::exact_sum_sq;
 use super::warm::start_at;
@@ -17,11 +17,11 @@ use crate::record::{Candidate, Family};
 use crate::solve::levenberg_marquardt::{BlockLeastSquares, PointBlock};
 use nalgebra::{DMatrix, SMatrix};
 
-/// Singular values below this part of the largest are zero: an exact answer is known to about 1e-12 of the
-/// linkage, which moves them by as much.
+/// The part of the largest singular value below which a singular value counts as zero: an exact answer is known to
+/// about 1e-12 of the linkage, which moves the singular values by as much.
 pub const RANK_TOLERANCE: f64 = 1e-8;
 
-/// The family that an exact accepted answer belongs to; `None` where it stands alone or is not exact.
+/// Returns the family that an exact accepted answer belongs to; `None` if it is isolated or not exact.
 pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
     if !best.accepted || best.error.sum_sq > exact_sum_sq(problem) {
         return None;
@@ -32,7 +32,7 @@ pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
     Some(Family { dimension, exact: true, text })
 }
 
-/// The free unknowns less the rank of the points' derivatives by them; `None` where these do not exist.
+/// Returns the number of free unknowns less the rank of the points' derivatives by them; `None` if these do not exist.
 pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
     let mut rows: Vec<[f64; DESIGN]> = Vec::new();
@@ -53,7 +53,7 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     Some(free.len() - rank(&space, &shape, &rows, &free))
 }
 
-/// The rows of all points' derivatives, normal to their own tangents; `None` where one does not exist.
+/// Adds the rows of all points' derivatives, normal to their own tangents; `None` if one does not exist.
 fn linearised<P: BlockLeastSquares<DESIGN>>(
     fit: &P,
     x: &[f64; DESIGN],
@@ -74,7 +74,7 @@ fn linearised<P: BlockLeastSquares<DESIGN>>(
 }
 
 fn rank(space: &DesignSpace, shape: &Shape, rows: &[[f64; DESIGN]], free: &[usize]) -> usize {
-    // A turn moves the points by the linkage's size.
+    // A rotation moves the points by the linkage's size.
     let reach = shape.links().into_iter().fold(shape.offset.norm(), f64::max);
     let scale = |i: usize| if space.is_angle(i) { 1.0 / reach } else { 1.0 };
     // J = Q R: the singular values of the small R are those of J.
@@ -89,7 +89,7 @@ fn rank(space: &DesignSpace, shape: &Shape, rows: &[[f64; DESIGN]], free: &[usiz
     values.iter().filter(|value| **value > RANK_TOLERANCE * largest).count()
 }
 
-/// The derivative of a quantity by (Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
+/// Returns the derivative of a quantity by (Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
 fn gradient(quantity: Derived, shape: &Shape) -> [f64; SHAPE] {
     let mut row = [0.0; SHAPE];
     let ground = shape.follower_pivot - shape.crank_pivot;

@@ -1,4 +1,4 @@
-//! A linkage, a problem with points on its curve and a start there, for tests.
+//! Test fixtures: a linkage, a problem with points on its curve, and a start there.
 
 #![cfg(test)]
 
@@ -8,7 +8,7 @@ use crate::problem::design_space::Shape;
 use crate::problem::torus::Positions;
 use crate::problem::{Problem, Setting};
 
-/// Of these lengths, its ground line on the x axis and its coupler point to the left of C D.
+/// Returns a linkage of these lengths, its ground line on the x axis and its coupler point to the left of C D.
 pub(super) fn linkage([ground, crank, coupler, follower]: [f64; 4]) -> FourBar {
     FourBar::new(NaturalCoordinates {
         crank_pivot: [0.0, 0.0],
@@ -24,7 +24,7 @@ pub(super) fn linkage([ground, crank, coupler, follower]: [f64; 4]) -> FourBar {
     .expect("a linkage")
 }
 
-/// These points with free timing and these lines under `[require]`.
+/// Returns a problem of these points with free timing and these lines under `[require]`.
 pub(super) fn problem(points: &[[f64; 2]], closed: bool, require: &str) -> Problem {
     let text =
         format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = {closed}\n[require]\n{require}\n");
@@ -32,7 +32,7 @@ pub(super) fn problem(points: &[[f64; 2]], closed: bool, require: &str) -> Probl
     Problem::new(file.spec).expect("a problem")
 }
 
-/// The linkage as a start for the problem, at these positions.
+/// Returns the linkage as a start for the problem, at these positions.
 pub(super) fn start(problem: &Problem, linkage: &FourBar, positions: Positions) -> Start {
     let setting =
         Setting { aim: None, assembly: AssemblyMode::Plus, direction: 1.0, side: problem.sides()[0] };

@@ -1,25 +1,26 @@
-//! The search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt on the torus,
-//! and a stop when the best answer keeps coming back.
+//! Multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the
+//! torus, and a stopping rule by repeated hits of the best answer.
 //!
-//! A *round* takes `SCREEN` drawn starts, or matches of the atlas where the target has points enough, or starts near
-//! known ends and along the differences between them; it fits the `SHORT` most promising for a few steps, the
-//! best `MIDDLE` of those on, and finishes those that can still matter.
-//! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, which
-//! shows what groups blur. The points of their ends are brought to their best places on the curve (`reassign`) and
-//! fitted again for as long as that gains. The ends of a batch are finished on all points after it, each of them once
-//! however many rounds came to it. Ends whose points have strayed to where the referee will refuse them are led
-//! back (`required`). Rounds run side by side in batches of `BATCH` and are read in their order: the number of threads
-//! changes nothing but the time. Ends are judged by the referee from the least error up until enough of them are
-//! accepted.
+//! A *round* takes `SCREEN` drawn starts, or matches of the atlas if the target has points enough, or starts near known
+//! ends and along the differences between them. It fits the `SHORT` most promising for a few steps, fits the best
+//! `MIDDLE` of those further, and finishes those that can still matter.
 //!
-//! *Stopping rule*: the best error has come back, within `SAME_OPTIMUM`, from as many independent rounds as
-//! [`Hits`] says (rounds that start near known ends do not count), or within `NEARLY` from four or more times
-//! as many where it is approached and hardly reached; and either as many distinct answers as were asked for are
-//! known or `QUIET_BATCHES` batches brought no new one. Sparse targets are searched through `LEAST_BATCHES`
-//! batches at least, so that rounds near known ends get their turn. On a dense target the errors that are left say whether
-//! more can be had: noise differs from point to point, and `NOISE_HITS` answers within `IN_NOISE` of each other
-//! are enough; errors of neighbours that are alike are a shape that this linkage does not have and another may, and
-//! `PATIENT_BATCHES` batches are searched at least. An exact answer needs no second hit.
+//! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, to find
+//! detail that grouping blurs. The correspondence between the points and the curve is recomputed for their ends
+//! (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are finished on all points
+//! after it, each of them once however many rounds reached it. Ends whose points have strayed to a circuit or branch
+//! that the referee will refuse are led back (`required`). Rounds run in parallel in batches of `BATCH` and are read in
+//! their order: the number of threads changes nothing but the time. Ends are judged by the referee in order of
+//! increasing error until enough of them are accepted.
+//!
+//! *Stopping rule*: as many independent rounds as [`Hits`] gives (rounds that start near known ends do not count) have
+//! reached the best error within `SAME_OPTIMUM`, or four or more times as many within `NEARLY`, for an optimum that is
+//! approached and hardly reached; and either as many distinct answers as were asked for are known or `QUIET_BATCHES`
+//! batches brought no new one. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
+//! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
+//! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
+//! correlated, the linkage misses a shape that another linkage may have, and `PATIENT_BATCHES` batches are searched at
+//! least. An exact answer needs no second hit.
 
 use super::atlas::Matches;
 use super::coarse::Coarse;
@@ -45,74 +46,74 @@ mod state;
 
 pub use state::FreeState;
 
-/// Different ends that later rounds start near.
+/// Number of different ends near which later rounds start.
 const LEADING: usize = 12;
-/// Ends on the explored points whose merits differ by less than this part are one.
+/// Relative difference of merits below which ends on the explored points are the same.
 const DIFFERENT: f64 = 1e-3;
-/// Rounds that run side by side before any is read.
+/// Rounds that run in parallel before any is read.
 const BATCH: u64 = 8;
-/// From how many independent rounds the best answer has to come back before it is believed.
+/// The number of independent rounds that have to reach the best answer before it is believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hits {
-    /// Within `SAME_OPTIMUM`.
+    /// Rounds that reach it within `SAME_OPTIMUM`.
     pub same: usize,
-    /// Within `NEARLY`.
+    /// Rounds that reach it within `NEARLY`.
     pub near: usize,
 }
 
-/// Where each point counts for much, optima are many and rare ones worth waiting for.
+/// Hits for sparse targets: each point counts for much, so optima are many and rare ones worth waiting for.
 pub const SPARSE_HITS: Hits = Hits { same: 6, near: 24 };
-/// Many points say more of the linkage, and a round of them costs more.
+/// Hits for dense targets: many points determine the linkage better, and a round costs more.
 pub const DENSE_HITS: Hits = Hits { same: 4, near: 12 };
-/// Errors that differ by less than this part are nearly the same optimum.
+/// Relative difference of errors below which they are nearly the same optimum.
 pub const NEARLY: f64 = 1e-3;
-/// Errors of noise that differ by less than this part are as good: the noise of n points has a sum of squares with a
-/// spread of (2/n)^(1/2) of it.
+/// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares with a
+/// relative spread of (2/n)^(1/2).
 const IN_NOISE: f64 = 1e-2;
-/// As good answers, from so many rounds.
+/// Rounds with equally good answers that suffice if the errors are noise.
 const NOISE_HITS: usize = 5;
-/// Batches at least for a sparse target.
+/// Least number of batches for a sparse target.
 const LEAST_BATCHES: u64 = 5;
-/// Batches in which a round on a dense target follows its best start only.
+/// Batches in which a round on a dense target fits only its best start further.
 const DENSE_BATCHES: u64 = 2;
-/// Batches at least for a dense target whose errors are not noise.
+/// Least number of batches for a dense target whose errors are not noise.
 const PATIENT_BATCHES: u64 = 60;
-/// Errors of neighbouring points that are more alike than this are not noise.
+/// Correlation of the errors of neighbouring points above which they are not noise.
 const ALIKE: f64 = 0.3;
-/// Of so many batches on a dense target of at most so many points one explores it on all of them: the fourth where the
-/// errors are noise, the second elsewhere.
+/// Of `WHOLE_EVERY` batches on a dense target of at most `WHOLE_MOST` points one explores all of its points: the fourth
+/// if the errors are noise, else the second.
 const WHOLE_EVERY: u64 = 8;
 const WHOLE_IN_NOISE: u64 = 3;
 const WHOLE_ELSE: u64 = 1;
 const WHOLE_MOST: usize = 200;
 /// Batches without a new distinct answer that end a search for further ones.
 const QUIET_BATCHES: u64 = 6;
-/// Ends that are kept.
+/// Number of ends kept.
 const KEPT: usize = 400;
 
-/// The end of a fit.
+/// The end of a fit, judged or not yet.
 #[derive(Clone, Debug)]
 struct End {
     start: Start,
     merit: f64,
-    /// `None`: not judged yet; `Some(None)`: cannot be judged.
+    /// The referee's result. `None`: not judged yet; `Some(None)`: cannot be judged.
     verdict: Option<Option<Candidate>>,
 }
 
-/// One way of exploring, with what it knows.
+/// A stage of the search (on groups of points, or on all points) with its memory.
 struct Stage<'a> {
     setup: Setup<'a>,
     memory: Memory,
 }
 
-/// What the batches of a stage have found so far.
+/// The results of a stage's batches so far.
 #[derive(Clone, Debug)]
 struct Memory {
     /// The least merit on the explored points.
     bar: f64,
     /// The best different ends on the explored points.
     leading: Vec<(f64, Start)>,
-    /// The merits on the explored points and on all of them of what has been finished after its batch.
+    /// The merits, on the explored points and on all points, of the ends that have been finished after their batch.
     finished: Vec<(f64, f64)>,
     /// Rounds so far.
     index: u64,
@@ -122,14 +123,14 @@ impl Memory {
     const NONE: Memory = Memory { bar: f64::INFINITY, leading: Vec::new(), finished: Vec::new(), index: 0 };
 }
 
-/// Whether the errors of the best acceptable end are noise.
+/// Returns whether the errors of the best acceptable end are noise.
 fn is_noise(problem: &Problem, ends: &[End]) -> bool {
     let best = ends.iter().filter_map(|end| end.verdict.as_ref()?.as_ref()).find(|c| promising(problem, c));
     best.is_some_and(|best| likeness(problem, best) < ALIKE)
 }
 
-/// How alike the errors of neighbouring points are: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near 1 for a
-/// smooth misfit.
+/// Returns the correlation of the errors of neighbouring points: sum <r_j, r_j+1> / sum |r_j|^2, near 0 for noise, near
+/// 1 for a smooth misfit.
 fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
     let Some(error) = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at) else {
@@ -140,8 +141,8 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
     if whole > 0.0 { alike / whole } else { 1.0 }
 }
 
-/// Rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without
-/// an acceptable candidate.
+/// Runs rounds until the best is believed, until `limit` evaluations are used, or until `patience` are used without an
+/// acceptable candidate.
 pub(super) fn search(
     problem: &Problem,
     limit: u64,
@@ -187,7 +188,7 @@ pub(super) fn search(
             });
         }
     };
-    // No round so far came near to what it was allowed.
+    // No round so far came near its allowance of evaluations.
     let mut ample = true;
     loop {
         let stop = budget.stop_reason();
@@ -199,7 +200,7 @@ pub(super) fn search(
             break;
         }
         let left = limit.saturating_sub(local.evaluations.objective);
-        // What grouping blurs is looked for on all points, now and then.
+        // Now and then all points are explored, to find detail that grouping blurs.
         let grouped_few = coarse.is_some() && problem.task().len() <= WHOLE_MOST;
         let on_all_at = if is_noise(problem, &ends) { WHOLE_IN_NOISE } else { WHOLE_ELSE };
         let on_all = grouped_few && count.batch % WHOLE_EVERY == on_all_at;
@@ -209,7 +210,7 @@ pub(super) fn search(
         let stage_now = usize::from(on_all);
         let Stage { setup, memory } = &stages[stage_now];
         let batch = Batch::run(setup, memory, count.batch * BATCH, left, budget);
-        // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
+        // A batch that was cut short does not count for convergence, and must not pass for a whole one.
         let stop = budget.stop_reason();
         if stop.is_some() && ample {
             keep(true, count, local.evaluations, &best_merits, &stages, &ends);
@@ -223,7 +224,7 @@ pub(super) fn search(
         best_merits.extend(batch.best_merits);
         ends.extend(batch.ends);
         ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
-        // Of what the referee has refused, a part is enough: it must not crowd out the accepted.
+        // Only some of the refused ends are kept: they must not crowd out the accepted.
         let mut refused = 0;
         ends.retain(|end| {
             let unfit =
@@ -289,11 +290,11 @@ pub(super) fn search(
     local
 }
 
-/// Targets of fewer points are not matched with the atlas.
+/// Number of points below which a target is not matched with the atlas.
 pub const LEAST_MATCHED: usize = 24;
 
-/// Judges ends from the least merit up: where one answer is wanted until the first accepted one, else all that
-/// can be among the best.
+/// Judges ends in order of increasing merit: until the first accepted one if one answer is wanted, else all that can be
+/// among the best.
 fn judge_from_the_best(
     problem: &Problem,
     ends: &mut [End],

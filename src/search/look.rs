@@ -1,23 +1,24 @@
-//! How different two candidates look: their joints at the first point, with those of their cognates, and their curves.
+//! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
+//! and by their coupler curves.
 
 use crate::linkage::{Complex, CouplerCurve};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
-/// Points of the target at which two candidates are compared, at most.
+/// The most target points at which two candidates are compared.
 const COMPARED: usize = 64;
-/// Samples of a coupler curve, and of them one in this many is held against the other curve.
+/// Samples of a coupler curve; one in `PROBE_EVERY` of them is compared with the other curve.
 const OUTLINE: usize = 240;
 const PROBE_EVERY: usize = 5;
 
-/// A, B, C, D, P.
+/// The joints A, B, C, D and the coupler point P.
 type Joints = [Complex; 5];
 
-/// A candidate as it looks.
+/// A candidate with the geometry by which it is compared, computed on demand.
 pub(super) struct Look<'a> {
     candidate: Cow<'a, Candidate>,
-    /// Its joints at the first point, then those of its cognates there, each also with its sides exchanged.
+    /// The joints at the first point of the candidate and of its two cognates, each also with its sides exchanged.
     forms: OnceCell<Option<[Joints; 6]>>,
     at_points: OnceCell<Vec<Complex>>,
     outline: OnceCell<Vec<Complex>>,
@@ -29,7 +30,7 @@ impl<'a> Look<'a> {
         Look { candidate, forms, at_points, outline }
     }
 
-    /// Joints of the cognates from the table of [`crate::linkage::cognate`].
+    /// Returns the joints of the candidate and its cognates, by the table of [`crate::linkage::cognate`].
     fn forms(&self) -> Option<&[Joints; 6]> {
         let made = || {
             let linkage = &self.candidate.linkage;
@@ -53,8 +54,8 @@ impl<'a> Look<'a> {
         self.forms.get_or_init(made).as_ref()
     }
 
-    /// How different this candidate looks from another and its cognates: the largest distance of a joint from
-    /// its counterpart over the larger span. Infinite where there is nothing to look at.
+    /// Returns the difference of this candidate from another and its cognates: the largest distance of a joint from its
+    /// counterpart over the larger span. Infinite if one of them has no joints to compare.
     pub(super) fn difference(&self, other: &Look<'_>) -> f64 {
         let (Some(own), Some(theirs)) = (self.forms(), other.forms()) else { return f64::INFINITY };
         let own = &own[0];
@@ -90,12 +91,13 @@ impl<'a> Look<'a> {
         })
     }
 
-    /// Whether the two are one answer: as linkages nearer than `near`, or as curves within `reach`.
+    /// Returns whether the two are one answer: as linkages nearer than `near`, or as curves within `reach`.
     pub(super) fn is(&self, other: &Look<'_>, near: f64, reach: f64) -> bool {
         other.difference(self) < near || other.draws_the_curve_of(self, reach)
     }
 
-    /// Whether the coupler points at the target's points, and the whole curves, lie within `reach` of each other.
+    /// Returns whether the coupler points at the target's points, and the whole curves, lie within `reach` of each
+    /// other.
     pub(super) fn draws_the_curve_of(&self, other: &Look<'_>, reach: f64) -> bool {
         let (own, theirs) = (self.at_points(), other.at_points());
         own.len() == theirs.len()
@@ -105,13 +107,13 @@ impl<'a> Look<'a> {
     }
 }
 
-/// The largest distance between two joints.
+/// Returns the largest distance between two joints.
 fn span(joints: &Joints) -> f64 {
     let from = |i: usize| joints[..i].iter().map(move |q| (joints[i] - q).norm());
     (1..joints.len()).flat_map(from).fold(0.0, f64::max)
 }
 
-/// Whether a curve lies within `reach` of a closed polygon.
+/// Returns whether a curve lies within `reach` of a closed polygon.
 fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
     let near = |p: &Complex| {
         (0..polygon.len()).any(|i| {

@@ -1,4 +1,4 @@
-//! What of a problem can be loosened, and how far: each requirement as limits with an outward side.
+//! Relaxation of a problem: each requirement as limits with an outward side.
 
 use crate::assess::assess;
 use crate::problem::Problem;
@@ -11,27 +11,27 @@ use crate::record::{Candidate, Change, Figure, TypedValue};
 /// A requirement, or the bounds of a design key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Demand {
-    /// `require.type`
+    /// The key `require.type`.
     Type,
-    /// `require.transmission_deg_min`
+    /// The key `require.transmission_deg_min`.
     Transmission,
-    /// `require.link_ratio_max`
+    /// The key `require.link_ratio_max`.
     LinkRatio,
-    /// `require.pivots_in`
+    /// The key `require.pivots_in`.
     PivotsIn,
-    /// `require.footprint_in`
+    /// The key `require.footprint_in`.
     FootprintIn,
-    /// `task.path.tolerance`
+    /// The key `task.path.tolerance`.
     Tolerance,
-    /// `require.order`
+    /// The key `require.order`.
     Order,
-    /// `require.direction`
+    /// The key `require.direction`.
     Direction,
-    /// `require.circuit`
+    /// The key `require.circuit`.
     Circuit,
-    /// `require.branch`
+    /// The key `require.branch`.
     Branch,
-    /// `require.closing`
+    /// The key `require.closing`.
     Closing,
     /// A key of `[design]`.
     Design(DesignKey),
@@ -40,27 +40,27 @@ pub enum Demand {
 /// The keys of `[design]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignKey {
-    /// The crank's pivot.
+    /// The crank's pivot A.
     CrankPivot,
-    /// The follower's pivot.
+    /// The follower's pivot B.
     FollowerPivot,
-    /// |AB|.
+    /// The ground length |AB|.
     Ground,
-    /// arg(B - A), degrees.
+    /// The angle of the ground line, arg(B - A), in degrees.
     GroundAngle,
-    /// |AC|.
+    /// The crank length |AC|.
     Crank,
-    /// |CD|.
+    /// The coupler length |CD|.
     Coupler,
-    /// |BD|.
+    /// The follower length |BD|.
     Follower,
-    /// |CP|.
+    /// The coupler side |CP| at the crank.
     CrankSide,
-    /// |DP|.
+    /// The coupler side |DP| at the follower.
     FollowerSide,
-    /// P along C -> D.
+    /// The coordinate of P along C -> D.
     CouplerX,
-    /// P across C -> D.
+    /// The coordinate of P across C -> D.
     CouplerY,
 }
 
@@ -78,22 +78,22 @@ const DESIGN_KEYS: [DesignKey; 11] = [
     DesignKey::CouplerY,
 ];
 
-/// A link ratio that is as good as none: a slider-crank to four digits.
+/// A limit of the link ratio that practically does not bind: a slider-crank to four digits.
 const NO_LINK_RATIO: f64 = 1e4;
-/// What is dropped of a design key still lies within this many sizes of the target.
+/// The bound of a dropped design key, in sizes of the target.
 const FAR: f64 = 2.0 * DEFAULT_REACH;
 
-/// A number that limits, and the side on which there is room: +1 above it, -1 below it.
+/// A limit, and the side on which it is loosened: +1 above it, -1 below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// Where it stands.
+    /// The value of the limit.
     pub value: f64,
-    /// Which way it loosens.
+    /// The direction in which it is loosened, +1 or -1.
     pub outward: f64,
 }
 
 impl Demand {
-    /// What a problem demands, in a fixed order; design keys last.
+    /// Returns the demands of a problem in a fixed order; design keys last.
     pub fn of(problem: &Problem) -> Vec<Demand> {
         let spec = problem.spec();
         let require = &spec.require;
@@ -120,7 +120,7 @@ impl Demand {
         all
     }
 
-    /// The demand that a requirement of the record belongs to.
+    /// Returns the demand that a requirement of the record belongs to.
     pub fn named(name: &str) -> Option<Demand> {
         let all = [
             Demand::Type,
@@ -139,13 +139,13 @@ impl Demand {
         all.into_iter().chain(designs).find(|demand| demand.rows().contains(&name))
     }
 
-    /// Whether it is a choice among words, with no measure of how far it is loosened.
+    /// Returns whether it is a choice among words, with no measure of how far it is loosened.
     pub fn is_policy(self) -> bool {
         use Demand::{Branch, Circuit, Closing, Direction, Order, Type};
         matches!(self, Type | Order | Direction | Circuit | Branch | Closing)
     }
 
-    /// The key in the problem file.
+    /// Returns the key in the problem file.
     pub fn key(self) -> &'static str {
         match self {
             Demand::Type => "require.type",
@@ -163,7 +163,7 @@ impl Demand {
         }
     }
 
-    /// The names of its rows among a candidate's requirements.
+    /// Returns the names of its rows among a candidate's requirements.
     fn rows(self) -> &'static [&'static str] {
         match self {
             Demand::Type => &["type"],
@@ -181,7 +181,7 @@ impl Demand {
         }
     }
 
-    /// The problem without this demand; design keys keep within reach of the target.
+    /// Returns the problem without this demand; design keys keep within reach of the target.
     pub fn dropped(self, problem: &Problem, mut spec: ProblemSpec) -> ProblemSpec {
         let require = &mut spec.require;
         match self {
@@ -201,7 +201,7 @@ impl Demand {
         spec
     }
 
-    /// Its limits as numbers; `None` where it has none (a policy, types, a tolerance that differs from point to
+    /// Returns its limits as numbers; `None` if it has none (a policy, types, a tolerance that differs from point to
     /// point).
     pub fn limits(self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
         let require = &spec.require;
@@ -235,7 +235,7 @@ impl Demand {
         }
     }
 
-    /// The problem with other limits, as many as [`Demand::limits`] gives.
+    /// Returns the problem with other limits, as many as [`Demand::limits`] gives.
     pub fn with_limits(self, mut spec: ProblemSpec, limits: &[f64]) -> ProblemSpec {
         let require = &mut spec.require;
         let as_box = || <[f64; 4]>::try_from(limits).ok();
@@ -256,8 +256,8 @@ impl Demand {
         spec
     }
 
-    /// Whether a value to type leaves everything allowed that the problem allows: each limit where it is or farther out, a
-    /// policy that allows any, the types with others.
+    /// Returns whether a value to type leaves everything allowed that the problem allows: each limit at its value or
+    /// farther out, a policy that allows any, the types with others.
     pub fn is_no_tighter(self, spec: &ProblemSpec, to: &TypedValue) -> bool {
         match (self, to) {
             (Demand::Type, TypedValue::Words(names)) => {
@@ -288,7 +288,7 @@ impl Demand {
         }
     }
 
-    /// What a candidate, judged under the problem that demands, has in place of each limit.
+    /// Returns the values that a candidate, judged under the problem that demands, attains in place of each limit.
     pub fn attained(self, judged: &Candidate) -> Option<Vec<f64>> {
         if self == Demand::Tolerance {
             return Some(vec![judged.error.max]);
@@ -307,7 +307,7 @@ impl Demand {
         Some(values)
     }
 
-    /// The value of the key in a problem, as it is typed; `None` where it cannot be typed.
+    /// Returns the value of the key in a problem, as it is typed; `None` if it cannot be typed.
     pub fn typed(self, spec: &ProblemSpec) -> Option<TypedValue> {
         let require = &spec.require;
         let word = |any: bool, otherwise: &str| {
@@ -345,14 +345,14 @@ impl Demand {
     }
 }
 
-/// Whether each value is where its limit is or farther out.
+/// Returns whether each value is at its limit or farther out.
 fn reach_out(limits: &[Limit], values: &[f64]) -> bool {
     limits.len() == values.len()
         && limits.iter().zip(values).all(|(limit, value)| limit.outward * (value - limit.value) >= 0.0)
 }
 
 impl DesignKey {
-    /// The key in the problem file.
+    /// Returns the key in the problem file.
     pub fn key(self) -> &'static str {
         match self {
             DesignKey::CrankPivot => "design.A",
@@ -377,7 +377,7 @@ impl DesignKey {
         }
     }
 
-    /// Its limits: none where the problem does not speak of it, two of a pivot, else one.
+    /// Returns its limits: none if the problem does not contain the key, two of a pivot, else one.
     pub fn get(self, design: &DesignSpec) -> Vec<Limits> {
         match self {
             DesignKey::CrankPivot => design.crank_pivot.into_iter().flatten().collect(),
@@ -410,7 +410,7 @@ impl DesignKey {
         }
     }
 
-    /// Whether it is a length, which is never negative.
+    /// Returns whether it is a length, which is never negative.
     pub fn is_length(self) -> bool {
         use DesignKey::*;
         matches!(self, Ground | Crank | Coupler | Follower | CrankSide | FollowerSide)
@@ -434,11 +434,11 @@ impl DesignKey {
     }
 }
 
-/// The changes to type that lead from a problem to one in which `demands` have been loosened.
+/// Returns the changes to type that lead from a problem to one in which `demands` have been loosened.
 ///
-/// A key that is typed is no longer filled in by a default, and with it may go the default of another:
-/// [`DesignSpec::resolve`] gives no ground where both pivots are given, and no B where the ground is. Such keys
-/// are typed as well, with the values that they have.
+/// A key that is typed is no longer filled in by a default, which may remove the default of another key:
+/// [`DesignSpec::resolve`] gives no ground if both pivots are given, and no B if the ground is. Such keys are typed as
+/// well, with the values that they have.
 pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) -> Option<Vec<Change>> {
     let spec = problem.spec();
     let change = |demand: Demand| {
@@ -478,8 +478,8 @@ pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) ->
     keys.into_iter().map(change).collect()
 }
 
-/// A limit rounded outward to three significant digits of itself or of its change, whichever is coarser; finer
-/// where that would be more than the change.
+/// Rounds a limit outward to three significant digits of itself or of its change, whichever is coarser; finer if that
+/// would be more than the change.
 ///
 /// ```
 /// use linkwright::search::loosen::rounded_outward;
@@ -496,14 +496,14 @@ pub fn rounded_outward(value: f64, from: f64, outward: f64) -> f64 {
     let exponent =
         if value != 0.0 && 10f64.powi(own) > change { power(change, 2) } else { own.max(power(change, 3)) };
     let steps = |x: f64| if exponent >= 0 { x / 10f64.powi(exponent) } else { x * 10f64.powi(-exponent) };
-    // What lies on a step to rounding stays there.
+    // A value that lies on a step, up to rounding, stays there.
     let near = 1e-9;
     let count = outward * (outward * steps(value) - near).ceil();
-    // Through decimal text, so that it reads as it is meant.
+    // Through decimal text, so that it prints with few digits.
     format!("{count}e{exponent}").parse().unwrap_or(value)
 }
 
-/// The candidate judged under a problem that is stricter than the one that it was found for.
+/// Returns the candidate judged under a problem that is stricter than the one that it was found for.
 pub fn judged_under(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
     assess(problem, &candidate.linkage, &candidate.crank_deg, &candidate.t1_at)
 }

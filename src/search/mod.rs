@@ -1,6 +1,6 @@
-//! What to try: starts, rounds, populations; which answers to give: distinct ones, cognates of their curves,
-//! families, warnings and what can be built; what the requirements cost, and what would help where nothing is
-//! acceptable.
+//! Search strategies: multistart rounds, populations and continuation; the choice of the answers (distinct ones,
+//! cognates, families, warnings, buildable ones); what the requirements cost; and the relaxations that help if nothing
+//! is acceptable.
 
 pub mod answers;
 pub mod atlas;
@@ -42,28 +42,28 @@ use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// What stops a search from outside.
+/// The limits that stop a search from outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget<'a> {
-    /// Set by whoever wants the search to end with its best so far.
+    /// The cancellation flag; setting it ends the search with its best answer so far.
     pub cancel: &'a AtomicBool,
-    /// The time limit, where one was asked for.
+    /// The time limit, if one was asked for.
     pub deadline: Option<Instant>,
 }
 
 impl<'a> Budget<'a> {
-    /// A budget that starts now.
+    /// Creates a budget whose time limit counts from now.
     pub fn new(cancel: &'a AtomicBool, time_limit_s: Option<f64>) -> Self {
         let limit = time_limit_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
         Budget { cancel, deadline: limit.and_then(|limit| Instant::now().checked_add(limit)) }
     }
 
-    /// Whether the search should end now.
+    /// Returns whether the search should end now.
     pub fn stopped(&self) -> bool {
         self.stop_reason().is_some()
     }
 
-    /// Why the search should end now.
+    /// Returns the reason why the search should end now, if there is one.
     pub fn stop_reason(&self) -> Option<Reason> {
         if is_stopped_by_a_test() || self.cancel.load(Ordering::Relaxed) {
             return Some(Reason::Cancelled);
@@ -71,8 +71,8 @@ impl<'a> Budget<'a> {
         self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| Reason::TimeLimit)
     }
 
-    /// Whether something may still be worked out that takes as long as judging candidates with so many target points
-    /// together: always until the search is stopped, and then where it takes a fraction of a second.
+    /// Returns whether there is time to judge candidates of so many target points in total: always until the search is
+    /// stopped, and after that only if it takes a fraction of a second.
     pub fn leaves_time_for(&self, points: usize) -> bool {
         points <= JUDGED_AFTER_STOP || !self.stopped()
     }
@@ -83,12 +83,12 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// Target points of the candidates that are still judged after a stop, all of them together. Judging takes about
-/// 200 positions of the linkage a target point, so that this many take a fraction of a second.
+/// The number of target points, summed over the candidates, that are still judged after a stop. Judging takes about 200
+/// positions of the linkage per target point, so that this many take a fraction of a second.
 pub const JUDGED_AFTER_STOP: usize = 20_000;
 
-/// How many candidates may still be judged: all of them until the search is stopped, and from then on as many as have
-/// [`JUDGED_AFTER_STOP`] target points together, but always one, so that there is something to give.
+/// A counter of the candidates that may still be judged: all of them until the search is stopped, and from then on as
+/// many as have [`JUDGED_AFTER_STOP`] target points together, but always one, so that there is an answer.
 #[derive(Debug)]
 pub struct Judging<'a> {
     budget: &'a Budget<'a>,
@@ -97,7 +97,7 @@ pub struct Judging<'a> {
 }
 
 impl Judging<'_> {
-    /// Whether one more may be judged; it counts as judged then.
+    /// Returns whether one more candidate may be judged, and counts it as judged.
     pub fn may_go_on(&self) -> bool {
         if !self.budget.stopped() {
             return true;
@@ -107,51 +107,52 @@ impl Judging<'_> {
     }
 }
 
-/// Where a search stands.
+/// The progress of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// What is being done, in a few words.
+    /// The current phase, in a few words.
     pub phase: &'static str,
     /// Evaluations so far.
     pub evaluations: u64,
     /// The budget of evaluations.
     pub budget: u64,
-    /// The best sum of squares of an acceptable candidate so far, or else of any; `None` where a search does not
-    /// know it.
+    /// The best sum of squares of an acceptable candidate so far, or else of any candidate; `None` if the search does
+    /// not track it.
     pub best_sum_sq: Option<f64>,
-    /// Whether that one is acceptable.
+    /// Whether the candidate with `best_sum_sq` is acceptable.
     pub accepted: bool,
-    /// How often the best acceptable one has come back; `None` where a search does not count that.
+    /// The repeated hits of the best acceptable candidate; `None` if the search does not count them.
     pub hits: Option<HitsSoFar>,
 }
 
-/// How often the best answer has come from independent rounds of starts, and how often it has to come to be believed.
+/// The number of independent rounds of starts that reached the best answer, and the number that the stopping rule
+/// wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HitsSoFar {
-    /// So often it came, the round that found it included.
+    /// Rounds that reached the best answer, the round that found it included.
     pub came: usize,
-    /// So often it has to come.
+    /// Rounds that have to reach it before the search stops.
     pub wanted: usize,
 }
 
-/// Whoever wants to know where a search stands.
+/// A callback that receives the progress of a search.
 pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
 
-/// The end of a search.
+/// The outcome of a search.
 #[derive(Clone, Debug)]
 pub struct SearchOutcome {
     /// Distinct candidates, ranked.
     pub candidates: Vec<Candidate>,
-    /// What else was found: the same answers again, worse ones, and ones that are not acceptable.
+    /// The other candidates found: repeats of the same answers, worse ones, and unacceptable ones.
     pub others: Vec<Candidate>,
-    /// What ran, in order.
+    /// Names of the methods that ran, in order.
     pub used: Vec<String>,
-    /// Why it ended.
+    /// The reason why the search ended.
     pub reason: Reason,
-    /// What it cost.
+    /// The evaluations used.
     pub evaluations: Evaluations,
-    /// Every linkage through nine precision points, where they were asked for.
+    /// All linkages through nine precision points, if they were asked for.
     pub exact: Option<ExactRecord>,
-    /// How often the best answer came back, where that was counted.
+    /// The repeated hits of the best answer, if they were counted.
     pub repeats: Option<Repeats>,
 }

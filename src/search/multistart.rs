@@ -1,8 +1,8 @@
-//! Levenberg-Marquardt from many starts, in rounds.
+//! Multistart: Levenberg-Marquardt fits from many starts, in rounds.
 //!
-//! A round draws [`SCREEN`] starts from its own stream of the seed, keeps the [`SHORT`] that promise most, fits
-//! each for a few steps and the best [`LONG`] of them to the end. Rounds run side by side in batches of a
-//! fixed size and are read in their order, so the number of threads changes nothing but the time.
+//! A round draws [`SCREEN`] starts from its own stream of the seed, keeps the [`SHORT`] that promise most, fits each
+//! for a few steps and the best [`LONG`] of them to convergence. Rounds run in parallel in batches of a fixed size and
+//! are read in their order, so the number of threads changes nothing but the time.
 
 use super::Budget;
 use super::rank::exact_cost;
@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 pub const SCREEN: usize = 160;
 /// Starts fitted for a few steps.
 pub const SHORT: usize = 8;
-/// Starts fitted to the end.
+/// Starts fitted to convergence.
 pub const LONG: usize = 3;
 /// Steps of a short fit.
 const SHORT_STEPS: usize = 24;
@@ -35,20 +35,20 @@ pub const LONG_STEPS: usize = 300;
 /// Rounds of the multipliers in a long fit.
 pub const LONG_ROUNDS: usize = 14;
 
-/// What a round found and what it cost.
+/// The candidates found in a round, and its cost.
 #[derive(Clone, Debug, Default)]
 pub struct RoundOutcome {
     /// Judged candidates, in the order of their starts' promise.
     pub found: Vec<Candidate>,
     /// Starts drawn, also those that could not be assembled.
     pub draws: u64,
-    /// How often the objective was computed.
+    /// Evaluations of the objective.
     pub evaluations: u64,
-    /// How many positions that took.
+    /// Positions of the linkage computed for them.
     pub positions: u64,
 }
 
-/// Options of a fit; `exact` is the cost below which nothing is left to gain.
+/// Returns the options of a fit; `exact_cost` is the cost below which nothing is left to gain.
 fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluations: u64) -> LmOptions {
     let task = problem.task();
     LmOptions {
@@ -58,7 +58,7 @@ fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluatio
         relative_reduction: 1e-12,
         exact_cost: 1e-6 * exact_cost(problem),
         feasibility: 1e-9 * task.size(),
-        // A mean error above a fifth of the size after half of the steps leads nowhere.
+        // A mean error above a fifth of the size after half of the steps is hopeless.
         hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
     }
 }
@@ -96,7 +96,7 @@ pub fn round(
         }
         let left = allowance - outcome.evaluations;
         if left == 0 {
-            // Nothing is left to fit with: the start as it is.
+            // No evaluations are left for a fit: the start as it is.
             fitted.push((promised, start));
             continue;
         }
@@ -128,7 +128,8 @@ pub fn round(
     outcome
 }
 
-/// Cost plus what the requirements lack, as a mean squared error; `None` where it has none.
+/// Returns the promise of a start, by which starts are screened: the cost plus the squared violation of the
+/// requirements, in the units of the cost; `None` if it has no cost.
 pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let task = problem.task();
     let weight: f64 = task.weights().iter().sum();
@@ -152,14 +153,14 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     Some(cost + scale * lack * lack)
 }
 
-/// The end of a fit.
+/// The end of a local fit.
 #[derive(Clone, Debug)]
 pub struct Fitted {
-    /// Where it ended; `None` where it could not start.
+    /// The end point; `None` if it could not start or was given up.
     pub end: Option<Start>,
-    /// Cost plus violation, for comparing ends.
+    /// The merit function, cost plus violation, for comparing ends.
     pub merit: f64,
-    /// How often the cost was computed.
+    /// Evaluations of the cost.
     pub evaluations: u64,
 }
 
@@ -215,7 +216,7 @@ fn ended<S>(
 /// Steps that bring positions to their nearest points at a fixed design.
 const SETTLING_STEPS: usize = 60;
 
-/// The positions of free timing at a fixed design, each brought to its nearest point.
+/// Returns the positions of free timing at a fixed design, each brought to its nearest point, and the evaluations used.
 pub fn settle_positions(
     problem: &Problem,
     design: &Design,
@@ -229,7 +230,7 @@ pub fn settle_positions(
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
 }
 
-/// The candidate of a fit's end, judged; `None` where it cannot be judged.
+/// Returns the judged candidate of a fit's end; `None` if it cannot be judged.
 pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
     let space = problem.space(end.setting.side);
     let shape = space.shape(&end.design)?;
@@ -254,7 +255,7 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
     assess(problem, &linkage, &crank_deg, &assemblies)
 }
 
-/// Crank angles (degrees, unwrapped along the motion) and assemblies of positions.
+/// Returns crank angles (degrees, unwrapped along the motion) and assemblies of positions.
 fn reading(
     problem: &Problem,
     shape: &Shape,
@@ -266,9 +267,9 @@ fn reading(
     Some(unwrapped(problem, &linkage, angles, assemblies))
 }
 
-/// Crank angles (radians) unwrapped along the motion, in degrees: along a full turn the way that is shorter in
-/// total; a rocking crank stays on the arc that it can reach. A last point that repeats the first is where the
-/// first is, a turn later.
+/// Returns crank angles (given in radians) unwrapped along the motion, in degrees: along a full turn in the direction
+/// that is shorter in total; a rocking crank stays on the arc that it can reach. A last point that repeats the first
+/// has the first one's angle, a turn later.
 pub fn unwrapped(
     problem: &Problem,
     linkage: &FourBar,
@@ -306,8 +307,8 @@ pub fn unwrapped(
     (along.iter().map(|a| a.to_degrees()).collect(), assemblies)
 }
 
-/// Points at the end that share the first point's place, a whole turn on, stand a hair before it: once around is
-/// not passed.
+/// Moves points at the end that share the first point's place, a whole turn on, slightly before it, so that the motion
+/// does not pass a full turn.
 fn stop_short_of_the_first(along: &mut [f64], direction: f64) {
     const HAIR: f64 = 4.0 * ORDER_TOLERANCE;
     const TOUCHING: f64 = 1e-6;

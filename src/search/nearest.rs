@@ -1,4 +1,4 @@
-//! Where a given linkage is nearest to a task's points: for linkages that no search of ours has placed.
+//! Positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search.
 
 use super::multistart::unwrapped;
 use crate::linkage::coupler_curve::DEFAULT_SAMPLES;
@@ -6,11 +6,11 @@ use crate::linkage::{AssemblyMode, CouplerCurve, FourBar, InputRange};
 use crate::problem::Problem;
 use crate::task::{AngleOffset, Timing};
 
-/// The crank angles (degrees) and assemblies at the points; `None` where there is no position for one.
+/// Returns the crank angles (degrees) and assemblies at the points; `None` if there is no position for one.
 ///
-/// Free timing: the nearest point of the circuit that the linkage's own t1 is on (of a rocking Grashof linkage
-/// the better of its two circuits). Prescribed timing: the prescribed angles, with the offset and the
-/// direction that give the least sum of squares where they are free, on the linkage's own t1.
+/// Free timing: the nearest point of the circuit that the linkage's own t1 is on (of a rocking Grashof linkage the
+/// better of its two circuits). Prescribed timing: the prescribed angles, with the offset and the direction that give
+/// the least sum of squares if they are free, on the linkage's own t1.
 pub fn nearest_positions(problem: &Problem, linkage: &FourBar) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     match problem.task().timing() {
         Timing::Free => free(problem, linkage),

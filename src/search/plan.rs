@@ -1,12 +1,12 @@
-//! Which searches run, in which order, and when they have done enough.
+//! The plan of a search: the methods that run, their order, and their stopping rules.
 //!
-//! `least-squares` and `auto` search prescribed timing in its reduced form ([`timed`]) and free timing on the curves
-//! of positions ([`free`]); each has its own rule of repeated hits. Where the reduced form is not to be had or finds
-//! nothing acceptable, rounds in the physical parameters follow: until the best answer has come back [`HITS`] times
-//! from different rounds and as many distinct answers as were asked for are known. What the objective and the
-//! tolerances ask beyond least squares is polished afterwards ([`super::polish`]). When still nothing is
-//! acceptable, `auto` lets differential evolution look for a feasible design and polishes what that finds. The
-//! population searches alone run without a polish.
+//! `least-squares` and `auto` search prescribed timing in its reduced form ([`timed`]) and free timing on the curves of
+//! positions ([`free`]); each has its own rule of repeated hits. If there is no reduced form or it finds nothing
+//! acceptable, rounds in the physical parameters follow: until [`HITS`] different rounds have reached the best answer
+//! and as many distinct answers as were asked for are known. For objectives and tolerances beyond least squares the
+//! answers are polished afterwards ([`super::polish`]). If still nothing is acceptable, `auto` searches without one of
+//! the requirements in turn (`relaxed`), then by differential evolution for a feasible design, and polishes the
+//! results. The population searches alone run without a polish.
 
 use super::keeper::{Keeper, of_as_many_points, spared};
 use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, round};
@@ -26,39 +26,39 @@ use crate::task::{AngleOffset, Timing};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The best answer has to come back from this many rounds before it is believed.
+/// Rounds that have to reach the best answer before it is believed.
 pub const HITS: usize = 6;
-/// Errors that differ by less than this part are the same optimum.
+/// Relative difference of errors below which they are the same optimum.
 pub(super) const SAME_OPTIMUM: f64 = 1e-6;
-/// Rounds that run side by side before any is read: the same number whatever the threads.
+/// Rounds that run in parallel before any is read: the same number for any number of threads.
 const BATCH: u64 = 8;
-/// Batches at least, so that rarer answers have their chance, and batches without news that end a search for
-/// further distinct answers.
+/// Least number of batches, so that rarer answers have their chance, and batches without a new answer that end a search
+/// for further distinct answers.
 const LEAST_BATCHES: u64 = 3;
 const QUIET_BATCHES: u64 = 6;
-/// The part of the budget that `auto` gives to local searches when nothing acceptable turns up.
+/// The part of the budget that `auto` gives to local searches if these find nothing acceptable.
 const LOCAL_SHARE: f64 = 0.6;
-/// The part of that which the reduced form of prescribed timing gets before rounds in the physical parameters.
+/// The part of that for the reduced form of prescribed timing, before rounds in the physical parameters.
 const REDUCED_SHARE: f64 = 0.5;
-/// One part in this many of what is left when local searches end with nothing acceptable goes to searches without one
-/// of the requirements ([`relaxed`]), and the rest to differential evolution.
+/// If local searches end with nothing acceptable, one part in this many of the evaluations left goes to searches
+/// without one of the requirements ([`relaxed`]), and the rest to differential evolution.
 const RELAXED_SHARE: u64 = 2;
-/// One part in this many of what differential evolution is given goes to the polish of its best.
+/// One part in this many of the evaluations for differential evolution goes to the polish of its best.
 const POLISH_SHARE: u64 = 5;
-/// Candidates that are kept while searching; the worst are dropped beyond it.
+/// Number of candidates kept while searching; the worst are dropped beyond it.
 const KEPT: usize = 400;
 
-/// A target further than this many of its sizes from the origin is searched around its own centre: at 1e6 sizes
-/// differences of coordinates have lost six digits.
+/// Distance of a target from the origin, in sizes of the target, beyond which it is searched around its own centre: at
+/// 1e6 sizes differences of coordinates have lost six digits.
 pub const FAR: f64 = 100.0;
-/// Of what else was found there, this many are brought back.
+/// Number of the other candidates found there that are brought back.
 const FAR_OTHERS: usize = 32;
 
-/// Searches as the problem's `[solve]` table says: where there are nine precision points `continuation` and `auto`
-/// first solve for every linkage through them, and `auto` approximates where these do not give enough.
+/// Searches as the problem's `[solve]` table says: if there are nine precision points, `continuation` and `auto` first
+/// solve for all linkages through them, and `auto` approximates if these do not give enough answers.
 ///
 /// # Errors
-/// [`PopulationError`] when a population search cannot be set up.
+/// [`PopulationError`] if a population search cannot be set up.
 pub fn search(
     problem: &Problem,
     budget: &Budget<'_>,
@@ -67,7 +67,7 @@ pub fn search(
     search_kept(problem, budget, observer, None)
 }
 
-/// As [`search`], with a keeper of where it stands: it begins where the keeper says.
+/// As [`search`], with a keeper of its state, from which it resumes.
 ///
 /// # Errors
 /// As [`search`].
@@ -86,7 +86,7 @@ pub fn search_kept(
     Ok(exact.beside(problem, approximated(problem, budget, observer, keeper)?, budget))
 }
 
-/// As [`search`] without exact answers: what conflicts and costs are looked for with, many times over.
+/// As [`search`] without exact answers: used many times over to find conflicts and costs.
 ///
 /// # Errors
 /// As [`search`].
@@ -113,16 +113,16 @@ fn approximated(
     };
     let mut outcome = search_here(&near, budget, observer, keeper)?;
     let back = |candidate: &Candidate| moved_back(problem, candidate, centre);
-    // Also the next best: one that only just closes there may be open here.
+    // Also the next best: a linkage that only just closes there may be open here.
     let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
     let found = found.collect();
     (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
     Ok(outcome)
 }
 
-/// A candidate that was found around its target's centre, moved `by` to where the target is and judged there; `None`
-/// where it does not close there. Its pivots are rounded on the way: angles that are counted from the ground line are
-/// those from the line that is there then.
+/// Returns a candidate that was found around its target's centre, moved `by` back to the target and judged there;
+/// `None` if it does not close there. Its pivots are rounded in the move: angles that are counted from the ground line
+/// then count from the moved line.
 pub(super) fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
     let linkage = candidate.linkage.shifted(by).ok()?;
     let timing = problem.spec().task.path.timing.as_ref();
@@ -154,7 +154,7 @@ fn search_here(
             local.finish(problem, limit, budget);
             Ok(local.outcome(problem))
         }
-        // Exact answers are not approximated; where the points have none, all the same.
+        // Exact answers are not approximated; if the points have none, `continuation` searches as `auto`.
         Method::Auto | Method::Continuation => auto(problem, budget, observer, keeper),
     }
 }
@@ -184,18 +184,18 @@ fn alone(
 pub(super) struct Local {
     /// Judged candidates.
     pub(super) found: Vec<Candidate>,
-    /// What it cost.
+    /// The evaluations used.
     pub(super) evaluations: Evaluations,
-    /// Why it ended.
+    /// The reason why it ended.
     pub(super) reason: Reason,
-    /// What ran.
+    /// Names of the methods that ran.
     pub(super) used: Vec<String>,
-    /// How often the best answer came back.
+    /// The repeated hits of the best answer.
     pub(super) repeats: Option<Repeats>,
 }
 
 impl Local {
-    /// The polish that the objective and the tolerances ask for.
+    /// Runs the polish that the objective and the tolerances ask for.
     fn finish(&mut self, problem: &Problem, limit: u64, budget: &Budget<'_>) {
         improve(problem, &mut self.found, &mut self.evaluations, limit, budget);
         if let Some(reason) = budget.stop_reason() {
@@ -218,8 +218,8 @@ impl Local {
     }
 }
 
-/// Free timing: [`free`]. Prescribed timing: the reduced form first, and where it is not to be had or nothing
-/// acceptable came of it within its share, rounds in the physical parameters.
+/// Runs the local search: for free timing [`free`]; for prescribed timing the reduced form first, and if there is none
+/// or it found nothing acceptable within its share, rounds in the physical parameters.
 pub(super) fn local_search(
     problem: &Problem,
     limit: u64,
@@ -263,7 +263,7 @@ pub(super) fn local_search(
     local
 }
 
-/// Where `rounds` stand between two batches: all that the next ones depend on besides the problem and the budget.
+/// The state of `rounds` between two batches, on which the next ones depend besides the problem and the budget.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct RoundsState {
     found: Vec<Candidate>,
@@ -289,8 +289,8 @@ impl RoundsState {
     }
 }
 
-/// Prescribed timing in the physical parameters: rounds until the best is believed, until `limit` evaluations are
-/// used, or until `patience` are used without an acceptable candidate.
+/// Runs rounds for prescribed timing in the physical parameters until the best is believed, until `limit` evaluations
+/// are used, or until `patience` are used without an acceptable candidate.
 fn rounds(
     problem: &Problem,
     limit: u64,
@@ -310,7 +310,7 @@ fn rounds(
             keeper.keep(stopped, |state| state.rounds = Some(at.clone()));
         }
     };
-    // No round so far came near to what it was allowed.
+    // No round so far came near its allowance of evaluations.
     let mut ample = true;
     loop {
         let stop = budget.stop_reason();
@@ -320,7 +320,7 @@ fn rounds(
         if let Some(reason) = stop {
             return at.ended(reason);
         }
-        // What is left is shared out evenly, so that the budget is never exceeded whatever the rounds need.
+        // The evaluations left are shared evenly, so that the budget is never exceeded whatever the rounds need.
         let left = limit.saturating_sub(at.evaluations.objective);
         let allowance = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
         let rounds: Vec<_> = (at.batch * BATCH..(at.batch + 1) * BATCH)
@@ -360,7 +360,7 @@ fn rounds(
         }
         sort(problem, &mut at.found);
         at.found.truncate(KEPT);
-        // A batch that was cut short says nothing of convergence, and must not pass for a whole one.
+        // A batch that was cut short does not count for convergence, and must not pass for a whole one.
         if let Some(reason) = stop {
             return at.ended(reason);
         }
@@ -402,7 +402,7 @@ fn auto(
     let mut local =
         local_search(problem, limit - reserve(problem, limit), patience, budget, observer, keeper);
     local.finish(problem, limit, budget);
-    // Converged without an accepted answer: a tolerance that no polish could meet.
+    // Converged without an accepted answer means a tolerance that no polish could meet.
     let gave_up = matches!(local.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged);
     let spent = local.evaluations.objective >= limit;
     if !gave_up || spent || local.found.iter().any(|c| c.accepted) {

@@ -1,8 +1,8 @@
-//! What follows a search by least squares: the least largest deviation, tolerances that are met, and the last
-//! digits of answers on which a limit binds.
+//! Polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains
+//! the last digits of answers on which a limit is active.
 //!
-//! A start or a judged candidate goes in, a better one of the same basin comes out: convex programs in a row
-//! ([`crate::solve::convex`]), under all requirements.
+//! From a start or a judged candidate it computes a better one of the same basin, by sequential convex programming
+//! ([`crate::solve::convex`]) under all requirements.
 
 use super::Budget;
 use super::multistart::{Fitted, judged};
@@ -20,60 +20,61 @@ use crate::solve::levenberg_marquardt::BlockLeastSquares;
 use crate::solve::streams::{Stream, stream, uniform};
 use rayon::prelude::*;
 
-/// Different optima of the sum of squares that are polished: the best largest deviation need not lie in the best of
-/// them.
+/// Number of different optima of the sum of squares that are polished: the best largest deviation need not lie in the
+/// best of them.
 const BASINS: usize = 24;
-/// Distinct optima that are looked for before they are polished.
+/// Least number of distinct optima to find before they are polished.
 const LEAST_BASINS: usize = 8;
-/// Steps of a polish.
+/// Most steps of a polish.
 const STEPS: usize = 150;
-/// Optima of the largest deviation around which is looked for better ones, starts around each, how far they go
-/// (in trust boxes; of a long link a tenth counts), rounds at most, and rounds without news that end it.
+/// Local random restarts (hops) for the largest deviation: the optima around which they start, starts around each,
+/// their reach (in trust boxes; for a long link a tenth of it counts), the most rounds, and the rounds without
+/// improvement that end them.
 const HOPPED: usize = 3;
 const HOPS: usize = 4;
 const HOP: f64 = 0.4;
 const MAX_HOPS: u64 = 4;
 const QUIET_HOPS: usize = 2;
-/// Starts whose largest deviation and link ratio differ by less than this part are the same.
+/// Relative difference of largest deviation and link ratio below which starts are the same.
 const SAME_START: f64 = 1e-2;
-/// Largest deviations that differ by less than this part are the same optimum.
+/// Relative difference of largest deviations below which they are the same optimum.
 const SAME_DEVIATION: f64 = 1e-6;
-/// The random stream of the first round; those of a multistart count up from 0.
+/// The random stream of the first round of hops; those of a multistart count up from 0.
 const FIRST_HOP: u64 = 1 << 62;
-/// Evaluations of a polish at most.
+/// Most evaluations of a polish.
 const EVALUATIONS: u64 = 400;
-/// The part of a budget that is kept for polishing where there is something to polish for.
+/// One part in this many of a budget is reserved for polishing, if the objective or the tolerances need it.
 const SHARE: u64 = 5;
-/// Tolerances are aimed at from this part of themselves inside.
+/// Relative margin inside the tolerances at which a polish aims.
 const TOLERANCE_MARGIN: f64 = 1e-9;
-/// A largest deviation of this part of the tolerances is room enough for least squares between them.
+/// Largest deviation, in parts of the tolerances, below which least squares has enough room between them.
 const INSIDE: f64 = 0.98;
-/// A tolerance of zero is aimed at within this part of the target's size.
+/// Least tolerance aimed at, in parts of the target's size; used for a tolerance of zero.
 const LEAST_TOLERANCE: f64 = 1e-10;
-/// A value this near to its limit, in parts of max(1, |limit|), is held by it.
+/// Distance of a value from its limit, in parts of max(1, |limit|), within which the limit is active.
 const AT_LIMIT: f64 = 1e-4;
 
-/// The evaluations of a budget that a search by least squares leaves to [`improve`].
+/// Returns the evaluations of a budget that a search by least squares leaves to [`improve`].
 pub fn reserve(problem: &Problem, evaluations: u64) -> u64 {
     let wanted =
         problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
     if wanted { evaluations / SHARE } else { 0 }
 }
 
-/// How many distinct optima a search by least squares has to find: the answers that are wanted, and enough of
-/// them to polish where the largest deviation or tolerances decide.
+/// Returns the number of distinct optima that a search by least squares has to find: the answers that are wanted, or,
+/// if the largest deviation or tolerances decide, enough of them to polish.
 pub fn basins_wanted(problem: &Problem) -> usize {
     let wanted = problem.spec().solve.candidates;
     if reserve(problem, SHARE) > 0 { wanted.max(LEAST_BASINS) } else { wanted }
 }
 
-/// Whether a candidate is accepted, or would be if its polish brought it within the tolerances.
+/// Returns whether a candidate is accepted, or would be if its polish brought it within the tolerances.
 pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
     let forbidden = candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     !forbidden && candidate.requirements.iter().all(|r| r.met || r.name == "tolerance")
 }
 
-/// The tolerances by which deviations are measured: 1 where none are given.
+/// Returns the tolerances by which deviations are measured: 1 if none are given.
 fn measures(problem: &Problem) -> Vec<f64> {
     match problem.task().tolerances() {
         None => vec![1.0; problem.task().len()],
@@ -84,10 +85,10 @@ fn measures(problem: &Problem) -> Vec<f64> {
     }
 }
 
-/// Lessens the largest deviation, in parts of the tolerances where there are any, until it can be no less or,
-/// within tolerances, is below `enough`.
+/// Minimises the largest deviation, in parts of the tolerances if there are any, until it has converged or, within
+/// tolerances, is below `enough`.
 ///
-/// The merit is that deviation, plus what the requirements lack in sizes of the target.
+/// The merit is that deviation, plus the violation of the requirements in sizes of the target.
 pub fn deviation_polish(
     problem: &Problem,
     start: &Start,
@@ -99,8 +100,8 @@ pub fn deviation_polish(
     convex(problem, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations, budget).0
 }
 
-/// Brings a start to the best of its basin under everything that is asked: the least largest deviation, or the
-/// least sum of squares within the tolerances; where these cannot be met, the least largest deviation.
+/// Brings a start to the optimum of its basin under all requirements: the least largest deviation, or the least sum of
+/// squares within the tolerances; if these cannot be met, the least largest deviation.
 pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budget<'_>) -> Fitted {
     let floor = 1e-3 * exact_objective(problem);
     match (problem.spec().solve.objective, problem.task().tolerances()) {
@@ -129,7 +130,7 @@ pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budge
     }
 }
 
-/// A fit by convex programs, and its largest deviation.
+/// Fits by sequential convex programming; returns the end and its largest deviation.
 fn convex(
     problem: &Problem,
     start: &Start,
@@ -194,7 +195,7 @@ fn ended<S>(
     (fitted, result.deviation)
 }
 
-/// Whether a limit holds a candidate: then the last digits are worth a polish.
+/// Returns whether a limit is active at a candidate: then the last digits are worth a polish.
 fn held(candidate: &Candidate) -> bool {
     let at = |value: f64, limit: f64| (value - limit).abs() <= AT_LIMIT * limit.abs().max(1.0);
     candidate.requirements.iter().any(|r| match (&r.value, &r.limit) {
@@ -210,12 +211,12 @@ fn held(candidate: &Candidate) -> bool {
     })
 }
 
-/// Polishes what a search has found as the objective and the tolerances ask, and adds what comes of it.
+/// Polishes the candidates of a search for the objective and the tolerances, and adds the results.
 ///
-/// `limit` is the budget of evaluations of which `evaluations` tells what is used; it is kept. The best
-/// `BASINS` distinct candidates are polished side by side, and so are starts around the best of what comes of
-/// them until that is no news, or until the tolerances are met; where neither tolerances nor the largest deviation
-/// ask for it, only accepted ones that a limit holds.
+/// `limit` is the budget of evaluations, of which `evaluations` are used; it is not exceeded. The best `BASINS`
+/// distinct candidates are polished in parallel, then starts around the best results, until these bring no improvement
+/// or the tolerances are met. If neither tolerances nor the largest deviation need it, only accepted candidates at an
+/// active limit are polished.
 pub fn improve(
     problem: &Problem,
     found: &mut Vec<Candidate>,
@@ -230,7 +231,7 @@ pub fn improve(
     let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
     let toleranced = problem.task().tolerances().is_some();
     let worth: Vec<Candidate> = if deviation || toleranced {
-        // Without the largest deviation as objective, what is accepted has no more to gain.
+        // Unless the largest deviation is the objective, an accepted candidate has no more to gain.
         let open = |c: &&Candidate| promising(problem, c) && (deviation || !c.accepted);
         let promising: Vec<&Candidate> = found.iter().filter(open).collect();
         if !deviation && found.iter().any(|c| c.accepted) {
@@ -251,7 +252,7 @@ pub fn improve(
     if !(deviation || toleranced) {
         return;
     }
-    // The largest deviation has many optima in one basin of least squares: look around the best.
+    // The largest deviation has many optima in one basin of least squares: start around the best.
     let mut best = f64::INFINITY;
     let mut quiet = 0;
     for hop in 0..MAX_HOPS {
@@ -275,7 +276,7 @@ pub fn improve(
         let mut starts = Vec::new();
         for (_, candidate) in near.into_iter().take(HOPPED) {
             let Some(start) = start_at(problem, candidate) else { continue };
-            // The last goes on from where it is, without what its curvature was thought to be.
+            // The last start is the candidate itself, with the curvature estimate reset.
             for _ in 1..HOPS {
                 starts.push(moved(problem, &start, &mut draws));
             }
@@ -289,7 +290,7 @@ pub fn improve(
     }
 }
 
-/// The candidates that differ in more than digits, least deviation first. One curve may stand here several times:
+/// Returns the candidates that differ in more than digits, least deviation first. One curve may occur several times:
 /// cognates and points along a valley of least squares lead to different largest deviations.
 fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
     let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
@@ -310,7 +311,7 @@ fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
     kept.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// The largest error of a candidate, in parts of the tolerances where there are any.
+/// Returns the largest error of a candidate, in parts of the tolerances if there are any.
 fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
     let task = problem.task();
     let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
@@ -318,7 +319,7 @@ fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
     error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
 }
 
-/// A start near another, in its bounds.
+/// Returns a random start near another, in its bounds.
 fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
     let space = problem.space(start.setting.side);
     let trust = space.trust(problem.task().size());
@@ -330,7 +331,7 @@ fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
     near
 }
 
-/// Polishes starts side by side, each with its share of what is left of `limit`, and adds what comes of them.
+/// Polishes starts in parallel, each with its share of the rest of `limit`, and adds the results.
 fn polish_all(
     problem: &Problem,
     mut starts: Vec<Start>,

@@ -1,5 +1,5 @@
-//! The population searches on the design vector or in reduced variables: genetic, differential evolution, and
-//! uniform sampling as the baseline that they are measured against.
+//! The population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform
+//! sampling as the baseline for comparison.
 
 use super::keeper::Keeper;
 use super::multistart::{judged, settle_positions};
@@ -19,7 +19,7 @@ use crate::solve::random_search::{UniformSampling, UniformSamplingParameters};
 use crate::task::Timing;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Which population search.
+/// The population search to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Population {
     /// The real-coded genetic algorithm.
@@ -31,7 +31,7 @@ pub enum Population {
 }
 
 impl Population {
-    /// The name in records.
+    /// Returns the name in records.
     pub fn name(self) -> &'static str {
         match self {
             Population::Genetic => "genetic",
@@ -41,38 +41,38 @@ impl Population {
     }
 }
 
-/// The end of a population search.
+/// The outcome of a population search.
 #[derive(Clone, Debug)]
 pub struct PopulationEnd {
     /// Starts for a polish, best first, one for each individual kept.
     pub starts: Vec<Start>,
-    /// The same, judged as they are.
+    /// The candidates of these starts, judged without a polish.
     pub found: Vec<Candidate>,
-    /// How often the objective was computed.
+    /// Evaluations of the objective.
     pub evaluations: u64,
-    /// How many positions that took.
+    /// Positions of the linkage computed for them.
     pub positions: u64,
-    /// Why it ended.
+    /// The reason why it ended.
     pub reason: Reason,
 }
 
 /// A fitness whose individuals become starts.
 pub(super) trait Searched: PopulationProblem {
-    /// How many positions of the linkage one evaluation computes.
+    /// Returns the number of positions of the linkage that one evaluation computes.
     fn positions(&self) -> u64;
-    /// The start that an individual stands for.
+    /// Returns the start that an individual encodes.
     fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start>;
 }
 
 /// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
 /// are used.
 ///
-/// In reduced variables where the method is a population search and `variables` asks for them
-/// ([`crate::problem::spec::SolveSpec::moves_reduced`]). Where everything is fixed there is one design, and it is
-/// read once.
+/// It moves in reduced variables if the method is a population search and `variables` asks for them
+/// ([`crate::problem::spec::SolveSpec::moves_reduced`]). If everything is fixed there is one design, and it is
+/// evaluated once.
 ///
 /// # Errors
-/// [`PopulationError`] when the parameters are out of range, or when there are no reduced variables.
+/// [`PopulationError`] if the parameters are out of range, or if there are no reduced variables.
 pub fn search(
     problem: &Problem,
     which: Population,
@@ -83,7 +83,7 @@ pub fn search(
     search_kept(problem, which, evaluations, budget, observer, None)
 }
 
-/// As [`search`], with a keeper of where it stands: it begins where the keeper says.
+/// As [`search`], with a keeper of its state, from which it resumes.
 ///
 /// # Errors
 /// As [`search`].
@@ -107,11 +107,12 @@ pub fn search_kept(
     search_in(problem, &fitness, which, evaluations, budget, observer, keeper)
 }
 
-/// Targets of fewer points are done with a generation in a fraction of a second: a stop waits for its end.
+/// Number of points from which a stop is checked before each evaluation. With fewer, a generation takes a fraction of a
+/// second, and a stop waits for its end.
 const LONG_TARGET: usize = 1000;
 
-/// A fitness that is asked about a stop before each evaluation, where one takes long: those after a stop are skipped and
-/// leave [`Fitness::UNKNOWN`], which no point is worse than. The first is always computed, so that there is an answer.
+/// A fitness that checks for a stop before each evaluation, if one takes long: evaluations after a stop are skipped and
+/// give [`Fitness::UNKNOWN`], which no point is worse than. The first is always computed, so that there is an answer.
 struct Stoppable<'a, F> {
     fitness: &'a F,
     budget: &'a Budget<'a>,
@@ -194,7 +195,7 @@ fn search_in<F: Searched>(
         });
     };
     let mut keep = |state: &dyn Fn() -> RestartsState| {
-        // A generation that was cut short is no place to go on from.
+        // The state after a generation that was cut short is not saved.
         if let Some(keeper) = keeper.filter(|_| stoppable.skipped() == 0) {
             keeper.keep(stop.load(Ordering::Relaxed), |at| at.population = Some(state()));
         }
@@ -237,7 +238,7 @@ fn search_in<F: Searched>(
         positions: (outcome.evaluations - skipped) * fitness.positions(),
         reason: match outcome.reason {
             StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
-            // The fitness is no judge: an exact answer has to stand before the referee too.
+            // The fitness does not judge: an exact answer has to pass the referee too.
             StopReason::TargetReached if reached => Reason::TargetReached,
             StopReason::TargetReached => Reason::Stalled,
             StopReason::EvaluationLimit => Reason::EvaluationLimit,
@@ -246,7 +247,7 @@ fn search_in<F: Searched>(
     })
 }
 
-/// Individuals of the last population that are looked at for distinct answers.
+/// Number of individuals of the last population that are examined for distinct answers.
 const KEPT: usize = 20;
 
 impl Searched for PathFitness<'_> {

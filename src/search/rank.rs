@@ -1,20 +1,20 @@
-//! Which answers are really different, and which is the best.
+//! Ranking of candidates and choice of the distinct ones.
 //!
-//! Ranked by acceptance, then (where tolerances are missed) by how far, then error (errors of exact answers are
-//! equal), then (of what is refused) how grave the defects are and how many requirements are unmet, then worst
-//! transmission angle, then size. Two candidates are one answer when
+//! Candidates are ranked by acceptance, then (if tolerances are missed) by how far, then error (errors of exact answers
+//! are equal), then (if refused) by how grave the defects are and how many requirements are unmet, then worst
+//! transmission angle, then size. Two candidates are one answer if
 //!
 //! - they are nearly the same linkage: at the first point their joints A, B, C, D and P lie within [`NEAR`] of
 //!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
 //!   other side do; or
 //! - they draw the same curve: their coupler points at the target points, and their whole curves, lie within
 //!   [`SAME_CURVE`] of the target's size of each other; or
-//! - the target is symmetric, and its symmetry makes the one of the other (in the list that is given; a search goes on
-//!   for as long as it did without this rule).
+//! - the target is symmetric, and its symmetry maps the one to the other (only in the list that is reported; a search
+//!   goes on for as long as it did without this rule).
 //!
-//! Of many exact answers (a family of them) the best is taken, and of the others, in their order, those that
-//! look different: first at least half a span apart from all that are taken, and where that gives too few a
-//! quarter, and so on down to [`NEAR`].
+//! Of many exact answers (a family of them) the best is taken, and of the others, in their order, those that look
+//! different: first at least half a span apart from all that are taken, then, if that gives too few, a quarter, and so
+//! on down to [`NEAR`].
 
 use super::look::Look;
 use super::symmetry::Symmetries;
@@ -25,26 +25,26 @@ use crate::task::Defect;
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-/// Curves nearer to each other than this part of the target's size are one answer.
+/// Distance of curves, in parts of the target's size, below which they are one answer.
 pub const SAME_CURVE: f64 = 1e-2;
-/// Linkages whose joints are nearer to each other than this part of their span are one answer.
+/// Distance of the joints of linkages, in parts of their span, below which they are one answer.
 pub const NEAR: f64 = 0.05;
-/// How far apart members of a family of exact answers should be, in spans: as far as gives enough of them.
+/// Distances between members of a family of exact answers, in spans: the largest that gives enough of them is used.
 const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
 pub use crate::record::EXACT_MEAN_SQ as EXACT;
 
-/// The sum of squares below which a fit is exact.
+/// Returns the sum of squares below which a fit is exact.
 pub fn exact_sum_sq(problem: &Problem) -> f64 {
     EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
-/// The weighted sum of squares below which a fit is exact.
+/// Returns the weighted sum of squares below which a fit is exact.
 pub fn exact_cost(problem: &Problem) -> f64 {
     EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
 }
 
-/// The objective below which a fit is exact: a weighted sum of squares; a largest deviation, which is a length,
-/// or where tolerances are given that length in parts of the least of them.
+/// Returns the objective below which a fit is exact: a weighted sum of squares; or a largest deviation, which is a
+/// length, or if tolerances are given that length in parts of the least of them.
 pub fn exact_objective(problem: &Problem) -> f64 {
     match problem.spec().solve.objective {
         Objective::SumOfSquares => exact_cost(problem),
@@ -56,7 +56,7 @@ pub fn exact_objective(problem: &Problem) -> f64 {
     }
 }
 
-/// What searches by least squares lessen: the weighted sum of squares, whatever the objective is.
+/// Returns the cost that searches by least squares minimise: the weighted sum of squares, whatever the objective is.
 pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     if problem.spec().solve.objective == Objective::SumOfSquares {
         return candidate.error.objective;
@@ -66,11 +66,11 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     error.map_or(f64::INFINITY, |error| error.objective)
 }
 
-/// What a candidate is ranked by; the less, the better.
+/// The ranking key of a candidate; less is better.
 #[derive(Clone, Copy, Debug)]
 struct Key {
     refused: bool,
-    /// Whether more than the tolerances is missed, and how far the tolerances are, in parts of themselves.
+    /// Whether requirements other than the tolerances are missed, and the largest error in parts of the tolerance.
     missed: (bool, f64),
     error: f64,
     severity: usize,
@@ -94,8 +94,8 @@ impl Key {
     }
 }
 
-/// How grave the defects of a refused candidate are: a toggle can be pushed through, an order be put up with; between
-/// two circuits the linkage has to be taken apart. 0 for what is accepted.
+/// Returns the severity of a refused candidate's defects: a toggle can be pushed through, an order be put up with;
+/// between two circuits the linkage has to be taken apart. 0 if it is accepted.
 pub(super) fn severity(candidate: &Candidate) -> usize {
     let of = |defect: &Defect| match defect {
         Defect::Branch { .. } => 1,
@@ -105,7 +105,7 @@ pub(super) fn severity(candidate: &Candidate) -> usize {
     if candidate.accepted { 0 } else { candidate.defects.iter().map(of).sum() }
 }
 
-/// Where tolerances are asked and missed, the nearest to them comes first: of those that keep to all else.
+/// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
 fn missed(candidate: &Candidate) -> (bool, f64) {
     let row = candidate.requirements.iter().find(|r| !candidate.accepted && r.name == "tolerance");
     row.map_or((false, 0.0), |row| {
@@ -146,32 +146,32 @@ impl PartialEq for Key {
 
 impl Eq for Key {}
 
-/// The longest of the links and the coupler's side.
+/// Returns the longest of the links and the coupler's side.
 pub(super) fn size(candidate: &Candidate) -> f64 {
     candidate.linkage.longest_link().max(candidate.linkage.crank_side())
 }
 
-/// Better first. For many candidates: [`sort`].
+/// Compares two candidates, better first. For many candidates: [`sort`].
 pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Ordering {
     let floor = exact_objective(problem);
     Key::of(one, floor).cmp(&Key::of(other, floor))
 }
 
-/// Better first; equals keep their order.
+/// Sorts candidates, better first; equals keep their order.
 pub fn sort(problem: &Problem, candidates: &mut [Candidate]) {
     let floor = exact_objective(problem);
     candidates.sort_by_cached_key(|candidate| Key::of(candidate, floor));
 }
 
-/// The places of the best distinct candidates, at most `wanted`, better first.
+/// Returns the indices of the best distinct candidates, at most `wanted`, better first.
 ///
-/// Where at least one is accepted only accepted ones are given. Of one answer that is wanted nothing is drawn
-/// and nothing compared but the ranks.
+/// If at least one is accepted, only accepted ones are given. If one answer is wanted, no curve is computed and nothing
+/// compared but the ranks.
 pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
     chosen_but_for(problem, &Symmetries::none(), found, wanted)
 }
 
-/// As [`chosen`]; what a symmetry of the target makes of one answer is that answer too.
+/// As [`chosen`]; images under a symmetry of the target count as the same answer too.
 fn chosen_but_for(
     problem: &Problem,
     symmetries: &Symmetries,
@@ -180,7 +180,7 @@ fn chosen_but_for(
 ) -> Vec<usize> {
     let floor = exact_objective(problem);
     let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
-    // Equals that differ in their last digits are told apart by these, not by who was found first.
+    // Equals that differ in their last digits are ordered by these, not by the order in which they were found.
     let numbers = |i: usize| {
         let n = found[i].linkage.natural_coordinates();
         let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
@@ -205,7 +205,7 @@ fn chosen_but_for(
     let reach = SAME_CURVE * problem.task().size();
     let mut taken: Vec<usize> = Vec::new();
     let mut images: Vec<Look<'_>> = Vec::new();
-    // Once one answer with a taken one, always so: nothing that is taken is given back.
+    // A candidate that is one answer with a taken one stays so: a taken one is never given back.
     let mut dropped = vec![false; found.len()];
     let mut take = |among: &[usize], apart: f64| {
         for &i in among {
@@ -239,13 +239,13 @@ fn chosen_but_for(
     taken
 }
 
-/// How many distinct candidates there are, counted up to `wanted`.
+/// Returns the number of distinct candidates, counted up to `wanted`.
 pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> usize {
     chosen(problem, found, wanted).len()
 }
 
-/// The best distinct candidates, at most `wanted`, ranked from 1, and all others as they were found. Of mirror images
-/// that a symmetric target allows one is given.
+/// Returns the best distinct candidates, at most `wanted`, ranked from 1, and all others in their order. Of mirror
+/// images that a symmetric target allows one is given.
 pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
     let places = chosen_but_for(problem, &Symmetries::of(problem), &found, wanted);
     let mut rank_of = vec![0; found.len()];
@@ -264,9 +264,9 @@ pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<
     (best, others)
 }
 
-/// The best distinct candidates, at most `wanted`, ranked from 1.
+/// Returns the best distinct candidates, at most `wanted`, ranked from 1.
 ///
-/// Where at least one is accepted only accepted ones are given.
+/// If at least one is accepted, only accepted ones are given.
 pub fn distinct(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> Vec<Candidate> {
     divided(problem, found, wanted).0
 }

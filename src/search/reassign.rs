@@ -1,16 +1,17 @@
-//! Which stretch of the curve is a point's own? The best places of all points along a given curve, in their order.
+//! Correspondence between target points and coupler curve: assigns the points to curve samples in their order, by
+//! dynamic programming.
 //!
-//! A joint fit moves each position along its curve to the nearest place that it can reach downhill. Where the
-//! curve has a corner, a cusp or two strands side by side, another place may be nearer, and every such choice
-//! is an end of its own that no descent leaves. On samples of the curve the best choice of all is found at
-//! once, by dynamic programming over the places in the order of the motion:
+//! A joint fit moves each position along its curve to the nearest local minimum of its distance. If the curve has a
+//! corner, a cusp or two strands close together, another place may be nearer, and every such choice is a local optimum
+//! of its own that no descent leaves. On samples of the curve the globally best assignment is found at once, by dynamic
+//! programming over the samples in the order of the motion:
 //!
 //! ```text
 //! V_j(m) = w_j |T_j - P_m|^2 + min over m' <= m of V_j-1(m'),   least V_n-1(m) by going back
 //! ```
 //!
-//! On a circle of places the first point is pinned, in turn, to where it is and to where it would be nearest.
-//! The present places are among the samples, so that the answer is never worse than what it starts from.
+//! On a closed circuit the first point is pinned, in turn, to its present place and to the places where it would be
+//! nearest. The present places are among the samples, so that the result is never worse than the start.
 
 use super::starts::Start;
 use crate::linkage::{AssemblyMode, Complex, FourBar, InputArc, Mobility};
@@ -19,27 +20,27 @@ use crate::problem::requirements::assembly_of;
 use crate::problem::torus::{Positions, TorusFit};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Samples around a circuit, evenly in its parameter.
+/// Number of samples around a circuit, evenly in its parameter.
 const EVEN: usize = 240;
-/// Where a chord is longer than the mean one it is divided, into at most so many.
+/// Greatest number of parts into which a chord between samples is divided if it is longer than the mean one.
 const DIVIDED: usize = 8;
-/// Places to which the first point is pinned.
+/// Number of places to which the first point is pinned.
 const PINS: usize = 3;
-/// Targets of more points are left as they are.
+/// Number of points above which a target is left as it is.
 const MOST: usize = 400;
-/// A choice that gains less than this part is none.
+/// Least relative gain of the cost for which a new assignment is taken.
 const GAIN: f64 = 1e-3;
 
-/// A better choice of places on the same linkage.
+/// The result of a reassignment on the same linkage.
 #[derive(Clone, Debug)]
 pub struct Reassigned {
-    /// The start with its points at their best places, `None` where they are there.
+    /// The start with its points at their best places; `None` if they are there already.
     pub better: Option<Start>,
-    /// Positions computed.
+    /// Number of positions computed.
     pub positions: u64,
 }
 
-/// A place on the curve.
+/// A sample of the curve.
 #[derive(Clone, Copy)]
 struct Place {
     parameter: f64,
@@ -74,9 +75,9 @@ impl Track {
     }
 }
 
-/// The best places of the points of a target of free timing along the curve of a start's linkage: on the circuit
-/// of its first point, in their order and once around at most where the problem requires an order, on its branch
-/// where one is required.
+/// Finds the best places of the points of a target of free timing along the curve of a start's linkage: on the circuit
+/// of its first point; in their order and at most once around if the problem requires an order; on its branch if one is
+/// required.
 pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
     let nothing = Reassigned { better: None, positions: 0 };
     let task = problem.task();
@@ -94,7 +95,7 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
     let own: Vec<f64> =
         start.positions.iter().zip(&assemblies).map(|([e, _], t)| track.parameter(*e, *t)).collect();
 
-    // The closing point stands where the first one does.
+    // The closing point has the place of the first one.
     let n = if task.repeats_first() { task.len() - 1 } else { task.len() };
     let total = |direction: f64| -> f64 {
         own[..n].windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
@@ -149,8 +150,8 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
     Reassigned { better, positions: count }
 }
 
-/// Places around the circuit in the direction of the motion, or along the branch of the first point; the points'
-/// `own` ones among them.
+/// Returns samples around the circuit in the direction of the motion, or along the branch of the first point; the
+/// points' `own` places are among them.
 fn sampled(track: &Track, own: &[f64], direction: f64, one_branch: bool) -> Vec<Place> {
     let (low, span) = if one_branch {
         let middle = if track.assembly == AssemblyMode::Plus { 0.0 } else { TAU / 2.0 };
@@ -158,7 +159,7 @@ fn sampled(track: &Track, own: &[f64], direction: f64, one_branch: bool) -> Vec<
     } else {
         (0.0, TAU)
     };
-    // Half a step off, so that no sample stands on a toggle.
+    // Half a step off, so that no sample lies on a toggle.
     let at = |i: f64| low + span * (i + 0.5) / EVEN as f64;
     let even: Vec<Place> = (0..EVEN).filter_map(|i| track.place(at(i as f64))).collect();
     let chord = |w: &[Place]| (w[1].point - w[0].point).norm();
@@ -175,7 +176,7 @@ fn sampled(track: &Track, own: &[f64], direction: f64, one_branch: bool) -> Vec<
     places
 }
 
-/// The points and what they weigh.
+/// The target points with their weights.
 struct Target<'a> {
     points: &'a [Complex],
     weights: &'a [f64],
@@ -197,7 +198,8 @@ impl Target<'_> {
         (sum, positions)
     }
 
-    /// Places of a circle at which the first point may begin: where it is, and the nearest local minima of its distance.
+    /// Returns the indices of the samples of a closed circuit at which the first point may begin: its present place,
+    /// and the nearest local minima of its distance.
     fn pins(&self, places: &[Place], own: f64) -> Vec<usize> {
         let count = places.len();
         let square: Vec<f64> = places.iter().map(|place| (place.point - self.points[0]).norm_sqr()).collect();
@@ -213,8 +215,8 @@ impl Target<'_> {
         pins
     }
 
-    /// The least sum over places that follow each other, and the positions that have it; the first point at a
-    /// place, or anywhere.
+    /// Returns the least weighted sum of squares over non-decreasing assignments of points to samples, and the
+    /// positions that attain it; the first point is pinned to a sample, or free.
     fn along(&self, places: &[Place], pinned: Option<usize>) -> (f64, Positions) {
         let (n, count) = (self.points.len(), places.len());
         let mut back = vec![0_u32; n * count];
@@ -264,7 +266,7 @@ mod tests {
             .collect()
     }
 
-    /// The least sum over all rising sequences of places, one after another.
+    /// Returns the least sum over all non-decreasing sequences of places, by trying each.
     fn by_trying_all(target: &Target<'_>, places: &[Place], from: usize, point: usize) -> f64 {
         if point == target.points.len() {
             return 0.0;
@@ -300,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Points of a linkage's curve, and a start on it with its points at other places.
+    /// Returns points of a linkage's curve, and a start on it with its points at other places.
     fn displaced(links: [f64; 4], order: bool, closed: bool) -> (Problem, Start, f64) {
         let linkage = fixture::linkage(links);
         let mobility = linkage.mobility();

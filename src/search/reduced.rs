@@ -1,24 +1,23 @@
-//! What a population search sees in reduced variables: ratios and at most two angles in, violation and cost out.
+//! Fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out.
 //!
 //! | timing | genes |
 //! |---|---|
-//! | prescribed | ln p, ln q, ln r, and the angle where the form has one ([`crate::problem::projection`]) |
-//! | free | ln p, ln q, ln r, the phase at the first point, and the span of the whole target where it is not a full turn |
+//! | prescribed | ln p, ln q, ln r, and the angle if the form has one ([`crate::problem::projection`]) |
+//! | free | ln p, ln q, ln r, the phase at the first point, and the span of the whole target if it is not a full turn |
 //!
 //! One more gene in [0, n) chooses among the n allowed pairs of a direction and an assembly, so that one evaluation is
-//! one shape. Within the box a gene of a ratio is its logarithm from 1/20 to 20; where the problem allows more than
-//! that, the rest is pressed into a margin of [`TAIL`] of that width on either side, so that it can be reached and is
+//! one shape. Within the box a gene of a ratio is its logarithm from 1/20 to 20; if the problem allows more than that,
+//! the rest is compressed into a margin of [`TAIL`] of that width on either side, so that it can be reached and is
 //! seldom drawn.
 //!
-//! The rest is linear and solved inside. The shape that it gives is read as [`PathFitness`] reads a design of nine
-//! parameters: cost at the prescribed angles or at the nearest points, requirements as violations. Where the shape lies
-//! outside the bounds of the design, the distance in sizes of the target is a violation too. The linear part
-//! minimises the sum of squares also where the cost is the largest deviation.
+//! The remaining parameters are linear and solved for inside (variable projection). The resulting shape is evaluated as
+//! [`PathFitness`] evaluates a design of nine parameters: cost at the prescribed angles or at the nearest points,
+//! requirements as violations. If the shape lies outside the bounds of the design, the distance in sizes of the target
+//! is a violation too. The linear part minimises the sum of squares also if the cost is the largest deviation.
 //!
 //! With free timing the points lie along the circuit as they lie along the target: by arc length ([`super::starts`]).
-//! On a circuit that rocks, start and start + span are the phases psi of its two ends, sin psi of its half
-//! width from its middle; of two circuits the sign of cos(start) chooses, or, where the motion may pass toggles,
-//! the assembly.
+//! On a circuit that rocks, start and start + span are the phases psi of its two ends, sin psi of its half width from
+//! its middle; of two circuits the sign of cos(start) chooses, or, if the motion may pass toggles, the assembly.
 
 use super::population::Searched;
 use super::starts::{Start, Starts, unit_linkage};
@@ -39,15 +38,17 @@ use std::sync::{Mutex, PoisonError};
 
 /// The span of an open target with free timing, radians of the crank.
 const SPAN: (f64, f64) = (0.2, 6.0);
-/// What is said of a form whose loop does not close comes on top of this: no closed one should look worse for little.
+/// Base violation of a form whose loop does not close; its measured opening is added, so that no closed form ranks
+/// behind an open one for a small violation.
 const OPEN: f64 = 1.0;
-/// ln p, ln q, ln r, two angles and the choice of direction and assembly.
+/// Number of genes: ln p, ln q, ln r, two angles and the choice of direction and assembly; `CHOICE` is the index of the
+/// last.
 const GENES: usize = 6;
 const CHOICE: usize = 5;
-/// What the margins for ratios beyond [`DEFAULT_LINK_RATIO`] have of the width between.
+/// Width of each margin for ratios beyond [`DEFAULT_LINK_RATIO`], in parts of the width between the margins.
 pub const TAIL: f64 = 0.02;
 
-/// How a gene becomes the logarithm of a ratio: itself between `from` and `to`, beyond stretched until the limits.
+/// The map from a gene to the logarithm of a ratio: the identity on the `core`, stretched to the limits beyond it.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     limits: (f64, f64),
@@ -59,7 +60,7 @@ impl Stretch {
     fn new(limits: (f64, f64)) -> Self {
         let usual = DEFAULT_LINK_RATIO.ln();
         let core = (limits.0.max(-usual), limits.1.min(usual));
-        // Limits that leave no more than a point of the usual range are searched evenly.
+        // Limits that share at most a point with the usual range are searched evenly.
         let core = if core.0 < core.1 { core } else { limits };
         Stretch { limits, core, margin: TAIL * (core.1 - core.0) }
     }
@@ -81,7 +82,7 @@ impl Stretch {
     }
 }
 
-/// The reduced forms of a problem, one a direction; none with free timing.
+/// Returns the reduced forms of a problem, one per direction; empty with free timing.
 pub fn forms(problem: &Problem) -> Vec<Projection> {
     problem.directions().iter().filter_map(|&direction| Projection::new(problem, direction)).collect()
 }
@@ -93,17 +94,17 @@ pub struct ReducedFitness<'a> {
     forms: &'a [Projection],
     starts: Starts<'a>,
     known: KnownPivots,
-    /// Direction (by its place) and assembly.
+    /// The allowed pairs of direction (its index) and assembly.
     choices: Vec<(usize, AssemblyMode)>,
     ratios: [Stretch; 3],
-    /// Which genes are free, and their box.
+    /// Indices of the free genes; `bounds` is their box.
     free: Vec<usize>,
     bounds: Vec<(f64, f64)>,
-    /// The values of those that are not.
+    /// The values of the fixed genes.
     fixed: [f64; GENES],
-    /// Free timing of a closed target: a circuit is gone round once.
+    /// Whether the target is closed with free timing: the motion then goes once around the circuit.
     whole: bool,
-    /// Room to compute in, one for each thread that is at it: evaluations allocate nothing once it is there.
+    /// Workspaces, one for each thread that evaluates: evaluations allocate nothing once they exist.
     rooms: Mutex<Vec<Room<'a>>>,
 }
 
@@ -112,7 +113,7 @@ struct Room<'a> {
     positions: Vec<[Complex; 2]>,
 }
 
-/// A shape that the genes stand for, and how it is read.
+/// A shape that the genes encode, and its evaluation.
 #[derive(Clone, Copy)]
 struct Read {
     fitness: Fitness,
@@ -122,7 +123,7 @@ struct Read {
 }
 
 impl<'a> ReducedFitness<'a> {
-    /// The fitness of a problem with its [`forms`].
+    /// Creates the fitness of a problem with its [`forms`].
     pub fn new(problem: &'a Problem, forms: &'a [Projection]) -> Self {
         let task = problem.task();
         let whole = forms.is_empty() && (task.closed() || task.repeats_first());
@@ -141,7 +142,7 @@ impl<'a> ReducedFitness<'a> {
             None => {
                 let turns = |kind: &LinkageType| kind.input_turns_fully();
                 let rocks = problem.types().is_empty() || !problem.types().iter().all(turns);
-                // A crank that rocks between its toggles has two ends whatever the target is.
+                // A crank that rocks between its toggles needs two ends even for a closed target.
                 let ends = rocks && !problem.branch_any();
                 (turn, if whole && !ends { (TAU, TAU) } else { SPAN })
             }
@@ -164,7 +165,7 @@ impl<'a> ReducedFitness<'a> {
         }
     }
 
-    /// A room of this thread's own while `work` is done.
+    /// Runs `work` with a workspace of this thread's own.
     fn in_a_room<T>(&self, work: impl FnOnce(&mut Room<'a>) -> T) -> T {
         let kept = self.rooms.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut room = kept.unwrap_or_else(|| Room {
@@ -176,7 +177,7 @@ impl<'a> ReducedFitness<'a> {
         done
     }
 
-    /// What the genes say, ratios as logarithms.
+    /// Returns the unknowns that the genes encode, ratios as logarithms.
     fn unknowns(&self, x: &[f64]) -> [f64; GENES] {
         let mut unknowns = self.fixed;
         for (&i, &value) in self.free.iter().zip(x) {
@@ -188,7 +189,7 @@ impl<'a> ReducedFitness<'a> {
         unknowns
     }
 
-    /// The fitness, with the shape where there is one.
+    /// Returns the fitness, with the shape if there is one.
     fn read(&self, x: &[f64]) -> (Fitness, Option<Read>) {
         let unknowns = self.unknowns(x);
         // The end of the box belongs to the last choice.
@@ -261,7 +262,7 @@ impl<'a> ReducedFitness<'a> {
         (read.fitness, Some(read))
     }
 
-    /// Positions from the ground line along the circuit; `None` where the loop is open.
+    /// Computes positions from the ground line along the circuit; `None` if the loop is open.
     fn place(
         &self,
         ratios: &Ratios,
@@ -298,7 +299,7 @@ impl<'a> ReducedFitness<'a> {
         }
     }
 
-    /// A reading with what its shape lacks of the design's bounds.
+    /// Adds to an evaluation the violation of the design's bounds by its shape.
     fn within_bounds(&self, reading: Reading, shape: Shape, offset: f64) -> Read {
         let space = self.physical.space(reading.setting.side);
         let outside = space.excess(&shape) / self.problem.task().size();
@@ -317,7 +318,7 @@ impl PopulationProblem for ReducedFitness<'_> {
     }
 
     fn cost_hint_ns(&self) -> f64 {
-        // A linear fit, and what follows it.
+        // A linear fit, and the evaluation that follows it.
         let points = self.problem.task().len() as f64;
         match self.problem.task().timing() {
             Timing::Prescribed { .. } => 600.0 + 20.0 * points,
@@ -330,7 +331,7 @@ impl Searched for ReducedFitness<'_> {
     fn positions(&self) -> u64 {
         let points = self.problem.task().len() as u64;
         match self.problem.task().timing() {
-            // Once in the form, and both assemblies of its shape.
+            // Positions once in the form, and in both assemblies of its shape.
             Timing::Prescribed { .. } => 3 * points,
             Timing::Free => {
                 points + self.physical.positions_per_evaluation() / self.problem.sides().len() as u64
@@ -345,7 +346,7 @@ impl Searched for ReducedFitness<'_> {
         if !self.forms.is_empty() {
             return Some(Start { design, setting: reading.setting, positions: Vec::new() });
         }
-        // Brought into the bounds, the shape may be met elsewhere.
+        // Clamped to the bounds, the shape may meet the points at other positions.
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
         let sampled = self.physical.positions(&shape, &reading)?;

@@ -1,10 +1,10 @@
-//! Leads designs that were found under fewer requirements to the problem as it is.
+//! Search with one requirement left out, whose ends are then fitted under all requirements.
 //!
-//! A search under all requirements follows their limits from its first step, and can end on one of them although a
-//! design that keeps all of them lies near an optimum of the problem without it. Where a search has ended with
-//! nothing acceptable, each requirement that looks at the motion or at the pivots is left out in turn, the rest is
-//! searched, and the ends are fitted under all requirements. The designs are the judge's to accept: the relaxed
-//! problems say nothing of them.
+//! A search under all requirements follows their active limits from its first step, and can end on one of them although
+//! a design that keeps all of them lies near an optimum of the problem without it. If a search has ended with nothing
+//! acceptable, each requirement on the motion or on the pivots is left out in turn, the relaxed problem is searched,
+//! and the ends are fitted under all requirements. The referee judges the designs by the problem itself, not by the
+//! relaxed ones.
 
 use super::loosen::Demand;
 use super::multistart::{judged, promise};
@@ -24,17 +24,17 @@ pub const RELAXED: &str = "relaxed-requirements";
 const JUDGED: usize = 48;
 /// Ends of a relaxed search that are fitted under all requirements, the most promising first.
 const FITTED: usize = 12;
-/// Of what a relaxed search is given one part in this many goes to those fits.
+/// One part in this many of the evaluations of a relaxed search goes to those fits.
 const FIT_SHARE: u64 = 4;
-/// A relaxed search with fewer evaluations finds nothing.
+/// Least evaluations of a relaxed search: with fewer it finds nothing.
 const LEAST_SEARCH: u64 = 1000;
 /// Requirements that are left out in turn.
 const LEFT_OUT: [Demand; 3] = [Demand::Transmission, Demand::FootprintIn, Demand::PivotsIn];
 
-/// Judges the first [`JUDGED`] ends of a relaxed problem by the problem itself, and where none of them is acceptable fits the most promising
-/// `most` of them under all of its requirements, with at most `each` evaluations a fit.
+/// Judges the first [`JUDGED`] ends of a relaxed problem by the problem itself. If none of them is acceptable, fits the
+/// most promising `most` of them under all of its requirements, with at most `each` evaluations a fit.
 ///
-/// Returns what could be judged, and the evaluations of the fits.
+/// Returns the judged candidates, and the evaluations of the fits.
 pub(super) fn led_in(
     problem: &Problem,
     ends: &[Candidate],
@@ -73,9 +73,9 @@ pub(super) fn led_in(
 }
 
 /// Searches the problem without each of the requirements that are left out in turn, with at most `limit` evaluations in
-/// all, and leads the ends in; it ends with the first acceptable design.
+/// all, and fits the ends under all requirements; it ends with the first acceptable design.
 ///
-/// Returns what could be judged by the problem itself, and the cost.
+/// Returns the candidates judged by the problem itself, and the evaluations.
 pub(super) fn search(
     problem: &Problem,
     limit: u64,
@@ -114,7 +114,7 @@ mod tests {
     use crate::problem_file;
     use std::sync::atomic::AtomicBool;
 
-    /// A straight guide in a small box, with a tolerance and these lines under `[require]`.
+    /// Returns a straight guide in a small box, with a tolerance and these lines under `[require]`.
     fn guide(require: &str) -> Problem {
         let text = format!(
             "format = 1\n[task.path]\npoints = [[0, 0], [200, 0]]\nsamples = 21\ntolerance = 0.2\n[require]\n\
@@ -130,7 +130,7 @@ mod tests {
         let budget = Budget::new(&never, None);
         let (asked, relaxed) = (guide("transmission_deg_min = 45"), guide(""));
         let ends = local_search(&relaxed, 2000, 2000, &budget, &|_| {}, None).found;
-        // Those that keep to the transmission angle by themselves are left out: the fits have to do it.
+        // Ends that meet the transmission angle already are left out: the fits have to do it.
         let beyond = |end: &Candidate| {
             assess(&asked, &end.linkage, &end.crank_deg, &end.t1_at)
                 .is_some_and(|c| c.requirements.iter().any(|r| r.name == "transmission_deg_min" && !r.met))

@@ -1,17 +1,18 @@
-//! Repeated hits, counted from what independent rounds came to.
+//! Repeated hits of the best answer, counted over independent rounds.
 
 use super::free::NEARLY;
 use super::plan::SAME_OPTIMUM;
 use crate::record::Repeats;
 
-/// How many rounds came to an objective within a part of it; up to `exact` objectives are exact, and equal. One that lies
-/// lower than the best is that of an end that cannot be accepted, and says nothing of the best.
+/// Returns the number of rounds whose objective lies within a relative distance `part` of the best; objectives up to
+/// `exact` are exact, and equal. An objective lower than the best is that of an end that cannot be accepted, and does
+/// not count.
 pub(super) fn came(objectives: &[f64], best: f64, part: f64, exact: f64) -> usize {
     let room = (part * best).max(exact);
     objectives.iter().filter(|objective| (**objective - best).abs() <= room).count()
 }
 
-/// Of rounds that came to these objectives, infinite where a round was given up, those that came to `best`.
+/// Counts the repeated hits of `best` among rounds with these objectives, infinite for a round that was given up.
 pub(super) fn counted(objectives: &[f64], best: f64, exact: f64) -> Repeats {
     let within = |part: f64| came(objectives, best, part, exact) as u64;
     let mut ends: Vec<f64> = objectives.iter().copied().filter(|o| o.is_finite()).collect();

@@ -1,4 +1,4 @@
-//! Where local searches start: shapes drawn by type, positions by timing, the rest by linear least squares.
+//! Starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares.
 //!
 //! Grashof shapes are drawn in their slacks: with the shortest link s and s_i > 0,
 //! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
@@ -24,13 +24,13 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 pub struct Start {
     /// The design vector, inside its bounds.
     pub design: Design,
-    /// What is fixed besides.
+    /// The discrete choices: type aimed at, assembly, direction and side.
     pub setting: Setting,
     /// The points' positions; empty for prescribed timing.
     pub positions: Positions,
 }
 
-/// A start as it is written: of each position both real parts and imaginary parts.
+/// The serialised form of a start: for each position the real and imaginary parts of both directions.
 #[derive(Serialize, Deserialize)]
 struct WrittenStart {
     design: Design,
@@ -52,19 +52,19 @@ impl From<WrittenStart> for Start {
     }
 }
 
-/// Draws starts for a problem.
+/// A generator of starts for a problem.
 #[derive(Clone, Debug)]
 pub struct Starts<'a> {
     problem: &'a Problem,
     types: Vec<LinkageType>,
     /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
     arc: Vec<f64>,
-    /// One space a side of the coupler point.
+    /// One design space per side of the coupler point.
     spaces: Vec<(CouplerSide, DesignSpace)>,
 }
 
 impl<'a> Starts<'a> {
-    /// The starts of a problem.
+    /// Creates the generator of a problem.
     pub fn new(problem: &'a Problem) -> Self {
         let task = problem.task();
         let points = task.points();
@@ -84,24 +84,24 @@ impl<'a> Starts<'a> {
         }
     }
 
-    /// The problem.
+    /// Returns the problem.
     pub fn problem(&self) -> &Problem {
         self.problem
     }
 
-    /// The arc length up to each point, in parts of the whole target (closed: of the closed curve).
+    /// Returns the arc length up to each point, in parts of the whole target (closed: of the closed curve).
     pub fn arc(&self) -> &[f64] {
         &self.arc
     }
 
-    /// The points of a closed target, each once.
+    /// Returns the points of a closed target, each once.
     pub fn loop_points(&self) -> &[Complex] {
         let task = self.problem.task();
         &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
     }
 
-    /// A start of free timing from ratios and positions measured from the ground line: the rest by linear least
-    /// squares. `kind` is the type of the ratios and the one aimed at where types are required.
+    /// Returns a start of free timing from ratios and positions measured from the ground line: the rest by linear least
+    /// squares. `kind` is the type of the ratios, and the one aimed at if types are required.
     pub fn from_positions(
         &self,
         ratios: &Ratios,
@@ -122,7 +122,7 @@ impl<'a> Starts<'a> {
         Some(Start { design: space.design(&shape, 0.0), setting, positions })
     }
 
-    /// One start; `None` where the draw cannot be assembled at every point.
+    /// Draws one start; `None` if it cannot be assembled at every point.
     pub fn draw(&self, stream: &mut Stream) -> Option<Start> {
         let drawn = self.types[below(stream, self.types.len())];
         let assembly = if below(stream, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
@@ -178,7 +178,7 @@ impl<'a> Starts<'a> {
         }
     }
 
-    /// The shape by linear least squares through positions measured from the ground line.
+    /// Fits the shape by linear least squares through positions measured from the ground line.
     pub(super) fn fit(
         &self,
         ratios: &Ratios,
@@ -189,7 +189,7 @@ impl<'a> Starts<'a> {
         fit(ratios, known, positions, task.points(), task.weights())
     }
 
-    /// Positions (from the ground line) spread along the circuit as the points are along the target.
+    /// Draws positions (from the ground line) spread along the circuit as the points are along the target.
     fn free_positions(
         &self,
         stream: &mut Stream,
@@ -221,7 +221,7 @@ impl<'a> Starts<'a> {
         self.along_an_arc(ratios, &arc, assembly, ends).collect()
     }
 
-    /// Positions (from the ground line) of a crank that turns through `span` from `start`, as the points are
+    /// Returns positions (from the ground line) of a crank that turns through `span` from `start`, as the points are
     /// along the target.
     pub(super) fn turning(
         &self,
@@ -235,7 +235,8 @@ impl<'a> Starts<'a> {
             .map(move |s| position(ratios, Complex::from_polar(1.0, start + span * s), assembly.sign()))
     }
 
-    /// The same of a crank that rocks on an arc and passes its toggles, psi from `start` through `span`.
+    /// As [`Starts::turning`], for a crank that rocks on an arc and passes its toggles, psi from `start` through
+    /// `span`.
     pub(super) fn round_an_arc(
         &self,
         ratios: &Ratios,
@@ -250,7 +251,8 @@ impl<'a> Starts<'a> {
         })
     }
 
-    /// The same of a crank that rocks on an arc from one end to the other, given in parts of its half width.
+    /// As [`Starts::turning`], for a crank that rocks on an arc from one end to the other, given in parts of its half
+    /// width.
     pub(super) fn along_an_arc(
         &self,
         ratios: &Ratios,
@@ -266,18 +268,18 @@ impl<'a> Starts<'a> {
     }
 }
 
-/// Keep a little off the toggles, where the assembly is undecided.
+/// Factor that keeps positions a little off the toggles, where the assembly is undecided.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// A position from the ground line.
+/// Returns a position from the ground line.
 fn position(ratios: &Ratios, e: Complex, t: f64) -> Option<[Complex; 2]> {
     Some([e, coupler_direction(ratios, e, t)?])
 }
 
-/// The types that draws are made of.
+/// Returns the types from which starts are drawn.
 pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
     match problem.types() {
-        // Any type: those that a motor can turn get half of the draws.
+        // Any type: the types that a motor can turn get half of the draws.
         [] => vec![
             LinkageType::CrankRocker,
             LinkageType::CrankRocker,
@@ -290,7 +292,7 @@ pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
     }
 }
 
-/// The mobility of the linkage with ground 1 along the x axis.
+/// Returns the mobility of the linkage with ground 1 along the x axis.
 pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
     let linkage = FourBar::new(NaturalCoordinates {
         crank_pivot: [0.0, 0.0],
@@ -307,20 +309,20 @@ pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
     Some(linkage.mobility())
 }
 
-/// Slacks and lengths are drawn over this range of ratios, evenly in their logarithm.
+/// Range of ratios over which slacks and lengths are drawn, evenly in their logarithm.
 const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
 
-/// One draw in this many has a slack from a range far beyond.
+/// One draw in this many has a slack from `LONG_RANGE`, far beyond the usual.
 const LONG_EVERY: usize = 4;
 const LONG_RANGE: (f64, f64) = (30.0, 1000.0);
 
-/// The ratios of a linkage of a type; `None` where a few draws found none.
+/// Draws the ratios of a linkage of a type; `None` if a few draws found none.
 pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
     let log_uniform =
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {
         LinkageType::TripleRocker => {
-            // Most draws are no triple-rocker: try a few.
+            // Most draws are not triple-rockers: try a few.
             let mut found = None;
             for _ in 0..16 {
                 let links = [(); 4].map(|()| log_uniform(stream, (0.2, 5.0)));

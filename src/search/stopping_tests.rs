@@ -1,4 +1,4 @@
-//! Tests of how much a search computes between two questions about a stop, and after one.
+//! Tests of how much a search computes between two checks for a stop, and after one.
 
 #![cfg(test)]
 
@@ -10,12 +10,12 @@ use crate::run::{Context, Job, run};
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 
-/// Points of the targets: as many as a stop is asked about within a generation.
+/// Number of points of the targets: as many as need checks for a stop within a generation.
 const POINTS: usize = 1200;
-/// Positions a point between two questions: a judged candidate is the longest, with its distances to the whole curve
-/// and those of its cognates.
+/// Greatest number of positions per point between two checks: the longest step is the judging of a candidate, with its
+/// distances to the whole curve and those of its cognates.
 const BETWEEN: u64 = 1500;
-/// Positions a point of one judged candidate with its alternatives.
+/// Positions per point of one judged candidate with its alternatives.
 const JUDGED: u64 = 700;
 
 fn job(closed: bool, timed: bool, set: &[(&str, &str)]) -> Job {
@@ -39,7 +39,7 @@ fn job(closed: bool, timed: bool, set: &[(&str, &str)]) -> Job {
     Job { name: "it".into(), source: None, unit: None, spec: file.spec }
 }
 
-/// Runs a job on one thread, stopped at the question `stop_at`.
+/// Runs a job on one thread, stopped at the check `stop_at`.
 fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     let flag = AtomicBool::new(false);
@@ -52,13 +52,14 @@ fn counted(job: &Job, stop_at: Option<u64>) -> (Record, Counts) {
     })
 }
 
-fn asks_often_enough(name: &str, job: &Job) {
+/// Stops a job at so many of its questions, spread over the run.
+fn asks_often_enough(name: &str, job: &Job, stops: u64) {
     let n = POINTS as u64;
     let (_, whole) = counted(job, None);
     assert!(whole.asked > 3, "{name}: {whole:?}");
     assert!(whole.most <= BETWEEN * n, "{name}: {} positions a point without a question", whole.most / n);
-    for part in 0..6 {
-        let at = 1 + whole.asked * part / 6;
+    for part in 0..stops {
+        let at = 1 + whole.asked * part / stops;
         let (record, counts) = counted(job, Some(at));
         assert_eq!(
             record.termination.reason,
@@ -67,7 +68,7 @@ fn asks_often_enough(name: &str, job: &Job) {
             whole.asked
         );
         assert!(!record.termination.reproducible);
-        // What may still be judged, and what was under way.
+        // The candidates that may still be judged, and the work under way.
         let most = JUDGED * (JUDGED_AFTER_STOP as u64 + n) + BETWEEN * n;
         assert!(counts.after <= most, "{name}: {} positions after a stop at {at}", counts.after);
         assert!(counts.most <= BETWEEN * n, "{name}: {counts:?}");
@@ -77,17 +78,17 @@ fn asks_often_enough(name: &str, job: &Job) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "3000")]));
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "3000")]), 6);
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "3000")]));
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "3000")]), 6);
     }
     let limits = [
         ("solve.evaluations", "3000"),
         ("require.transmission_deg_min", "60"),
         ("require.footprint_in", "[-4, -4, 4, 4]"),
     ];
-    asks_often_enough("timed, with limits", &job(true, true, &limits));
+    asks_often_enough("timed, with limits", &job(true, true, &limits), 6);
 }
 
 #[test]
@@ -95,7 +96,7 @@ fn a_population_search_asks_about_a_stop_before_each_long_evaluation() {
     for method in ["genetic", "differential-evolution"] {
         for timed in [false, true] {
             let set = [("solve.method", method), ("solve.evaluations", "700"), ("solve.advice", "false")];
-            asks_often_enough(method, &job(true, timed, &set));
+            asks_often_enough(method, &job(true, timed, &set), 3);
         }
     }
 }

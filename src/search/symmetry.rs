@@ -1,4 +1,4 @@
-//! The symmetries of a target, and what they make of a linkage.
+//! Symmetries of a target, and the images of a linkage under them.
 //!
 //! An isometry z -> s + w z or z -> s + w conj(z), |w| = 1, that carries point j of the target to point pi(j) carries a
 //! linkage at its positions to another one: the positions at j become those at pi(j), and every error keeps its length.
@@ -21,38 +21,38 @@ use crate::record::Candidate;
 use crate::task::{AngleOffset, Timing};
 use std::borrow::Cow;
 
-/// A target is symmetric within this part of its size: what is typed has few digits.
+/// Tolerance of a symmetry, in parts of the target's size: typed points have few digits.
 const TYPED: f64 = 1e-5;
-/// Targets of more points are not looked through: n points have 2 n orders of n points each.
+/// Number of points above which symmetries are not looked for: n points have 2 n orders of n points each.
 const MOST_POINTS: usize = 200;
-/// Prescribed angles are met within this, degrees.
+/// Tolerance for prescribed angles, in degrees.
 const ANGLE_DEG: f64 = 1e-7;
-/// An image serves as well when its rms error is greater by this part at most.
+/// Greatest relative increase of the rms error at which an image serves as well.
 const AS_GOOD: f64 = 1e-2;
 
 /// An isometry that carries the target's points to each other.
 #[derive(Clone, Debug)]
 struct Symmetry {
     mirrors: bool,
-    /// w.
+    /// The rotation w.
     turn: Complex,
-    /// s.
+    /// The translation s.
     shift: Complex,
-    /// pi.
+    /// The permutation pi of the points.
     order: Vec<usize>,
 }
 
-/// The isometries of a target, but for the one that moves nothing.
+/// The isometries of a target, except the identity.
 #[derive(Clone, Debug, Default)]
 pub struct Symmetries(Vec<Symmetry>);
 
 impl Symmetries {
-    /// As if the target had none.
+    /// Returns an empty set of symmetries.
     pub fn none() -> Self {
         Symmetries::default()
     }
 
-    /// Those of a problem's target: points, weights and tolerances.
+    /// Finds the symmetries of a problem's target: of its points, weights and tolerances.
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
@@ -79,8 +79,8 @@ impl Symmetries {
         Symmetries(found)
     }
 
-    /// What each of them makes of a candidate: a linkage at its positions, with the candidate's own figures and verdicts.
-    /// Where prescribed angles do not allow it there is none.
+    /// Returns the images of a candidate: for each symmetry a linkage at its positions, with the candidate's own
+    /// figures and verdicts. Images that prescribed angles do not allow are left out.
     pub fn images<'a>(
         &'a self,
         problem: &'a Problem,
@@ -90,8 +90,8 @@ impl Symmetries {
     }
 }
 
-/// Whether the target is symmetric and an accepted candidate's mirror image, another linkage than itself, is accepted too
-/// and as good.
+/// Returns whether the target is symmetric and the mirror image of an accepted candidate, if it is a different linkage,
+/// is accepted too and as good.
 pub fn mirror_image_serves(problem: &Problem, candidate: &Candidate) -> bool {
     if !candidate.accepted {
         return false;
@@ -101,7 +101,7 @@ pub fn mirror_image_serves(problem: &Problem, candidate: &Candidate) -> bool {
     let mut mirrors = Symmetries::of(problem);
     mirrors.0.retain(|symmetry| symmetry.mirrors);
     mirrors.images(problem, candidate).any(|image| {
-        // Another linkage, be it of the same curve: a good fit of a symmetric target is nearly symmetric itself.
+        // A different linkage, even of the same curve: a good fit of a symmetric target is nearly symmetric itself.
         let another = own.difference(&Look::of(Cow::Borrowed(&image))) >= NEAR;
         let bar = candidate.error.rms * (1.0 + AS_GOOD) + TYPED * size;
         let serves = |c: Candidate| c.accepted && c.error.rms <= bar;
@@ -110,7 +110,7 @@ pub fn mirror_image_serves(problem: &Problem, candidate: &Candidate) -> bool {
 }
 
 impl Symmetry {
-    /// The isometry of an order of the points; `None` where it carries one of them elsewhere.
+    /// Fits the isometry for a permutation of the points; `None` if it does not carry each point to its image.
     fn fitted(problem: &Problem, points: &[Complex], order: &[usize], mirrors: bool) -> Option<Symmetry> {
         let task = problem.task();
         let mean = points.iter().sum::<Complex>() / points.len() as f64;
@@ -167,7 +167,7 @@ impl Symmetry {
     }
 }
 
-/// The prescribed angles of a linkage, where those that it has are these but for whole turns.
+/// Returns the prescribed angles of a linkage, if the angles that it has are equal to them up to whole turns.
 fn in_step(problem: &Problem, linkage: &FourBar, offset: AngleOffset, has: &[f64]) -> Option<Vec<f64>> {
     let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
     let (first, asked) = (*has.first()?, *written.first()?);

@@ -1,19 +1,19 @@
-//! Prescribed timing: the search on the reduced form.
+//! Multistart search for prescribed timing by variable projection (the reduced form).
 //!
-//! A batch draws [`DRAWS`] ratios and angles from its own stream of the seed, screens them in every allowed
-//! direction on both assemblies, fits the `SHORT` that promise most for a few steps and the best `LONG` of
-//! them to the end ([`crate::problem::projection`]). An end that keeps every bound and requirement stands as it
-//! is. One that does not, and is better than what stands, is a lower bound of what its basin can give: it is
-//! polished in the physical parameters under all requirements ([`polish`]).
+//! A batch draws [`DRAWS`] ratios and angles from its own stream of the seed, screens them in every allowed direction
+//! on both assemblies, fits the `SHORT` most promising for a few steps and the best `LONG` of them to convergence
+//! ([`crate::problem::projection`]). An end that meets every bound and requirement is taken as it is. One that does
+//! not, and has a lower objective than the best that does, is a lower bound for its basin: it is polished in the
+//! physical parameters under all requirements ([`polish`]).
 //!
-//! Where such ends turn up, the requirements bind, and later waves also fit under all requirements from the first
-//! step on: the screened draws that promise most with what they lack, and rounds of [`super::multistart`] in turn.
+//! If such ends occur, requirements are active, and later waves also fit under all requirements from the first step on:
+//! from the screened draws of least cost and violation, and in rounds of [`super::multistart`], in turn.
 //!
-//! `WAVE` batches run side by side and are read in their order; what a wave may skip (polishes of ends that are
+//! `WAVE` batches run in parallel and are read in their order; the work that a wave may skip (polishes of ends that are
 //! no better than the best so far) depends on earlier waves only. So the number of threads changes no digit.
 //!
-//! *Stopping rule.* The best objective has to come back from independent batches ([`super::belief`]). Where
-//! requirements bind, `BINDING_WAVES` waves have had to look at them; where several answers are wanted the
+//! *Stopping rule.* Independent batches have to reach the best objective repeatedly ([`super::belief`]). If
+//! requirements are active, at least `BINDING_WAVES` waves have to fit under them; if several answers are wanted, the
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
 use super::belief::Belief;
@@ -36,49 +36,49 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// Draws of a batch.
+/// Draws in a batch.
 pub const DRAWS: usize = 128;
 /// Draws fitted for a few steps.
 const SHORT: usize = 8;
-/// Draws fitted to the end.
+/// Draws fitted to convergence.
 const LONG: usize = 3;
-/// Evaluations of a short and of a long fit.
+/// Most evaluations of a short and of a long fit.
 const SHORT_EVALUATIONS: u32 = 10;
 const LONG_EVALUATIONS: u32 = 100;
-/// Ends polished in a batch at most.
+/// Most ends polished in a batch.
 const POLISHES: usize = 2;
-/// Draws looked at with what they lack, fitted for a few steps and fitted to the end under all requirements, where
-/// these bind.
+/// Draws screened with their violation, fitted for a few steps and fitted to convergence under all requirements, if
+/// requirements are active.
 const PROMISING: usize = 256;
 const CONSTRAINED_SHORT: usize = 6;
 const CONSTRAINED_STEPS: usize = 24;
 const CONSTRAINED_LONG: usize = 2;
-/// Waves with such fits at least, where requirements bind.
+/// Least number of waves with such fits, if requirements are active.
 const BINDING_WAVES: u64 = 2;
-/// Batches that run side by side.
+/// Batches that run in parallel.
 pub const WAVE: u64 = 4;
-/// Waves at least where several answers are wanted, and waves without news that end the search for more.
+/// Least number of waves if several answers are wanted, and waves without a new answer that end the search for more.
 const LEAST_WAVES: u64 = 6;
 const QUIET_WAVES: u64 = 12;
-/// Errors that differ by less than this part are the same optimum.
+/// Relative difference of errors below which they are the same optimum.
 const SAME_OPTIMUM: f64 = 1e-6;
-/// Designs that agree within this part of the target's size are judged once.
+/// Difference of designs, in parts of the target's size, within which they are judged once.
 const SAME_NUMBERS: f64 = 1e-6;
-/// Candidates that are kept while searching.
+/// Number of candidates kept while searching.
 const KEPT: usize = 400;
 
-/// The end of the search.
+/// The outcome of the search.
 #[derive(Clone, Debug)]
 pub struct TimedOutcome {
     /// Judged candidates, best first.
     pub found: Vec<Candidate>,
-    /// What it cost.
+    /// The evaluations used.
     pub evaluations: Evaluations,
-    /// Why it ended.
+    /// The reason why it ended.
     pub reason: Reason,
     /// Whether the physical polish was needed.
     pub polished: bool,
-    /// How often the best answer came back.
+    /// The repeated hits of the best answer.
     pub repeats: Option<Repeats>,
 }
 
@@ -90,7 +90,7 @@ struct End {
     cost: f64,
 }
 
-/// An end that the referee has seen.
+/// An end that the referee has judged.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Judged {
     setting: Setting,
@@ -98,7 +98,7 @@ struct Judged {
     accepted: bool,
 }
 
-/// Where the search stands between two waves: all that the next waves depend on besides the problem and the budget.
+/// The state of the search between two waves, on which the next waves depend besides the problem and the budget.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct TimedState {
     found: Vec<Candidate>,
@@ -146,17 +146,17 @@ impl TimedState {
     }
 }
 
-/// What a batch gives.
+/// The outcome of a batch.
 #[derive(Clone, Debug, Default)]
 struct BatchOutcome {
-    /// Ends that keep every bound and requirement the search knows, best first.
+    /// Ends that meet every bound and requirement the search knows, best first.
     ends: Vec<End>,
     /// Ends of a round in the physical parameters, judged.
     judged: Vec<Candidate>,
     evaluations: u64,
     draws: u64,
     polished: bool,
-    /// An end that breaks a bound or a requirement was better than all that keep them.
+    /// Whether an end that violates a bound or a requirement was better than all that meet them.
     binding: bool,
 }
 
@@ -166,7 +166,7 @@ struct Search<'a> {
     forms: Vec<(f64, Projection)>,
     types: Vec<LinkageType>,
     starts: Starts<'a>,
-    /// One space a side of the coupler point.
+    /// One design space per side of the coupler point.
     spaces: Vec<(CouplerSide, DesignSpace)>,
     requirements: Requirements,
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
@@ -175,7 +175,7 @@ struct Search<'a> {
 }
 
 /// Searches until the best is believed, `limit` evaluations are used, or `patience` are used without an acceptable
-/// candidate; `None` where the problem has no reduced form.
+/// candidate; `None` if the problem has no reduced form.
 pub fn search(
     problem: &Problem,
     limit: u64,
@@ -190,7 +190,7 @@ pub fn search(
     let earlier = keeper.and_then(|keeper| keeper.earlier().timed.clone());
     let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
     let mut at = earlier.unwrap_or_else(|| TimedState::new(search.exact));
-    // No batch so far came near to what it was allowed.
+    // No batch so far came near its allowance of evaluations.
     let mut ample = true;
     let keep = |stopped, at: &TimedState| {
         if let Some(keeper) = keeper {
@@ -321,7 +321,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The verdict on an end whose numbers have been judged before.
+    /// Returns the verdict on an end if an equal one has been judged before.
     fn judged_before(&self, seen: &[Judged], end: &End) -> Option<bool> {
         let near = SAME_NUMBERS * self.problem.task().size();
         let same = |(x, y): (&f64, &f64)| (x - y).abs() <= near;
@@ -347,8 +347,8 @@ impl<'a> Search<'a> {
         Some(x)
     }
 
-    /// Whether the loop stays closed between the points too, on one assembly: |CB|^2 between (b - c)^2 and
-    /// (b + c)^2 over the whole stretch.
+    /// Returns whether the loop stays closed between the points too, on one assembly: |CB|^2 between (b - c)^2 and (b +
+    /// c)^2 over the whole range of crank angles.
     fn stays_closed(&self, form: usize, x: &Reduced) -> bool {
         if self.problem.circuit_any() {
             return true;
@@ -437,7 +437,7 @@ impl<'a> Search<'a> {
         let mut long: Vec<(f64, Reduced, usize, AssemblyMode)> = Vec::with_capacity(LONG);
         for (cost, x, form, assembly) in short.into_iter().take(LONG) {
             if self.budget.stopped() {
-                // As it stands: the best so far.
+                // Taken as it is: the best so far.
                 long.push((cost, x, form, assembly));
                 break;
             }
@@ -494,7 +494,7 @@ impl<'a> Search<'a> {
         out
     }
 
-    /// Fits to the end under all requirements and keeps where that ends.
+    /// Fits to convergence under all requirements and adds the end.
     fn polished(&self, start: Start, allowance: u64, out: &mut BatchOutcome) {
         let left = allowance - out.evaluations;
         let fitted = polish(self.problem, start, LONG_STEPS, LONG_ROUNDS, left, self.budget);
@@ -503,7 +503,7 @@ impl<'a> Search<'a> {
         out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
     }
 
-    /// Fits that obey all requirements from the first step on, from the draws of least cost and violation.
+    /// Fits under all requirements from the first step on, from the draws of least cost and violation.
     fn constrained(
         &self,
         screened: &[(f64, usize, usize, AssemblyMode)],
@@ -524,7 +524,7 @@ impl<'a> Search<'a> {
             out.evaluations += 1;
             fits[form].set_assembly(assembly);
             let Some(solution) = fits[form].solution(x) else { continue };
-            // As the fit will start: brought into the bounds.
+            // The promise of the start as the fit takes it: clamped to the bounds.
             let physical = self.physical(&solution, self.forms[form].0, assembly);
             if let Some((mut start, _)) = physical
                 && let Some(promise) = promise(self.problem, &mut start)
@@ -552,7 +552,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A solution as a start of the physical fit, and what it lacks of bounds and requirements in sizes.
+    /// Returns a solution as a start of the physical fit, and its violation of bounds and requirements in sizes of the
+    /// target.
     fn physical(&self, solution: &Solution, direction: f64, assembly: AssemblyMode) -> Option<(Start, f64)> {
         let problem = self.problem;
         let Solution { shape, offset, .. } = solution;

@@ -1,4 +1,4 @@
-//! A candidate as the start of another fit: of the same problem, or of one whose limits have moved.
+//! Warm starts: a candidate as the start of another fit, of the same problem or of one whose limits have moved.
 
 use super::starts::Start;
 use crate::problem::design_space::Shape;
@@ -8,15 +8,15 @@ use crate::problem::{Problem, Setting};
 use crate::record::Candidate;
 use crate::task::Timing;
 
-/// The start at a candidate; `None` where the loop is open at a point or there are fewer positions than points.
+/// Returns the start at a candidate; `None` if the loop is open at a point or there are fewer positions than points.
 ///
-/// The design is brought into the problem's bounds. The type aimed at is the candidate's own where that is
-/// allowed, else the nearest.
+/// The design is clamped to the problem's bounds. The type aimed at is the candidate's own if that is allowed, else the
+/// nearest.
 pub fn start_at(problem: &Problem, candidate: &Candidate) -> Option<Start> {
     start_beside(problem, candidate, 1.0)
 }
 
-/// As [`start_at`], with the candidate's shortest link brought to `part` of itself.
+/// As [`start_at`], with the candidate's shortest link multiplied by `part`.
 pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Option<Start> {
     let n = problem.task().len();
     if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
@@ -36,7 +36,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     let positions = match problem.task().timing() {
         Timing::Prescribed { .. } => Vec::new(),
         Timing::Free => {
-            // A design that was shortened or brought into its bounds has other curves.
+            // A design that was shortened or clamped to its bounds has other curves.
             let mut positions = positions(candidate, &as_it_is)?;
             TorusFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
         }
@@ -44,7 +44,7 @@ pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Opti
     Some(Start { design, setting, positions })
 }
 
-/// The direction of the prescribed increments and the angle that is added to them, radians.
+/// Returns the direction of the prescribed increments and the angle that is added to them, in radians.
 fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
     let Some(timing) = &problem.spec().task.path.timing else { return (problem.directions()[0], 0.0) };
     let written = &timing.crank_deg;
@@ -74,8 +74,8 @@ fn positions(candidate: &Candidate, shape: &Shape) -> Option<Positions> {
     .collect()
 }
 
-/// The shortest of ground, crank, coupler and follower to `part` of itself; the ground about its middle, the
-/// coupler point to the same place beside the coupler.
+/// Multiplies the shortest of ground, crank, coupler and follower by `part`; the ground about its middle, the coupler
+/// point to the same relative place beside the coupler.
 fn shorten(shape: &mut Shape, part: f64) {
     let links = shape.links();
     let shortest = (0..4).min_by(|&i, &j| links[i].total_cmp(&links[j]));

@@ -1,4 +1,4 @@
-//! What stands against building a linkage that meets every requirement.
+//! Warnings: reasons against building a linkage although it meets every requirement.
 //!
 //! The figures and limits are the candidate's own, as the referee judged them: the same record always has the
 //! same warnings.
@@ -8,20 +8,20 @@ use crate::linkage::transmission::{ForceTransmission, JAM_UNDER_LOAD_DEG};
 use crate::problem::Problem;
 use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
 
-/// Below this worst transmission angle, in degrees, a loaded linkage may jam.
+/// The worst transmission angle, in degrees, below which a loaded linkage may jam.
 pub const LEAST_TRANSMISSION_DEG: f64 = JAM_UNDER_LOAD_DEG;
-/// Beyond this ratio of the longest to the shortest link a linkage is hard to build.
+/// The ratio of the longest to the shortest link beyond which a linkage is hard to build.
 pub const GREATEST_LINK_RATIO: f64 = 20.0;
-/// A Grashof margin below this part of the longest link is almost a change point: play and tolerances decide
-/// which way the linkage turns.
+/// The Grashof margin, in parts of the longest link, below which a linkage is almost a change point: play and
+/// tolerances decide which way it turns.
 pub const LEAST_MARGIN: f64 = 1e-3;
-/// A value this near to its limit, in parts of the limit or of the target's size, is on it.
+/// Distance of a value from its limit, in parts of the limit or of the target's size, within which it is on it.
 pub const ON_BOUND: f64 = 1e-6;
-/// A figure that misses a limit by rounding does not miss it: the tolerance of requirements.
+/// Relative tolerance for rounding when a figure is compared with a limit, as for requirements.
 const ROUNDING: f64 = 1e-7;
 
-/// The warnings of a candidate: transmission angle, link ratio, change point, a closed path that is run to and fro,
-/// then each limit that it lies on.
+/// Returns the warnings of a candidate: transmission angle, link ratio, change point, a closed path that is run to and
+/// fro, then each limit that it lies on.
 pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     let mut list = Vec::new();
     let mut push = |kind, key: &str, value: f64, limit: f64, text: String| {
@@ -64,8 +64,8 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
     list
 }
 
-/// Whether a warning speaks against the linkage itself, and not of the problem's limits or of a motion that the problem
-/// allows.
+/// Returns whether a warning is about the linkage itself, and not about the problem's limits or a motion that the
+/// problem allows.
 pub fn is_serious(warning: &Warning) -> bool {
     !matches!(warning.kind, WarningKind::OnBound | WarningKind::ToAndFro)
 }
@@ -73,8 +73,8 @@ pub fn is_serious(warning: &Warning) -> bool {
 /// The sides of a box.
 const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
 
-/// Calls `each` with key, side of a box, value and limit for every limit of a requirement that the value lies on. Fixed values
-/// and coordinates that a box leaves no choice have none.
+/// Calls `each` with key, side of a box, value and limit for every limit of a requirement that the value lies on. Fixed
+/// values and coordinates that a box fixes have none.
 fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
     let name = requirement.name.as_str();
     let unit = match name {
@@ -107,7 +107,7 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
     }
 }
 
-/// Three significant digits.
+/// Formats a value with three significant digits.
 fn shown(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

@@ -1,4 +1,4 @@
-//! What snapping came to as a record, and a target for a linkage that has none.
+//! The record of a snap, and a problem for a linkage that has none.
 
 use super::search::{Request, Snapped};
 use crate::assess::{assess, to_raw};
@@ -13,11 +13,11 @@ use crate::search::answers::annotate;
 use crate::search::costs::marginal;
 use crate::search::family::family;
 
-/// Points on a linkage's own curve.
+/// Number of points on a linkage's own curve.
 const OWN_POINTS: usize = 36;
 
-/// A record of the snapped linkages, under the problem as it was: `verify` finds every figure again, `compare` puts
-/// it beside the run that it came from.
+/// Returns a record of the snapped linkages, under the original problem: `verify` recomputes every figure, `compare`
+/// puts it beside the run that it came from.
 ///
 /// # Errors
 /// As [`digest`].
@@ -66,8 +66,8 @@ pub fn record(
     })
 }
 
-/// The problem that asks of a linkage what it does: points of its own coupler curve over all that it can do, at free
-/// timing and without limits; and the linkage as its candidate. `None` where it cannot be joined.
+/// Returns the problem that a linkage solves by itself: points of its own coupler curve over its whole range of motion,
+/// with free timing and without limits; and the linkage as its candidate. `None` if it cannot be assembled.
 pub fn own_curve(linkage: &FourBar) -> Option<(Problem, Candidate)> {
     let sweep = Sweep::of_linkage(linkage)?;
     let at = along(&sweep, OWN_POINTS);

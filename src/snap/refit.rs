@@ -1,4 +1,4 @@
-//! A candidate fitted again with some of its dimensions fixed.
+//! Refit of a candidate with some of its dimensions fixed.
 
 use crate::assess::assess;
 use crate::linkage::{FourBar, NaturalCoordinates, point, xy};
@@ -11,31 +11,31 @@ use crate::search::polish::finish;
 use crate::search::rank::compare;
 use crate::search::warm::start_at;
 
-/// A length is what it was fixed at when it is off by no more than this part of itself.
+/// Relative difference up to which a length counts as equal to its fixed value.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A hole distance.
+/// A length of the linkage: the distance between two holes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Length {
-    /// |AB|.
+    /// The ground length |AB|.
     Ground,
-    /// |AC|.
+    /// The crank length |AC|.
     A,
-    /// |CD|.
+    /// The coupler length |CD|.
     B,
-    /// |BD|.
+    /// The follower length |BD|.
     C,
-    /// |CP|.
+    /// The coupler side |CP| at the crank.
     D,
-    /// |DP|.
+    /// The coupler side |DP| at the follower.
     E,
 }
 
 impl Length {
-    /// All of them.
+    /// All lengths.
     pub const ALL: [Length; 6] = [Length::Ground, Length::A, Length::B, Length::C, Length::D, Length::E];
 
-    /// Its key in files.
+    /// Returns its key in files.
     pub fn key(self) -> &'static str {
         match self {
             Length::Ground => "ground",
@@ -47,12 +47,12 @@ impl Length {
         }
     }
 
-    /// The length with a key.
+    /// Returns the length with a key.
     pub fn named(key: &str) -> Option<Length> {
         Length::ALL.into_iter().find(|length| length.key() == key)
     }
 
-    /// What it is in a linkage.
+    /// Returns its value in a linkage.
     pub fn of(self, linkage: &FourBar) -> f64 {
         match self {
             Length::Ground => linkage.ground(),
@@ -64,7 +64,7 @@ impl Length {
         }
     }
 
-    /// The problem's limits for it; none that bind: from 0 upward without end.
+    /// Returns the problem's limits for it; from 0 to infinity if there are none.
     pub fn limits(self, design: &DesignSpec) -> Limits {
         let limits = match self {
             Length::Ground => design.ground,
@@ -83,21 +83,21 @@ impl Length {
 pub struct Fixed {
     /// Hole distances, each at most once.
     pub lengths: Vec<(Length, f64)>,
-    /// The crank's pivot.
+    /// The crank's pivot A.
     pub crank_pivot: Option<[f64; 2]>,
-    /// The follower's pivot.
+    /// The follower's pivot B.
     pub follower_pivot: Option<[f64; 2]>,
     /// The direction from A to B, degrees.
     pub ground_angle_deg: Option<f64>,
 }
 
 impl Fixed {
-    /// What a length is fixed at.
+    /// Returns the value at which a length is fixed.
     pub fn get(&self, length: Length) -> Option<f64> {
         self.lengths.iter().find(|(one, _)| *one == length).map(|(_, value)| *value)
     }
 
-    /// The same with one more length, or another value of it.
+    /// Returns the same with one more length, or another value of it.
     #[must_use]
     pub fn with(&self, length: Length, value: f64) -> Self {
         let mut fixed = self.clone();
@@ -108,8 +108,8 @@ impl Fixed {
         fixed
     }
 
-    /// The design table with these dimensions as numbers. `polar`: B by the ground's length and direction, so that a
-    /// fixed length holds to the last digit; B's own limits are then left to the referee.
+    /// Returns the design table with these dimensions as numbers. `polar`: B by the ground's length and direction, so
+    /// that a fixed length holds to the last digit; B's own limits are then left to the referee.
     fn design(&self, design: &DesignSpec, polar: bool) -> DesignSpec {
         let mut fixed = design.clone();
         let at = |value: f64| Limits(value, value);
@@ -135,7 +135,7 @@ impl Fixed {
             *place = Some(at(value));
         }
         if self.get(Length::D).is_some() || self.get(Length::E).is_some() {
-            // d and e are the coordinates; what the problem says of coupler_x and coupler_y is left to the referee.
+            // d and e are the coordinates; the problem's limits of coupler_x and coupler_y are left to the referee.
             (fixed.coupler_x, fixed.coupler_y) = (None, None);
         }
         if polar {
@@ -145,8 +145,8 @@ impl Fixed {
     }
 }
 
-/// A candidate fitted again with dimensions fixed, judged under the problem as it is; and the evaluations that it
-/// took, about `evaluations` at most. `None` where the fit cannot begin or end in a linkage.
+/// Fits a candidate again with dimensions fixed and judges it under the original problem; also returns the evaluations
+/// used, about `evaluations` at most. `None` if the fit cannot start or its end is not a linkage.
 pub fn refit(
     problem: &Problem,
     candidate: &Candidate,
@@ -157,13 +157,13 @@ pub fn refit(
     let design = &problem.spec().design;
     let ground = fixed.get(Length::Ground).is_some() || fixed.ground_angle_deg.is_some();
     let has_pivot = design.follower_pivot.is_some() || fixed.follower_pivot.is_some();
-    // Where B is fixed, A goes round it.
+    // If B is fixed, A moves on a circle around it.
     let held = fixed.follower_pivot.is_some()
         || design.follower_pivot.is_some_and(|b| b.iter().all(Limits::is_fixed));
     let polar = has_pivot && ground && !held;
     let (mut found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
     if found.is_none() && held && fixed.crank_pivot.is_none() {
-        // Then with A where it begins on its circle.
+        // Then with A fixed at its start on its circle.
         if let Some(linkage) = on_its_circle(&candidate.linkage, fixed) {
             let still = Fixed { crank_pivot: Some(xy(linkage.crank_pivot())), ..fixed.clone() };
             let (there, more) = fit(problem, candidate, &still, (polar, evaluations), budget);
@@ -192,8 +192,8 @@ fn fit(
     let mut spec = problem.spec().clone();
     spec.design = fixed.design(&spec.design, polar);
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
-    // Where A goes round a B that is held, the fit has to begin at the right distance: it is a condition, no number
-    // of the design.
+    // If A moves on a circle around a fixed B, the fit has to begin at the right distance: that is a condition, not a
+    // coordinate of the design.
     let moved = (!polar)
         .then(|| on_its_circle(&candidate.linkage, fixed))
         .flatten()
@@ -207,7 +207,8 @@ fn fit(
     (found, fitted.evaluations)
 }
 
-/// The linkage with A moved along the ground line to where a fixed ground puts it; `None` where it is not fixed.
+/// Returns the linkage with A moved along the ground line to the distance of a fixed ground; `None` if the ground is
+/// not fixed.
 fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
     let ground = fixed.get(Length::Ground)?;
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
@@ -215,10 +216,10 @@ fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
     FourBar::new(NaturalCoordinates { crank_pivot: xy(moved), ..linkage.natural_coordinates() }).ok()
 }
 
-/// The linkage with its fixed lengths at exactly what they were fixed at, where a fit has left them a hair away: the
-/// ground by moving B (A where B is fixed) along it. `None` where they are off by more than rounding of a fit.
+/// Returns the linkage with its fixed lengths at exactly their fixed values, which a fit meets only approximately: the
+/// ground by moving B (A if B is fixed) along it. `None` if they are off by more than the rounding of a fit.
 fn to_the_digit(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
-    /// The feasibility of a fit.
+    /// The feasibility tolerance of a fit.
     const HAIR: f64 = 1e-6;
     let near = |(length, value): &(Length, f64)| {
         (length.of(linkage) - value).abs() <= HAIR * linkage.longest_link().max(*value)

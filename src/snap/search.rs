@@ -1,4 +1,4 @@
-//! Which stock lengths together: a beam over the lengths, then neighbours of the best.
+//! Search for a combination of stock lengths: a beam search over the lengths, then a local search from the best.
 
 use super::refit::{Fixed, Length, refit};
 use super::stock::Stock;
@@ -12,28 +12,28 @@ use crate::search::rank::compare;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Stock sizes that are tried for a length, the nearest to where the fit has put it.
+/// Number of stock sizes tried for a length, the nearest to its fitted value.
 const NEAR: usize = 4;
-/// Partial choices that are kept side by side.
+/// Width of the beam: partial choices kept in parallel.
 const BEAM: usize = 12;
-/// Complete choices whose neighbours are tried, and rounds of that at most.
+/// Number of complete choices whose neighbours are tried, and the most rounds of that.
 const IMPROVED: usize = 2;
 const ROUNDS: usize = 12;
 
-/// What is to be snapped.
+/// A request to snap lengths to a stock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
-    /// The lengths to be had.
+    /// The available lengths.
     pub stock: Stock,
-    /// The hole distances that are brought to them.
+    /// The hole distances that are snapped to them.
     pub lengths: Vec<Length>,
-    /// What stays where it is, or where the user has put it.
+    /// The dimensions that are kept, or fixed by the user.
     pub fixed: Fixed,
-    /// How many answers are wanted, at least one.
+    /// The number of answers wanted, at least one.
     pub wanted: usize,
 }
 
-/// Why nothing can be snapped.
+/// The reason why nothing can be snapped.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SnapError {
     /// No length is left to snap.
@@ -44,13 +44,13 @@ pub enum SnapError {
         "no stock length ({stock}) lies within the problem's limits for {key}, {low} to {high}: give a finer stock, or leave {key} out with --snap"
     )]
     NoStock {
-        /// The length.
+        /// Key of the length.
         key: &'static str,
-        /// The stock in words.
+        /// The stock, in words.
         stock: String,
-        /// Its least.
+        /// Its least value allowed.
         low: f64,
-        /// Its greatest.
+        /// Its greatest value allowed.
         high: f64,
     },
     /// No combination near the candidate is a linkage that can be assembled at every point.
@@ -63,31 +63,31 @@ pub enum SnapError {
     Interrupted,
 }
 
-/// What snapping came to.
+/// The result of snapping.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Snapped {
     /// The lengths that were snapped, in the order in which they were fixed.
     pub lengths: Vec<Length>,
-    /// The answers, best first and ranked from 1; where one is accepted, accepted ones alone.
+    /// The answers, best first and ranked from 1; if one is accepted, only accepted ones.
     pub candidates: Vec<Candidate>,
-    /// The plain way, for comparison: every length at its nearest stock size at once, and the rest fitted again.
-    /// `None` where that is no linkage, or cannot be assembled at every point.
+    /// The plain rounding, for comparison: every length at its nearest stock size at once, and the rest fitted again.
+    /// `None` if that is not a linkage, or cannot be assembled at every point.
     pub nearest: Option<Candidate>,
-    /// Combinations that were fitted.
+    /// Number of combinations fitted.
     pub fits: u64,
-    /// What they cost.
+    /// The evaluations used.
     pub evaluations: Evaluations,
-    /// Why it ended: [`Reason::Snapped`] where nothing near is better, else the one that stopped it.
+    /// The reason why it ended: [`Reason::Snapped`] if nothing near is better, else the one that stopped it.
     pub reason: Reason,
 }
 
-/// Evaluations of a fit while choices are compared, and of the last ones, at most.
+/// Most evaluations of a fit while choices are compared, and of the final ones.
 const QUICK: u64 = 60;
 const THOROUGH: u64 = 400;
-/// Answers that are fitted thoroughly besides those that are wanted.
+/// Number of answers that are fitted thoroughly besides those that are wanted.
 const SPARE: usize = 4;
 
-/// A choice of stock lengths with what was fitted to it.
+/// A choice of stock lengths with its fitted candidate.
 #[derive(Clone)]
 struct Choice {
     fixed: Fixed,
@@ -101,10 +101,11 @@ struct Search<'a> {
     evaluations: u64,
 }
 
-/// Brings lengths of a candidate to stock sizes and fits the rest again.
+/// Snaps lengths of a candidate to stock sizes and fits the rest again.
 ///
-/// The candidate is one of the problem, judged by it. A budget that stops it brings the best complete choice so far: at
-/// least every length at its nearest stock size, where that can be assembled. Unstopped, the same input gives the same answer on any number of threads.
+/// The candidate is one of the problem, judged by it. If the budget stops it, the best complete choice so far is
+/// returned: at least every length at its nearest stock size, if that can be assembled. Unstopped, the same input gives
+/// the same answer on any number of threads.
 ///
 /// # Errors
 /// [`SnapError`].
@@ -138,7 +139,7 @@ pub fn snap(
     let mut beam = vec![root];
     for &length in &lengths {
         if budget.stopped() {
-            // Choices of some of the lengths are no answer; every length at its nearest stock size is one.
+            // Choices of only some of the lengths are not answers; every length at its nearest stock size is one.
             beam.clear();
             break;
         }
@@ -177,7 +178,7 @@ pub fn snap(
         all.extend(found);
         search.sort(&mut all);
     }
-    // The best once more from where they are, with all the patience that a result deserves.
+    // The best are fitted once more from their present parameters, with more evaluations.
     let leaders = if budget.stopped() { 0 } else { request.wanted.max(1) + SPARE };
     let leaders: Vec<Choice> = all.iter().take(leaders).cloned().collect();
     let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
@@ -209,7 +210,7 @@ pub fn snap(
     })
 }
 
-/// The lengths that can be snapped, the one that the path feels most first.
+/// Returns the lengths that can be snapped, the one to which the path is most sensitive first.
 fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<Length> {
     let design = &problem.spec().design;
     let whole = |p: Option<[Limits; 2]>| p.is_some_and(|p| p.iter().all(Limits::is_fixed));
@@ -225,7 +226,7 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
     if let Some(felt) = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)) {
         let of = |length: &Length| match length {
             Length::Ground => felt.ground.rms,
-            // d and e are each as much as both where the coupler is measured along and across.
+            // d and e each count as both if the coupler point is measured along and across.
             _ => felt.dimensions.iter().find(|d| d.name == length.key()).map_or(f64::INFINITY, |d| d.rms),
         };
         lengths.sort_by(|x, y| of(y).total_cmp(&of(x)));
@@ -233,14 +234,14 @@ fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<L
     lengths
 }
 
-/// A choice as something that can be told from another.
+/// Returns a key of a choice, by which choices are compared.
 fn bits(fixed: &Fixed) -> Vec<u64> {
     let mut lengths = fixed.lengths.clone();
     lengths.sort_by_key(|(length, _)| *length);
     lengths.into_iter().map(|(_, value)| value.to_bits()).collect()
 }
 
-/// The choices with one length, or two, a stock size up or down.
+/// Returns the choices with one length, or two, moved a stock size up or down.
 fn neighbours(
     choice: &Choice,
     lengths: &[Length],
@@ -271,7 +272,7 @@ fn neighbours(
 }
 
 impl Search<'_> {
-    /// What comes of choices, best first; those that cannot be fitted left out.
+    /// Fits choices and returns the results, best first, without those that cannot be fitted.
     fn fitted(&mut self, choices: Vec<(Fixed, &Candidate)>, evaluations: u64) -> Vec<Choice> {
         self.fits += choices.len() as u64;
         let fitted: Vec<(Option<Choice>, u64)> = choices
@@ -290,7 +291,7 @@ impl Search<'_> {
         found
     }
 
-    /// Best first; equals in the order in which they were tried.
+    /// Sorts choices, best first; equals stay in the order in which they were tried.
     fn sort(&self, choices: &mut [Choice]) {
         choices.sort_by(|one, other| compare(self.problem, &one.candidate, &other.candidate));
     }

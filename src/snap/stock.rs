@@ -1,31 +1,31 @@
-//! Which lengths there are.
+//! Stock lengths: the lengths that are available.
 
 /// A stock of lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stock {
-    /// Every multiple of a step.
+    /// All multiples of a step.
     Grid(f64),
-    /// These alone, ascending, each once.
+    /// A list of lengths, ascending, each once.
     List(Vec<f64>),
 }
 
-/// What is no stock of lengths.
+/// The error of an invalid stock of lengths.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StockError {
     /// A step or length that is not positive and finite.
     #[error("{0} is no stock length: a positive number below 1e12 is needed")]
     NotPositive(f64),
-    /// No length at all.
+    /// The list is empty.
     #[error("there is no length in the list: give at least one")]
     Empty,
-    /// Text that is no number.
+    /// Text that is not a number.
     #[error(
         "line {line}: `{text}` is not a number; write one length a line or several separated by commas or spaces, comments after #"
     )]
     NotANumber {
-        /// Counted from 1.
+        /// Number of the line, counted from 1.
         line: usize,
-        /// What stands there.
+        /// The text found.
         text: String,
     },
 }
@@ -39,18 +39,18 @@ fn checked(value: f64) -> Result<f64, StockError> {
 }
 
 impl Stock {
-    /// Every multiple of `step`.
+    /// Creates the stock of all multiples of `step`.
     ///
     /// # Errors
-    /// A step that is not positive and finite.
+    /// [`StockError`] for a step that is not positive and finite.
     pub fn grid(step: f64) -> Result<Self, StockError> {
         checked(step).map(Stock::Grid)
     }
 
-    /// These lengths, in any order.
+    /// Creates the stock of these lengths, given in any order.
     ///
     /// # Errors
-    /// No length, or one that is not positive and finite.
+    /// [`StockError`] for an empty list, or a length that is not positive and finite.
     pub fn list(lengths: &[f64]) -> Result<Self, StockError> {
         let mut list = lengths.iter().map(|l| checked(*l)).collect::<Result<Vec<_>, _>>()?;
         list.sort_by(f64::total_cmp);
@@ -58,10 +58,10 @@ impl Stock {
         if list.is_empty() { Err(StockError::Empty) } else { Ok(Stock::List(list)) }
     }
 
-    /// The lengths in a text: separated by white space, commas or semicolons; what follows # is left out.
+    /// Parses the lengths in a text: separated by white space, commas or semicolons; text after # is ignored.
     ///
     /// # Errors
-    /// As [`Stock::list`], and text that is no number.
+    /// As [`Stock::list`], and for text that is not a number.
     pub fn parse(text: &str) -> Result<Self, StockError> {
         let mut lengths = Vec::new();
         for (i, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
@@ -78,7 +78,8 @@ impl Stock {
         Stock::list(&lengths)
     }
 
-    /// The `count` stock lengths nearest to `value` in [low, high], nearest first (of two as near the shorter).
+    /// Returns the `count` stock lengths nearest to `value` in [low, high], nearest first (of two equally near the
+    /// shorter).
     pub fn near(&self, value: f64, count: usize, low: f64, high: f64) -> Vec<f64> {
         let inside = |l: &f64| *l >= low && *l <= high;
         let mut lengths: Vec<f64> = match self {
@@ -95,7 +96,7 @@ impl Stock {
         lengths
     }
 
-    /// In words: `multiples of 5`, `12 lengths`.
+    /// Describes the stock in words: `multiples of 5`, `12 lengths from 5 to 60`.
     pub fn words(&self) -> String {
         match self {
             Stock::Grid(step) => format!("multiples of {step}"),
@@ -108,7 +109,7 @@ impl Stock {
     }
 }
 
-/// `count` steps as it is written in decimal: 3 steps of 0.1 are 0.3.
+/// Returns `count` steps rounded as written in decimal: 3 steps of 0.1 are 0.3.
 fn on_grid(step: f64, count: f64) -> f64 {
     let written = format!("{step}");
     let decimals = written.split_once('.').map_or(0, |(_, decimals)| decimals.len());

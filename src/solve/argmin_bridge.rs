@@ -1,18 +1,19 @@
 //! Runs a population algorithm under argmin's executor: the one file that names argmin.
 //!
 //! Each algorithm implements [`Generations`]; the bridge makes any of them an `argmin::core::Solver` whose state is a
-//! `PopulationState<Vec<f64>, f64>`. What argmin is not asked to do, and why:
+//! `PopulationState<Vec<f64>, f64>`. Four tasks are not left to argmin:
 //!
 //! - *counting*: argmin counts evaluations only on request, per call of the problem, and from zero after a resume. The
 //!   algorithms report their own evaluations, and the limit is met to the evaluation;
 //! - *infeasible points*: argmin knows one cost. It sees infinity until a feasible point is found, while the algorithms
 //!   go by the feasibility rules of [`Fitness`](super::population::Fitness);
-//! - *signals*: its handler is for the whole process. A search looks at its own job's token after each generation.
+//! - *signals*: its handler is for the whole process. A search checks the cancellation token of its own job after
+//!   each generation.
 //!
 //! - *checkpoints*: argmin's would replace the solver and the limits by what was written. Here a search hands out its
-//!   [`RestartsState`] after whole generations and begins from one; limits are those of the call.
+//!   [`RestartsState`] after whole generations and can begin from one; limits are those of the call.
 //!
-//! A search that stops at its limit, at a token or in a stall is an outcome, not an error.
+//! A search that stops at its limit, by cancellation or in a stall is an outcome, not an error.
 
 use super::population::{
     Generations, GenerationsState, Individual, PopulationError, PopulationProblem, best_of, check_box,
@@ -25,42 +26,43 @@ use argmin::core::{
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// When a search has to stop.
+/// The limits of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// The number of evaluations that is never exceeded, at least 1.
+    /// The largest number of evaluations, at least 1.
     pub evaluations: u64,
-    /// Stop as soon as a feasible point costs no more than this. Looked at after each generation; NaN is never met.
+    /// The target cost: a search stops as soon as a feasible point costs no more. It is checked after each
+    /// generation; NaN is never reached.
     pub target: Option<f64>,
 }
 
-/// Why a search stopped.
+/// The reason for which a search stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum StopReason {
-    /// The best stalled or the population collapsed.
+    /// Convergence: the best stalled or the population collapsed.
     Converged,
     /// A feasible point reached the target.
     TargetReached,
     /// All evaluations were used.
     EvaluationLimit,
-    /// The token was set.
+    /// The cancellation token was set.
     Cancelled,
 }
 
-/// Where a search is, after a generation.
+/// The progress of a search after a generation.
 #[derive(Clone, Copy, Debug)]
 pub struct PopulationProgress<'a> {
-    /// The number of the restart, from zero.
+    /// The index of the restart, from zero.
     pub restart: u64,
-    /// The number of the generation within the restart; zero is the first population.
+    /// The index of the generation within the restart; zero is the first population.
     pub generation: u64,
-    /// The evaluations so far, over all restarts.
+    /// The number of evaluations so far, over all restarts.
     pub evaluations: u64,
-    /// The best so far, over all restarts.
+    /// The best individual so far, over all restarts.
     pub best: &'a Individual,
 }
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PopulationOutcome {
     /// The best individual of all. It may be infeasible, if no feasible one was met.
@@ -69,32 +71,32 @@ pub struct PopulationOutcome {
     pub population: Vec<Individual>,
     /// The best individual of each restart, in the order of the restarts.
     pub restart_bests: Vec<Individual>,
-    /// How many evaluations were made, exactly.
+    /// The exact number of evaluations.
     pub evaluations: u64,
-    /// How many generations were made over all restarts, first populations included.
+    /// The number of generations over all restarts, first populations included.
     pub generations: u64,
-    /// Why the search stopped.
+    /// The reason for which the search stopped.
     pub reason: StopReason,
 }
 
-/// Where a search with restarts stands between two generations: all that the rest of it depends on besides the
-/// arguments of [`run_restarts_from`].
+/// The checkpoint of a search with restarts between two generations: everything that its continuation depends on
+/// besides the arguments of [`run_restarts_from`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RestartsState {
-    /// The number of the restart.
+    /// The index of the restart, from zero.
     restart: u64,
-    /// Generations of this restart.
+    /// The index of the generation within this restart.
     generation: u64,
-    /// Over all restarts.
+    /// The number of evaluations over all restarts.
     evaluations: u64,
-    /// What the restarts before this one found.
+    /// The result of the restarts before this one.
     found: Option<PopulationOutcome>,
-    /// The algorithm.
+    /// The state of the algorithm.
     algorithm: GenerationsState,
 }
 
 impl RestartsState {
-    /// Whether the numbers can stand together in a search of these limits.
+    /// Returns whether the state is consistent with this box and these limits.
     fn fits(&self, bounds: &[(f64, f64)], limits: &Limits) -> bool {
         let found = self.found.as_ref().is_none_or(|found| {
             let individuals = [&found.best].into_iter().chain(&found.population).chain(&found.restart_bests);
@@ -108,17 +110,17 @@ impl RestartsState {
     }
 }
 
-/// Told after every whole generation that is not the last one where the search stands, by a function that it need
-/// not call.
+/// A callback for checkpoints, called after every whole generation that is not the last one. Its argument is a
+/// function that returns the state of the search; the callback need not call it.
 pub type Keep<'k> = dyn FnMut(&dyn Fn() -> RestartsState) + 'k;
 
 /// Searches once, with stream 0 of `seed`, until the algorithm converges or the limits are met.
 ///
-/// `starts` are points that the first population shall contain, as many as fit; the others are drawn uniformly from the
-/// box. `observe` is called on this thread after each generation. `cancel` is looked at after each generation, so even
-/// a search that is cancelled beforehand has an answer, from its first population. The outcome is a function of the
-/// problem, the algorithm's parameters, the starts, the seed and the limits, unless the search is cancelled: neither
-/// the number of threads nor the observer changes a digit.
+/// `starts` are points that the first population shall contain, as many as fit; the others are drawn uniformly from
+/// the box. `observe` is called on this thread after each generation. `cancel` is checked after each generation, so
+/// even a search that is cancelled beforehand has an answer, from its first population. The outcome is a function of
+/// the problem, the algorithm's parameters, the starts, the seed and the limits, unless the search is cancelled:
+/// neither the number of threads nor the observer changes a digit.
 ///
 /// # Errors
 /// [`PopulationError`] if the box, a start or the limit makes no search; see [`check_box`].
@@ -141,7 +143,7 @@ pub fn run(
     Ok(search.finish())
 }
 
-/// Searches again and again until the limits are met: restart i begins afresh with stream i of `seed`, once restart
+/// Searches with restarts until the limits are met: restart i begins afresh with stream i of `seed`, once restart
 /// i - 1 has converged. The best of all restarts is kept.
 ///
 /// `starts` are given to restart 0 only, since the later ones shall find something else. The other arguments are those
@@ -166,8 +168,9 @@ pub fn run_restarts(
     run_restarts_from(None, problem, algorithm, starts, seed, limits, cancel, observe, keep)
 }
 
-/// As [`run_restarts`], from where a search of the same problem, algorithm, starts and seed stood, or from the beginning
-/// where that is `None` or cannot be: then its outcome is that of an unbroken search. `keep` is told where it stands.
+/// Continues a search with restarts from `state`, which a search of the same problem, algorithm, starts and seed
+/// handed out; the outcome is that of an unbroken search. If `state` is `None` or does not fit, it searches from the
+/// beginning, as [`run_restarts`]. `keep` receives the states in between.
 ///
 /// # Errors
 /// As [`run`].
@@ -218,7 +221,7 @@ fn check(
     Ok(())
 }
 
-/// The arguments of a search, and what it has found in the restarts that are over.
+/// A search in progress: its arguments, and the result of the restarts that are over.
 struct Search<'a> {
     problem: &'a dyn PopulationProblem,
     algorithm: &'a mut dyn Generations,
@@ -231,7 +234,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Whether the last restart converged with evaluations left.
+    /// Returns whether the last restart converged with evaluations left.
     fn wants_more(&mut self) -> bool {
         let Some(found) = &mut self.found else {
             return true;
@@ -242,7 +245,8 @@ impl Search<'_> {
         found.reason == StopReason::Converged
     }
 
-    /// Restart `index`; where the algorithm has been restored, after so many generations and evaluations.
+    /// Runs restart `index`; if the algorithm has been restored, it continues after `restored` = (generations,
+    /// evaluations).
     fn restart(&mut self, index: u64, starts: &[Vec<f64>], restored: Option<(u64, u64)>) {
         let (evaluations, generations) =
             self.found.as_ref().map_or((0, 0), |found| (found.evaluations, found.generations));
@@ -295,7 +299,7 @@ impl Search<'_> {
     }
 }
 
-/// The reason that the bridge gave argmin.
+/// Translates the termination reason that the bridge gave argmin.
 fn stop_reason(reason: Option<&TerminationReason>) -> StopReason {
     match reason {
         Some(TerminationReason::SolverConverged) => StopReason::Converged,
@@ -310,7 +314,7 @@ fn stop_reason(reason: Option<&TerminationReason>) -> StopReason {
 
 type BridgeState = PopulationState<Vec<f64>, f64>;
 
-/// One restart of an algorithm, as a solver of argmin's.
+/// One restart of an algorithm, as an argmin solver.
 struct Bridge<'a> {
     algorithm: &'a mut dyn Generations,
     starts: &'a [Vec<f64>],
@@ -320,13 +324,13 @@ struct Bridge<'a> {
     cancel: &'a AtomicBool,
     observe: &'a mut dyn FnMut(PopulationProgress<'_>),
     keep: &'a mut Keep<'a>,
-    /// What the restarts before this one found.
+    /// The result of the restarts before this one.
     found: Option<&'a PopulationOutcome>,
     /// Whether the algorithm has its population already.
     restored: bool,
-    /// Over all restarts.
+    /// The number of evaluations over all restarts.
     evaluations: u64,
-    /// Of this restart.
+    /// The index of the generation within this restart.
     generation: u64,
 }
 
@@ -339,7 +343,8 @@ impl Bridge<'_> {
         best_of(self.algorithm.population()).expect("an initialised algorithm has a population")
     }
 
-    /// Books what a generation spent, tells the observer, and gives argmin the best.
+    /// Counts the evaluations that a generation spent, calls the observer and the checkpoint callback, and gives
+    /// argmin the best individual.
     fn book(&mut self, spent: u64, mut state: BridgeState) -> BridgeState {
         assert!(
             (1..=self.remaining()).contains(&spent),

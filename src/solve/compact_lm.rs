@@ -2,12 +2,12 @@
 //!
 //! minimise  |r(x)|^2   subject to  lo <= x <= hi,   x in R^N with N small
 //!
-//! A problem gives its cost at a point and then, at that same point, J^T J and J^T r. What lies behind them
-//! (eliminated linear unknowns, thousands of rows) is its own affair. A step solves
-//! (J^T J + lambda D) dx = -J^T r with D the diagonal of J^T J; lambda follows Nielsen (1999), *Damping
-//! parameter in Marquardt's method*. An unknown that stands at a bound and would leave it is held there.
+//! A problem gives its cost at a point and then, at that same point, J^T J and J^T r. How it computes them
+//! (eliminating linear unknowns, over thousands of rows) is left to the problem. A step solves
+//! (J^T J + lambda D) dx = -J^T r with D the diagonal of J^T J; lambda follows Nielsen (1999), *Damping parameter in
+//! Marquardt's method*. An unknown that is at a bound and would cross it is held there.
 
-/// J^T J and J^T r.
+/// The normal equations: J^T J and J^T r.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normal<const N: usize> {
     /// J^T J, symmetric.
@@ -18,67 +18,69 @@ pub struct Normal<const N: usize> {
 
 /// A least-squares problem in a few unknowns.
 pub trait CompactLeastSquares<const N: usize> {
-    /// |r(x)|^2; `None` where it does not exist.
+    /// Computes the cost |r(x)|^2; `None` if it does not exist.
     fn cost(&mut self, x: &[f64; N]) -> Option<f64>;
 
-    /// J^T J and J^T r at the point that `cost` was last asked for.
+    /// Computes J^T J and J^T r at the point of the last call of `cost`.
     fn normal(&mut self) -> Normal<N>;
 }
 
-/// When to stop.
+/// The stopping criteria of [`solve`].
 #[derive(Clone, Copy, Debug)]
 pub struct CompactOptions {
-    /// Computations of the cost, at least one.
+    /// The largest number of evaluations of the cost; at least one is made.
     pub max_evaluations: u32,
-    /// Converged when a step promises, or two in a row bring, less than this part of the cost.
+    /// The relative reduction for convergence: two accepted steps in a row each reduce the cost by less than this
+    /// part, or the model predicts for a step less than 1e-3 of it.
     pub relative_reduction: f64,
-    /// Converged when the cost is below this.
+    /// The cost at which a solve has converged.
     pub exact_cost: f64,
-    /// After [`CompactOptions::patience`] computations the cost has to be below this, or the solve is given up.
+    /// The cost that has to be reached within [`CompactOptions::patience`] evaluations; otherwise the solve is given
+    /// up.
     pub hopeless_cost: f64,
-    /// See `hopeless_cost`.
+    /// The number of evaluations from which `hopeless_cost` is checked.
     pub patience: u32,
 }
 
-/// How a solve ended.
+/// The reason for which a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CompactOutcome {
-    /// No step promises more, or the cost is below `exact_cost`.
+    /// Convergence: steps hardly reduce the cost, or it is at most `exact_cost`.
     Converged,
-    /// Out of evaluations.
+    /// The evaluations are used up.
     EvaluationLimit,
-    /// Not below `hopeless_cost` in time.
+    /// The cost was above `hopeless_cost` after `patience` evaluations.
     Hopeless,
-    /// No step can be taken although none promises too little: the damping has outgrown every step.
+    /// No step is accepted although the predicted reductions are not negligible: the damping has reached its limit.
     Stalled,
-    /// Ended from outside.
+    /// The caller's `stop` ended the solve.
     Stopped,
-    /// The start has no cost.
+    /// The cost does not exist at the start.
     NoStart,
 }
 
-/// The end of a solve.
+/// The result of a solve.
 #[derive(Clone, Copy, Debug)]
 pub struct CompactResult<const N: usize> {
     /// The best point.
     pub x: [f64; N],
-    /// Its cost; infinite where the start has none.
+    /// The cost at `x`; infinite if the start has none.
     pub cost: f64,
-    /// How often the cost was computed.
+    /// The number of evaluations of the cost.
     pub evaluations: u32,
-    /// How it ended.
+    /// The reason for which it ended.
     pub outcome: CompactOutcome,
 }
 
-/// First damping, in parts of the diagonal.
+/// The first damping, relative to the diagonal.
 const FIRST_DAMPING: f64 = 1e-3;
-/// Past this damping a step is below rounding.
+/// The largest damping; beyond it a step is below rounding.
 const LAST_DAMPING: f64 = 1e12;
-/// Steps in a row that hardly reduce before a solve counts as converged.
+/// The number of steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: u32 = 2;
 
-/// Solves from a start, which is brought into its bounds. Equal bounds fix an unknown. `stop` is asked before each
-/// computation of the cost but the first.
+/// Minimises the cost by Levenberg-Marquardt from a start, which is clamped to its bounds. Equal bounds fix an
+/// unknown. `stop` is called before each evaluation of the cost but the first.
 pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
     problem: &mut P,
     start: [f64; N],
@@ -154,8 +156,8 @@ pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
     }
 }
 
-/// The damped step's end inside the bounds and the reduction of the cost that the linear model promises for it;
-/// `None` where the damped matrix is not positive definite.
+/// Computes the end of the damped step, inside the bounds, and the reduction of the cost that the linear model
+/// predicts for it; `None` if the damped matrix is not positive definite.
 fn step<const N: usize>(
     normal: &Normal<N>,
     x: &[f64; N],
@@ -197,7 +199,8 @@ fn step<const N: usize>(
     promised.is_finite().then_some((to, promised))
 }
 
-/// Solves a symmetric positive definite system in place by Cholesky's factors; `None` where it is not one.
+/// Solves a symmetric positive definite system in place by Cholesky factorisation; `None` if it is not positive
+/// definite.
 #[expect(clippy::needless_range_loop, reason = "two rows of the matrix at once")]
 pub fn solve_positive<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N]) -> Option<()> {
     for i in 0..N {

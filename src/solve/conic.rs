@@ -1,4 +1,5 @@
-//! A convex program in a few dozen variables; the only file that knows which library solves it.
+//! Second-order cone programs with a convex quadratic objective, in a few dozen variables; the only file that names
+//! the library that solves them.
 //!
 //! ```text
 //! minimise    1/2 v'P v + q'v
@@ -15,12 +16,12 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SecondOrderConeT, SolverStatus,
 };
 
-/// Coefficients of a linear form, with its constant: sum of value v_column, plus the constant.
+/// A linear form with a constant: the sum of value v_column over its terms, plus the constant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinearForm {
-    /// (column, value).
+    /// The coefficients, as (column, value).
     pub terms: Vec<(usize, f64)>,
-    /// The constant.
+    /// The constant term.
     pub constant: f64,
 }
 
@@ -33,26 +34,27 @@ pub struct ConicProgram {
     cones: Vec<[LinearForm; 3]>,
 }
 
-/// The minimum of a program with its duals.
+/// The minimum of a program with its dual variables.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConicSolution {
-    /// The variables.
+    /// The values of the variables.
     pub v: Vec<f64>,
-    /// One a row, not negative.
+    /// The dual variable of each row, not negative.
     pub rows: Vec<f64>,
-    /// One triple a cone, in the cone: how the least value falls with each constant.
+    /// The dual variables of each cone, a triple in the cone: the rates at which the least value falls as each
+    /// constant grows.
     pub cones: Vec<[f64; 3]>,
 }
 
-/// Gap and infeasibility at which a program counts as solved: four digits above rounding.
+/// Duality gap and infeasibility at which a program counts as solved: four digits above rounding.
 const ACCURACY: f64 = 1e-12;
-/// What is still of use to a caller who checks every step; worse is no solution.
+/// The accuracy that is still of use to a caller who checks every step; a worse result is no solution.
 const REDUCED_ACCURACY: f64 = 1e-6;
-/// Interior-point iterations; 10 to 25 are usual.
+/// The largest number of interior-point iterations; 10 to 25 are usual.
 const ITERATIONS: u32 = 100;
 
 impl ConicProgram {
-    /// A program in as many variables as `linear` has numbers: q.
+    /// Creates a program with the linear objective `linear` (q), with one variable for each of its numbers.
     pub fn new(linear: Vec<f64>) -> Self {
         ConicProgram { linear, quadratic: Vec::new(), rows: Vec::new(), cones: Vec::new() }
     }
@@ -62,17 +64,18 @@ impl ConicProgram {
         self.quadratic.push((i.min(k), i.max(k), value));
     }
 
-    /// Asks for form >= 0.
+    /// Adds the constraint form >= 0.
     pub fn add_row(&mut self, form: LinearForm) {
         self.rows.push(form);
     }
 
-    /// Asks for |(second, third)| <= first.
+    /// Adds the cone constraint |(second, third)| <= first.
     pub fn add_cone(&mut self, forms: [LinearForm; 3]) {
         self.cones.push(forms);
     }
 
-    /// The minimum; `None` where there is none or the numbers do not allow to find it.
+    /// Solves the program; `None` if it has no minimum, if its numbers are unusable or if the solver does not
+    /// converge.
     pub fn solve(&self) -> Option<ConicSolution> {
         let columns = self.linear.len();
         let forms: Vec<&LinearForm> = self.rows.iter().chain(self.cones.iter().flatten()).collect();

@@ -1,5 +1,5 @@
-//! Sequential convex programming for points that share a few unknowns: least squares, or the least largest
-//! deviation, under inequalities.
+//! Sequential convex programming for points that share a few unknowns: least squares or minimax deviation under
+//! inequalities.
 //!
 //! ```text
 //! sum of squares     minimise  sum_j w_j |r_j|^2
@@ -8,134 +8,137 @@
 //! and always         lo <= x <= hi,   g_i(x, s) >= 0
 //! ```
 //!
-//! At each step the residuals and inequalities are replaced by their linear models r_j + J_j dx and
-//! g_i + <dg_i, dx> inside a trust box, which leaves a quadratic or a second-order cone program ([`super::conic`]).
-//! Where a point has an unknown of its own (its tangent t_j is not zero) that unknown takes up the residual along
-//! t_j, and only the component across counts. What the linear models leave out, the curvature of the residuals
-//! and inequalities weighed by their multipliers, is learnt from step to step by the symmetric rank-one
-//! formula (Broyden 1967; its positive part is used). Inequalities are elastic: a slack shared by all of them,
-//! with a price that grows until the slack falls, so that a start outside first gets inside (Byrd, Gould,
-//! Nocedal and Waltz 2004, steering rules). A step is kept when the same price function falls with the true
-//! residuals; a refused one is corrected once to second order (Fletcher 1982).
+//! At each step the residuals and inequalities are replaced by their linear models r_j + J_j dx and g_i + <dg_i, dx>
+//! inside a trust box, which leaves a quadratic or a second-order cone program ([`super::conic`]). If a point has an
+//! unknown of its own (its tangent t_j is not zero), that unknown takes up the residual along t_j, and only the
+//! component across counts. The curvature of the residuals and inequalities, weighted by their multipliers, is left
+//! out by the linear models and learnt from step to step by the symmetric rank-one formula (Broyden 1967; its
+//! positive part is used). Inequalities are elastic: a slack shared by all of them, with a price that grows until the
+//! slack falls, so that a start outside first gets inside (Byrd, Gould, Nocedal and Waltz 2004, steering rules). A
+//! step is accepted if the merit function with this price falls with the true residuals; a rejected one gets one
+//! second-order correction (Fletcher 1982).
 
 mod model;
 
 use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 use model::{Curvature, Model, Step};
 
-/// What is minimised. Tolerances: one a point, positive.
+/// The objective of a solve. Tolerances: one per point, positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal<'a> {
-    /// sum_j w_j |r_j|^2.
+    /// The sum of squares, sum_j w_j |r_j|^2.
     SumOfSquares,
-    /// max_j |r_j| / tol_j; the weights do not enter.
+    /// The largest deviation, max_j |r_j| / tol_j; the weights do not enter.
     MaxDeviation {
-        /// tol_j.
+        /// The tolerances tol_j.
         tolerances: &'a [f64],
     },
-    /// sum_j w_j |r_j|^2 with |r_j| <= tol_j; a start outside first lessens max_j |r_j| / tol_j.
+    /// The sum of squares, sum_j w_j |r_j|^2, subject to |r_j| <= tol_j; from a start outside, max_j |r_j| / tol_j is
+    /// reduced first.
     SumOfSquaresWithin {
-        /// tol_j.
+        /// The tolerances tol_j.
         tolerances: &'a [f64],
     },
 }
 
-/// When to stop, and in which units.
+/// The stopping criteria and units of [`solve`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConvexOptions<const N: usize> {
-    /// Steps at most.
+    /// The largest number of steps.
     pub max_steps: usize,
-    /// Linearisations at most; at least one is made.
+    /// The largest number of linearisations; at least one is made.
     pub max_evaluations: u64,
     /// The first half width of the trust box for each shared unknown; positive.
     pub trust: [f64; N],
-    /// The length by which inequalities are judged: a lack of this much weighs as much as the whole objective.
+    /// The length scale of the inequalities: a violation of this much weighs as much as the whole objective.
     pub length: f64,
-    /// Converged when a step promises less than this part of the objective.
+    /// The relative reduction for convergence: the reduction predicted for a step is less than this part of the
+    /// objective.
     pub relative_reduction: f64,
-    /// An inequality counts as met when g >= -this.
+    /// The tolerance of the inequalities: one counts as met if g >= -`feasibility`.
     pub feasibility: f64,
-    /// Done when all is met and the objective is not above this.
+    /// The objective at or below which a solve ends, once all constraints are met.
     pub good_enough: f64,
 }
 
-/// How a solve ended.
+/// The reason for which a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ConvexOutcome {
-    /// No step promises more, and everything is met.
+    /// Convergence: no step is predicted to reduce the objective further, and all constraints are met.
     Converged,
-    /// No step promises more, and something is not met: nearby nothing lacks less.
+    /// No step is predicted to reduce the merit further, and some constraint is not met: the violation is at a local
+    /// minimum.
     Infeasible,
-    /// Everything is met and the objective is good enough.
+    /// All constraints are met and the objective is good enough.
     GoodEnough,
-    /// Steps that are promised are not found: the best point so far is returned.
+    /// The trust box has become too small or the programs cannot be solved: the best point so far is returned.
     Stalled,
-    /// Out of steps or evaluations.
+    /// The steps or evaluations are used up.
     StepLimit,
     /// The start could not be evaluated.
     NoStart,
-    /// Stopped from outside.
+    /// The caller's `stop` ended the solve.
     Stopped,
 }
 
-/// What the limits cost at the end: rates of the objective.
+/// The Lagrange multipliers at the end: rates at which the objective changes with the limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Multipliers<const N: usize> {
-    /// One a row, not negative: asking for g_i >= delta raises the objective by this times delta. In the unit
-    /// of the objective over the unit of g_i.
+    /// The multiplier of each row, not negative: asking for g_i >= delta raises the objective by this times delta. In
+    /// the unit of the objective over the unit of g_i.
     pub rows: Vec<f64>,
-    /// Raising the lower bound by delta raises the objective by this times delta.
+    /// The multiplier of each lower bound: raising it by delta raises the objective by this times delta.
     pub lower: [f64; N],
-    /// Reducing the upper bound by delta raises the objective by this times delta.
+    /// The multiplier of each upper bound: reducing it by delta raises the objective by this times delta.
     pub upper: [f64; N],
-    /// One a point (empty for the plain sum of squares). Max deviation: the share that a point has in the
-    /// maximum; they sum to 1. Within tolerances: reducing tol_j by the part delta of itself raises the objective
-    /// by this times delta.
+    /// The multiplier of each point (empty for the plain sum of squares). Max deviation: the share that a point has
+    /// in the maximum; they sum to 1. Within tolerances: reducing tol_j by the part delta of itself raises the
+    /// objective by this times delta.
     pub points: Vec<f64>,
 }
 
-/// The end of a solve.
+/// The result of a solve.
 #[derive(Clone, Debug)]
 pub struct ConvexResult<const N: usize, S> {
     /// The shared unknowns.
     pub x: [f64; N],
-    /// The points' unknowns.
+    /// The points' own unknowns.
     pub state: S,
     /// The objective of the goal.
     pub objective: f64,
-    /// The largest -g_i, or 0.
+    /// The violation of the inequalities: the largest -g_i, or 0.
     pub violation: f64,
-    /// max_j |r_j| / tol_j where the goal has tolerances, else 0.
+    /// The largest deviation, max_j |r_j| / tol_j, if the goal has tolerances, else 0.
     pub deviation: f64,
-    /// Linearisations made.
+    /// The number of linearisations.
     pub evaluations: u64,
-    /// Steps tried, the same number of convex programs or more.
+    /// The number of steps tried; the number of convex programs is the same or more.
     pub steps: usize,
-    /// How it ended.
+    /// The reason for which it ended.
     pub outcome: ConvexOutcome,
-    /// Of the last program that was solved; `None` before the first.
+    /// The multipliers of the last program that was solved; `None` before the first.
     pub multipliers: Option<Multipliers<N>>,
 }
 
-/// A point's own step is at most this long (radians): beyond it the tangent says nothing.
+/// The longest step of a point's own unknown, in radians: beyond it the tangent is no approximation.
 const MAX_TAU: f64 = 0.6;
-/// A step that wins at least this part of what it promised is kept.
+/// The least ratio of actual to predicted reduction with which a step is accepted.
 const KEEP: f64 = 1e-3;
-/// The trust box follows a good step with this room to grow.
+/// The size of the trust box relative to the good step before it.
 const ROOM: f64 = 4.0;
-/// A trust box below this part of the first one is below rounding.
+/// The smallest trust box, relative to the first one; a smaller one is below rounding.
 const LEAST_TRUST: f64 = 1e-13;
-/// The first price of a slack, and the highest.
+/// The first price (penalty weight) of the slack; [`HIGHEST_PRICE`] is the largest.
 const FIRST_PRICE: f64 = 10.0;
 const HIGHEST_PRICE: f64 = 1e7;
-/// A program should take away this part of the lack; else the slack gets dearer.
+/// The part of the lack to which a program has to reduce it; otherwise the price of the slack grows.
 const STEER: f64 = 0.7;
-/// Kept steps in a row that hardly reduce before a solve counts as converged.
+/// The number of accepted steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: usize = 3;
-/// Programs in a row that cannot be solved before a solve is given up.
+/// The number of programs in a row that cannot be solved after which a solve is given up.
 const FAILED_PROGRAMS: usize = 6;
 
-/// A point of the iteration with everything that is known there.
+/// An iterate with its linearisation.
 struct At<const N: usize, S> {
     x: [f64; N],
     state: S,
@@ -143,19 +146,20 @@ struct At<const N: usize, S> {
     rows: Vec<ConstraintRow<N>>,
     objective: f64,
     deviation: f64,
-    /// The largest -g_i, or 0.
+    /// The violation of the inequalities: the largest -g_i, or 0.
     violation: f64,
-    /// What is lacking, without a unit: max over -g_i / length and, within tolerances, |r_j| / tol_j - 1.
+    /// The lack, a dimensionless measure of infeasibility: the maximum over -g_i / length and, within
+    /// tolerances, |r_j| / tol_j - 1.
     lack: f64,
 }
 
-/// |r|.
+/// Returns the length |r|.
 fn norm(r: [f64; 2]) -> f64 {
     r[0].hypot(r[1])
 }
 
 impl Goal<'_> {
-    /// The tolerances, where the goal has them.
+    /// Returns the tolerances, if the goal has them.
     fn tolerances(&self) -> Option<&[f64]> {
         match self {
             Goal::SumOfSquares => None,
@@ -190,10 +194,10 @@ fn look<const N: usize, P: BlockLeastSquares<N>>(
     usable.then_some(At { x, state, blocks, rows, objective, deviation, violation, lack })
 }
 
-/// Solves from a start. `stop` is asked between steps.
+/// Minimises the goal from a start by sequential convex programming. `stop` is called between steps.
 ///
-/// The start is brought into its bounds and x never leaves them. The best point so far is what is returned: of
-/// points that meet everything the one of the least objective, else the one that lacks least for its price.
+/// The start is clamped to its bounds and x never leaves them. The best point so far is returned: of points that meet
+/// all constraints the one of the least objective, else the one that lacks least for its price.
 ///
 /// # Panics
 /// When a goal has fewer tolerances than there are points.
@@ -265,7 +269,7 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
         }
     }
 
-    /// The lack that counts as none.
+    /// Returns the largest lack that counts as none.
     fn slight(&self) -> f64 {
         self.options.feasibility / self.options.length
     }
@@ -365,7 +369,7 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
                         return self.ended();
                     }
                     if self.met() {
-                        // Twice what the limits cost is enough to keep to them.
+                        // A price of twice the multipliers is enough to keep to the limits.
                         let length = self.options.length;
                         let rows: f64 = step.multipliers.rows.iter().sum::<f64>() * length / unit;
                         let points = match self.goal {
@@ -383,14 +387,14 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
         ConvexOutcome::StepLimit
     }
 
-    /// The program's step at a price at which the lack falls.
+    /// Solves the program for a step, raising the price of the slack until the lack falls.
     fn steered(&mut self, model: &mut Model<'_, N>) -> Option<Step<N>> {
         let mut step = model.solve(&self.curvature, self.price)?;
         while step.lack > self.slight().max(STEER * self.at.lack) && self.price < HIGHEST_PRICE {
             let dearer = (10.0 * self.price).min(HIGHEST_PRICE);
             let Some(next) = model.solve(&self.curvature, dearer) else { break };
             self.price = dearer;
-            // Where a price buys nothing more, the box is what binds.
+            // If a higher price does not reduce the lack, the trust box is the active limit.
             let bought = step.lack - next.lack;
             let done = bought <= 1e-3 * step.lack;
             step = next;
@@ -405,7 +409,7 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
         trial.map_or(f64::NEG_INFINITY, |next| now - (next.objective / unit + price * next.lack.max(0.0)))
     }
 
-    /// The true residuals and inequalities after a step; `None` where they do not exist.
+    /// Evaluates the true residuals and inequalities after a step; `None` if they do not exist.
     fn trial(&mut self, step: &Step<N>) -> Option<At<N, P::State>> {
         self.evaluations += 1;
         let mut x = self.at.x;

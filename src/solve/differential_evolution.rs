@@ -1,4 +1,4 @@
-//! Differential evolution that adapts its own two numbers: SHADE.
+//! SHADE: differential evolution that adapts its parameters F and CR from the history of successful steps.
 //!
 //! For each individual x_i of a population of N, with differences of other individuals as steps:
 //!
@@ -55,17 +55,18 @@ pub struct DifferentialEvolutionParameters {
 }
 
 impl Default for DifferentialEvolutionParameters {
-    /// The best share and the archive are the sources'. The other three were chosen among N = 30 to 100, H = 6 and 20,
-    /// and 50 to 200 generations by the ten lengths and angles of a four-bar with a known answer: of 21 seeds with
-    /// 100 000 evaluations and restarts each, these found it for three in four and N = 100 for fewer than half. A small
-    /// population that gives up early and starts again does better there than a large one.
+    /// Returns the defaults. The best share and the archive are those of the sources. The other three were chosen
+    /// among N = 30 to 100, H = 6 and 20, and 50 to 200 generations by the ten lengths and angles of a four-bar with
+    /// a known answer: of 21 seeds with 100 000 evaluations and restarts each, these found it for three in four and
+    /// N = 100 for fewer than half. A small population that gives up early and starts again does better there than a
+    /// large one.
     fn default() -> Self {
         Self { population: 50, best_share: 0.2, archive_share: 1.0, history: 20, stall_generations: 50 }
     }
 }
 
 impl DifferentialEvolutionParameters {
-    /// Looks for a parameter outside its domain.
+    /// Checks that every parameter is in its domain.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] for the first one found.
@@ -82,17 +83,17 @@ impl DifferentialEvolutionParameters {
     }
 }
 
-/// One step is made from x_i, x_r1 and x_r2, all different, and one more that x_pbest can be.
+/// The smallest population: a step is made from x_i, x_r1 and x_r2, all different, and one more that x_pbest can be.
 const SMALLEST: usize = 4;
 /// The width of the distributions that F and CR are drawn from (Zhang & Sanderson 2009, eqs. 8 and 11).
 const SCATTER: f64 = 0.1;
-/// What the history begins with (Tanabe & Fukunaga 2013).
+/// The first entries of the history (Tanabe & Fukunaga 2013).
 const FIRST_GUESS: Strategy = Strategy { step: 0.5, crossover: 0.5 };
-/// A population whose largest extent is this share of the box has collapsed: steps are differences of individuals, and
-/// ten digits of every gene agree. The last digits are a local solver's.
+/// The largest extent of a collapsed population, as a share of the box: steps are differences of individuals, and ten
+/// digits of every gene agree. The last digits are left to a local solver.
 const COLLAPSED_SPREAD: f64 = 1e-10;
 
-/// The two numbers that a trial is made with.
+/// The two parameters that a trial is made with.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Strategy {
     /// F, in (0, 1].
@@ -101,7 +102,7 @@ struct Strategy {
     crossover: f64,
 }
 
-/// What a trial gained on its parent, in the unit of what decided.
+/// The gain of a trial over its parent, in cost or in violation, whichever decided.
 #[derive(Clone, Copy, Debug)]
 enum Gain {
     Cost(f64),
@@ -118,12 +119,13 @@ impl Gain {
     }
 }
 
-/// A gain from infinity or NaN has no size, and would outweigh all others: it counts as none.
+/// Returns the size of a gain. One from infinity or NaN has no size, and would outweigh all others: it counts as
+/// none.
 fn countable(gain: f64) -> f64 {
     if gain.is_finite() { gain.max(0.0) } else { 0.0 }
 }
 
-/// SHADE: see the module.
+/// The SHADE search, as the module describes.
 #[derive(Clone, Debug)]
 pub struct DifferentialEvolution {
     parameters: DifferentialEvolutionParameters,
@@ -137,14 +139,14 @@ pub struct DifferentialEvolution {
     archive: Vec<Vec<f64>>,
     archive_size: usize,
     history: Vec<Strategy>,
-    /// Where the history is written next.
+    /// The index in the history that is written next.
     cursor: usize,
     successes: Vec<(Strategy, Gain)>,
     watch: StallWatch,
     collapsed: bool,
 }
 
-/// Where a [`DifferentialEvolution`] search stands between two generations.
+/// The state of a [`DifferentialEvolution`] search between two generations, for a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EvolutionState {
     stream: Stream,
@@ -157,7 +159,7 @@ pub struct EvolutionState {
 }
 
 impl DifferentialEvolution {
-    /// A search that has not begun.
+    /// Creates a search that has not begun.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] if a parameter is outside its domain.
@@ -187,7 +189,7 @@ impl DifferentialEvolution {
         self.ranking.sort_by(|&one, &other| population[one].fitness.compare(&population[other].fitness));
     }
 
-    /// F and CR for one trial.
+    /// Draws F and CR for one trial.
     fn draw_strategy(&mut self) -> Strategy {
         let stream = &mut self.stream;
         let middle = self.history[below(stream, self.history.len())];
@@ -201,7 +203,7 @@ impl DifferentialEvolution {
         }
     }
 
-    /// Writes the trial of individual `index`.
+    /// Writes the trial vector of individual `index`.
     fn propose(&mut self, index: usize, bounds: &[(f64, f64)]) {
         let strategy = self.draw_strategy();
         self.strategies[index] = strategy;
@@ -233,7 +235,8 @@ impl DifferentialEvolution {
         }
     }
 
-    /// Lets the first `count` trials replace their parents, and notes what succeeded.
+    /// Replaces parents by those of the first `count` trials that are not worse, and records the successful
+    /// strategies.
     fn select(&mut self, count: usize) {
         self.successes.clear();
         for index in 0..count {
@@ -290,13 +293,13 @@ impl DifferentialEvolution {
     }
 }
 
-/// The weight of a gain among `count` gains that sum to `total`: they sum to `count`. Where none has a size, all weigh
-/// the same.
+/// Computes the weight of a gain among `count` gains that sum to `total`: the weights sum to `count`. If no gain has
+/// a size, all weigh the same.
 fn weight_within(gain: f64, total: f64, count: f64) -> f64 {
     if total > 0.0 && total.is_finite() { gain / total * count } else { 1.0 }
 }
 
-/// A whole number below `count` that is none of `taken`, which must leave one.
+/// Draws a whole number below `count` that is none of `taken`, which must leave one.
 fn draw_other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
     loop {
         let index = below(stream, count);
@@ -306,7 +309,7 @@ fn draw_other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
     }
 }
 
-/// `value`, or where it left the box, the middle between the parent's gene and the bound it crossed.
+/// Returns `value`, or, if it left the box, the middle between the parent's gene and the bound it crossed.
 fn returned(value: f64, parent: f64, lower: f64, upper: f64) -> f64 {
     if value < lower {
         0.5 * (lower + parent)

@@ -1,4 +1,4 @@
-//! Floating-point numbers in JSON, to the last bit and with those that JSON has no words for.
+//! Serialisation of floating-point numbers in JSON, exact to the last bit and including infinities and NaN.
 //!
 //! A finite number is a JSON number, written as the shortest text that reads back as the same double; the others
 //! are the texts `"inf"`, `"-inf"` and `"nan"`.
@@ -6,7 +6,7 @@
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A number that may be infinite or no number.
+/// A floating-point number, possibly infinite or NaN, that is serialised exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Exact(#[serde(with = "self")] pub f64);
@@ -34,7 +34,7 @@ pub fn serialize<S: Serializer>(number: &f64, serializer: S) -> Result<S::Ok, S:
 /// Reads a number; for `#[serde(with = ..)]`.
 ///
 /// # Errors
-/// Where there is neither a number nor one of the three words.
+/// If the value is neither a number nor one of the three words.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     match Written::deserialize(deserializer)? {
         Written::Number(number) => Ok(number),

@@ -1,4 +1,4 @@
-//! A genetic algorithm with real genes: tournaments, simulated binary crossover, polynomial mutation, an elite.
+//! A real-coded genetic algorithm: tournament selection, simulated binary crossover, polynomial mutation, elitism.
 //!
 //! Two parents y1 < y2 of a gene, in the interval [l, h], have two children around them (simulated binary crossover,
 //! index n_c; u uniform in [0, 1)):
@@ -59,10 +59,10 @@ pub struct GeneticParameters {
 }
 
 impl Default for GeneticParameters {
-    /// The probabilities and n_m are Deb's. The elite, the tournament and n_c are a compromise among elites of 1 to
-    /// 100, tournaments of 2 and 4, and n_c = 2 and 15: near the best on the sphere and on Rastrigin's function with
-    /// ten genes after 20 000 and 100 000 evaluations. Rosenbrock's valley prefers n_c = 15; on a four-bar's ten
-    /// lengths and angles the choices differ by less than the seeds do.
+    /// Returns the defaults. The probabilities and n_m are Deb's. The elite, the tournament and n_c are a compromise
+    /// among elites of 1 to 100, tournaments of 2 and 4, and n_c = 2 and 15: near the best on the sphere and on
+    /// Rastrigin's function with ten genes after 20 000 and 100 000 evaluations. Rosenbrock's valley prefers n_c =
+    /// 15; on a four-bar's ten lengths and angles the choices differ by less than the seeds do.
     fn default() -> Self {
         Self {
             population: 200,
@@ -78,7 +78,7 @@ impl Default for GeneticParameters {
 }
 
 impl GeneticParameters {
-    /// Looks for a parameter outside its domain.
+    /// Checks that every parameter is in its domain.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] for the first one found.
@@ -107,18 +107,18 @@ impl GeneticParameters {
     }
 }
 
-/// The genetic algorithm: see the module.
+/// The genetic algorithm, as the module describes.
 #[derive(Clone, Debug)]
 pub struct Genetic {
     parameters: GeneticParameters,
     stream: Stream,
-    /// Best first.
+    /// The population, best first.
     population: Vec<Individual>,
     children: Vec<Individual>,
     watch: StallWatch,
 }
 
-/// Where a [`Genetic`] search stands between two generations.
+/// The state of a [`Genetic`] search between two generations, for a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GeneticState {
     stream: Stream,
@@ -127,7 +127,7 @@ pub struct GeneticState {
 }
 
 impl Genetic {
-    /// A search that has not begun.
+    /// Creates a search that has not begun.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] if a parameter is outside its domain.
@@ -142,7 +142,8 @@ impl Genetic {
         })
     }
 
-    /// The index of the best of a few individuals drawn at random: the population is sorted, so it is the least.
+    /// Selects by tournament: returns the index of the best of a few individuals drawn at random, which is the least
+    /// index as the population is sorted.
     fn win_tournament(&mut self) -> usize {
         let size = self.population.len();
         let mut winner = below(&mut self.stream, size);
@@ -152,7 +153,7 @@ impl Genetic {
         winner
     }
 
-    /// Writes children number `pair` and `pair` + 1, the second one where there is room for it.
+    /// Writes the children with the indices `pair` and `pair` + 1, the second one if there is room for it.
     fn breed(&mut self, pair: usize, bounds: &[(f64, f64)]) {
         let (mother, father) = (self.win_tournament(), self.win_tournament());
         let parameters = &self.parameters;
@@ -182,14 +183,14 @@ impl Genetic {
     }
 }
 
-/// b(u, B): the children's distance as a multiple of the parents', for parents from which the bound is at B.
+/// Computes b(u, B): the children's distance as a multiple of the parents', for parents from which the bound is at B.
 fn spread_factor(u: f64, bound: f64, index: f64) -> f64 {
     let power = 1.0 / (index + 1.0);
     let mass = (2.0 - bound.powf(-(index + 1.0))) * u;
     if mass <= 1.0 { mass.powf(power) } else { (2.0 - mass).powf(-power) }
 }
 
-/// Two children of one gene, in an order drawn at random.
+/// Crosses one gene by simulated binary crossover: returns two children, in an order drawn at random.
 fn cross(stream: &mut Stream, one: f64, other: f64, (lower, upper): (f64, f64), index: f64) -> (f64, f64) {
     let (near, far) = (one.min(other), one.max(other));
     let distance = far - near;
@@ -206,7 +207,7 @@ fn cross(stream: &mut Stream, one: f64, other: f64, (lower, upper): (f64, f64), 
     if swapped { (high, low) } else { (low, high) }
 }
 
-/// One gene, moved by polynomial mutation.
+/// Moves one gene by polynomial mutation.
 fn mutate(stream: &mut Stream, value: f64, (lower, upper): (f64, f64), index: f64) -> f64 {
     let width = upper - lower;
     let upwards = unit(stream) < 0.5;

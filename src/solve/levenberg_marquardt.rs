@@ -10,16 +10,16 @@
 //! tau_j = -<t_j, r_j + J_j dx> / (|t_j|^2 + nu)
 //! ```
 //!
-//! so the cost of a step is linear in the number of points. Where progress is slow, as along a narrow curved
-//! valley, a step is bent by its geodesic acceleration: half of the a that solves the same system for the
-//! second derivative of the residuals along the step, taken from one more evaluation (Transtrum and Sethna
-//! 2012, *Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares minimization*). Where the points must keep their order along a
-//! common curve, neighbours that the step would let pass each other move as one (a pool): the tangents of a
-//! pool are eliminated together, and which points are pooled is decided anew in every step by isotonic
-//! regression (pool adjacent violators, Ayer et al. 1955), see [`super::ordered`]. Inequalities enter by an augmented Lagrangian
-//! (Powell 1969, Hestenes 1969, Rockafellar 1974): a row sqrt(rho) max(0, m_i - g_i) each, with m_i moved to
-//! max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping
-//! follows Nielsen (1999), *Damping parameter in Marquardt's method*.
+//! so the cost of a step is linear in the number of points. If progress is slow, as along a narrow curved valley, a
+//! step is bent by half of its geodesic acceleration, the vector that solves the same system for the second
+//! derivative of the residuals along the step, taken from one more evaluation (Transtrum and Sethna 2012,
+//! *Improvements to the Levenberg-Marquardt algorithm for nonlinear least-squares minimization*). If the points must
+//! keep their order along a common curve, neighbours that the step would let pass each other move as one (a pool):
+//! the tangents of a pool are eliminated together, and the pools are determined anew in every step by isotonic
+//! regression (pool adjacent violators, Ayer et al. 1955), see [`super::ordered`]. Inequalities enter by an augmented
+//! Lagrangian (Powell 1969, Hestenes 1969, Rockafellar 1974): a row sqrt(rho) max(0, m_i - g_i) each, with m_i moved
+//! to max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping follows
+//! Nielsen (1999), *Damping parameter in Marquardt's method*.
 
 mod system;
 
@@ -30,36 +30,38 @@ use system::{Normal, Workspace, assemble, bounded_step};
 /// A point's residual with its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct PointBlock<const N: usize> {
-    /// r_j.
+    /// The residual r_j.
     pub residual: [f64; 2],
-    /// dr_j/dx, two rows.
+    /// The Jacobian dr_j/dx, two rows.
     pub jacobian: [[f64; N]; 2],
-    /// dr_j/dtau_j; zero where the point has no freedom of its own.
+    /// The tangent dr_j/dtau_j; zero if the point has no unknown of its own.
     pub tangent: [f64; 2],
-    /// w_j.
+    /// The weight w_j.
     pub weight: f64,
 }
 
 /// An inequality g >= 0 with its derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct ConstraintRow<const N: usize> {
-    /// g, in the unit of the residuals.
+    /// The value g, in the unit of the residuals.
     pub value: f64,
-    /// dg/dx, the points' own unknowns held.
+    /// The gradient dg/dx, with the points' own unknowns held fixed.
     pub gradient: [f64; N],
-    /// The point on whose own unknown g depends, with dg/dtau; `None` where it depends on the shared ones alone.
+    /// The index of the point on whose own unknown g depends, with dg/dtau; `None` if g depends on the shared
+    /// unknowns alone.
     pub own: Option<(usize, f64)>,
 }
 
 impl<const N: usize> ConstraintRow<N> {
-    /// The row with the derivative by the shared unknowns alone, the point's own unknown following them:
+    /// Returns the row with the derivative by the shared unknowns alone, the point's own unknown following them:
     ///
     /// ```text
     /// tau = -<t, r + J dx> / (|t|^2 + nu)      its best step for the residual,
     /// dg/dx + dg/dtau dtau/dx
     /// ```
     ///
-    /// `blocks` are the points' blocks at the same place. Where the point's tangent is zero its unknown stays.
+    /// `blocks` are the points' blocks at the same point of the iteration. If the point's tangent is zero, its
+    /// unknown stays fixed.
     pub(super) fn followed(mut self, blocks: &[PointBlock<N>], nu: f64) -> Self {
         let Some((block, by)) = self.own.take().and_then(|(point, by)| Some((blocks.get(point)?, by))) else {
             return self;
@@ -76,31 +78,31 @@ impl<const N: usize> ConstraintRow<N> {
     }
 }
 
-/// A least-squares problem with a block a point.
+/// A least-squares problem with one block per point.
 pub trait BlockLeastSquares<const N: usize> {
-    /// The points' own unknowns.
+    /// The values of the points' own unknowns.
     type State: Clone;
 
-    /// How many points.
+    /// Returns the number of points.
     fn points(&self) -> usize;
 
-    /// [low, high] of each shared unknown; equal: fixed; infinite: unbounded.
+    /// Returns the bounds [low, high] of each shared unknown; equal bounds fix it, infinite ones leave it unbounded.
     fn bounds(&self) -> &[(f64, f64); N];
 
-    /// sum_j w_j |r_j|^2; `None` where it does not exist.
+    /// Computes the cost sum_j w_j |r_j|^2; `None` if it does not exist.
     fn cost(&self, x: &[f64; N], state: &Self::State) -> Option<f64>;
 
-    /// The blocks of all points in their order; `false` where a derivative does not exist.
+    /// Passes the blocks of all points to `each`, in their order; `false` if a derivative does not exist.
     fn linearise(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&PointBlock<N>)) -> bool;
 
-    /// r_j of all points in their order; `false` where one does not exist.
+    /// Computes the residuals r_j of all points, in their order; `false` if one does not exist.
     fn residuals(&self, x: &[f64; N], state: &Self::State, out: &mut Vec<[f64; 2]>) -> bool {
         out.clear();
         self.linearise(x, state, &mut |block| out.push(block.residual))
     }
 
-    /// The points' unknowns after a step `tau` from `state` at `from`, brought back to their curves at `to`;
-    /// `false` where that fails.
+    /// Computes the points' unknowns after a step `tau` from `state` at `from`, brought back to their curves at `to`
+    /// (retraction); `false` if that fails.
     fn retract(
         &self,
         from: &[f64; N],
@@ -110,96 +112,98 @@ pub trait BlockLeastSquares<const N: usize> {
         out: &mut Self::State,
     ) -> bool;
 
-    /// The way from each point to the next along their curve, in units of the own unknowns and positive in
-    /// order; the last one leads back to the first. `false`: the points need not keep an order.
+    /// Computes the gap from each point to the next along their curve, in units of their own unknowns and positive if
+    /// they are in order; the last one leads back to the first. `false` if the points need not keep an order.
     fn gaps(&self, _x: &[f64; N], _state: &Self::State, _gaps: &mut Vec<f64>) -> bool {
         false
     }
 
-    /// Puts every point where its leader is.
+    /// Moves every point to the position of its leader (see [`Ordered::leaders`]).
     fn join(&self, _state: &mut Self::State, _leaders: &[usize]) {}
 
-    /// Runs a loop over numbers; a problem that knows of wider vector instructions runs it with them.
+    /// Runs a numerical loop, with wider vector instructions if the problem has them.
     fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
         work()
     }
 
-    /// The inequalities, always as many and in the same order.
+    /// Passes the inequalities to `each`, always the same number and in the same order.
     fn constraints(&self, x: &[f64; N], state: &Self::State, each: &mut dyn FnMut(&ConstraintRow<N>));
 }
 
-/// When to stop.
+/// The stopping criteria of [`solve`].
 #[derive(Clone, Copy, Debug)]
 pub struct LmOptions {
-    /// Steps tried in one inner solve.
+    /// The largest number of steps tried in one inner solve.
     pub max_steps: usize,
-    /// Rounds of the multipliers.
+    /// The largest number of outer rounds, in which the multipliers of the augmented Lagrangian are updated.
     pub max_rounds: usize,
-    /// Computations of the cost in all rounds together; at least one.
+    /// The largest number of evaluations of the cost in all rounds together; at least one is made.
     pub max_evaluations: u64,
-    /// Converged when a step promises less than this part of the cost.
+    /// The relative reduction for convergence: three accepted steps in a row each reduce the merit (cost and penalty)
+    /// by less than this part, or the model predicts for a rejected step less than 1e-3 of it.
     pub relative_reduction: f64,
-    /// Converged when the cost is below this: an exact answer.
+    /// The cost at which an answer counts as exact.
     pub exact_cost: f64,
-    /// A constraint counts as met when g >= -this.
+    /// The tolerance of the constraints: one counts as met if g >= -`feasibility`.
     pub feasibility: f64,
-    /// An inner solve is given up when its cost is not below this after half the steps.
+    /// The cost that an inner solve has to reach after half the steps; otherwise it is given up.
     pub hopeless_cost: f64,
 }
 
-/// How a solve ended.
+/// The reason for which a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LmOutcome {
-    /// No step promises more.
+    /// Convergence: steps hardly reduce the merit, or no step is predicted to.
     Converged,
-    /// The cost is below `exact_cost`.
+    /// The cost is at most `exact_cost` and all constraints are met.
     Exact,
-    /// Out of steps or evaluations.
+    /// The steps or evaluations are used up.
     StepLimit,
-    /// A derivative does not exist at the best point (a toggle, a flat position): no step leads on from there, and
-    /// nothing says that it is an optimum.
+    /// A derivative does not exist at the best point (a toggle, a flat position): no step can be computed from there,
+    /// and it need not be an optimum.
     NoDerivative,
-    /// Every step that promised something made it worse until the damping had outgrown all steps: rounding, or a
-    /// kink. The best point may be an optimum, and nothing says that it is.
+    /// Every step with a predicted reduction was rejected until the damping reached its limit, because of rounding or
+    /// a kink. The best point may be an optimum, but need not be.
     Stalled,
     /// The start could not be evaluated.
     NoStart,
-    /// Given up or stopped from outside.
+    /// The solve was given up or stopped by the caller.
     Abandoned,
 }
 
-/// The end of a solve.
+/// The result of a solve.
 #[derive(Clone, Debug)]
 pub struct LmResult<const N: usize, S> {
     /// The shared unknowns.
     pub x: [f64; N],
-    /// The points' unknowns.
+    /// The points' own unknowns.
     pub state: S,
-    /// sum_j w_j |r_j|^2.
+    /// The cost sum_j w_j |r_j|^2.
     pub cost: f64,
-    /// The largest -g_i, or 0.
+    /// The violation of the constraints: the largest -g_i, or 0.
     pub violation: f64,
-    /// How often the cost was computed.
+    /// The number of evaluations of the cost, those for the geodesic acceleration included.
     pub evaluations: u64,
-    /// How it ended.
+    /// The reason for which it ended.
     pub outcome: LmOutcome,
 }
 
-/// A point's own step is at most this long (radians): beyond it the tangent says nothing.
+/// The longest step of a point's own unknown, in radians: beyond it the tangent is no approximation.
 const MAX_TAU: f64 = 0.6;
-/// First damping, in parts of the normal matrix' diagonal.
+/// The first damping, relative to the diagonal of the normal matrix.
 const FIRST_DAMPING: f64 = 1e-3;
-/// The part of a step at which its bend is measured.
+/// The part of a step at which its geodesic acceleration is measured.
 const AHEAD: f64 = 0.1;
-/// A bend of more than this part of the step (in the normal matrix' diagonal) says that neither is to be trusted.
+/// The largest bend (half the acceleration) relative to the step, in the norm of the normal matrix' diagonal; a
+/// larger one is not used.
 const MOST_BENT: f64 = 0.375;
-/// A step that takes off less than this part of the merit is slow.
+/// The relative reduction of the merit below which a step counts as slow.
 const SLOW: f64 = 0.2;
-/// Times that points which have passed each other are pooled after a step.
+/// The largest number of times that points which have passed each other are pooled after a step.
 const MOST_REPAIRS: usize = 4;
-/// Points that lie further apart than this (radians) have not just passed each other.
+/// The largest distance, in radians, between points that count as having just passed each other.
 const JUST_PASSED: f64 = 0.05;
-/// Past this damping a step is below rounding.
+/// The largest damping; beyond it a step is below rounding.
 const LAST_DAMPING: f64 = 1e14;
 
 struct Penalty {
@@ -208,7 +212,7 @@ struct Penalty {
 }
 
 impl Penalty {
-    /// rho max(0, m - g)^2 summed.
+    /// Computes the penalty: the sum of rho max(0, m - g)^2.
     fn of<const N: usize, P: BlockLeastSquares<N>>(
         &self,
         problem: &P,
@@ -227,7 +231,7 @@ impl Penalty {
     }
 }
 
-/// The largest -g_i, or 0 where all constraints hold.
+/// Computes the violation of the constraints: the largest -g_i, or 0 if all hold.
 pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     x: &[f64; N],
@@ -238,9 +242,10 @@ pub fn violation<const N: usize, P: BlockLeastSquares<N>>(
     worst
 }
 
-/// Solves from a start. `stop` is asked between steps, and within a step between its passes over the points.
+/// Minimises the cost from a start, by Levenberg-Marquardt and an augmented Lagrangian. `stop` is called between
+/// steps, and within a step between its passes over the points.
 ///
-/// The start is brought into its bounds. The best point so far is always what is returned.
+/// The start is clamped to its bounds. The best point so far is always returned.
 pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     start: [f64; N],
@@ -298,9 +303,9 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     result
 }
 
-/// The first weight of a squared constraint against a squared residual, a point.
+/// The first penalty weight of a squared constraint relative to a squared residual, per point.
 const FIRST_RHO: f64 = 1.0;
-/// Its growth where a round did not bring the constraints down to a quarter.
+/// The factor by which the penalty weight grows if a round did not reduce the violation to a quarter.
 const RHO_GROWTH: f64 = 8.0;
 
 fn inner<const N: usize, P: BlockLeastSquares<N>>(
@@ -382,7 +387,7 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
         };
         let mut trial_merit = None;
         let mut evaluations = 0;
-        // Three evaluations at most: the bend, the bent step and the straight one.
+        // Three evaluations at most: the acceleration, the bent step and the straight one.
         if slow && !work.order.any() && result.evaluations + 3 <= options.max_evaluations {
             evaluations += 1;
             if let Some(bent) = bend(problem, result, system, &dx, (damping, nu), &mut work, &mut trial_state)
@@ -446,8 +451,8 @@ fn inner<const N: usize, P: BlockLeastSquares<N>>(
     result.outcome = LmOutcome::StepLimit;
 }
 
-/// Pools what a step has let pass each other after all, because the way back to the curves is not straight; `false`
-/// where that fails or `stop` says so.
+/// Pools points that have passed each other in a step after all, because the way back to the curves is not straight;
+/// `false` if that fails or `stop` returns true.
 fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     x: &[f64; N],
@@ -481,8 +486,8 @@ fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
     true
 }
 
-/// A step bent by half its geodesic acceleration, in its bounds, the points' own steps with it; `None` where the
-/// bend cannot be measured or is too large.
+/// Computes the end of a step bent by half its geodesic acceleration, inside the bounds, and bends the points' own
+/// steps with it; `None` if the acceleration cannot be measured or is too large.
 fn bend<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     at: &LmResult<N, P::State>,
@@ -515,10 +520,10 @@ fn bend<const N: usize, P: BlockLeastSquares<N>>(
     Some(std::array::from_fn(|i| (after[i] + half[i]).max(bounds[i].0).min(bounds[i].1)))
 }
 
-/// Steps in a row that hardly reduce before a solve counts as converged.
+/// The number of steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: usize = 3;
 
-/// Blocks and constraint rows of a problem at a point.
+/// Collects the blocks and constraint rows of a problem at a point.
 fn linearised<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     x: &[f64; N],
@@ -532,12 +537,12 @@ fn linearised<const N: usize, P: BlockLeastSquares<N>>(
     Some((blocks, rows))
 }
 
-/// How far the derivatives of a problem are from central differences: the largest |analytic - difference| /
+/// Compares the derivatives of a problem with central differences: returns the largest |analytic - difference| /
 /// (1 + |analytic|) over all residuals and constraints (by x and along the tangents).
 ///
-/// `steps` gives the difference's step for each shared unknown, 0 leaves it out; `along` is the step of the
-/// points' own unknowns. `None` where a neighbour cannot be evaluated. A right derivative leaves what the
-/// differences themselves have: the square of the step times the third derivative, and rounding over the step.
+/// `steps` gives the difference's step for each shared unknown, 0 leaves it out; `along` is the step of the points'
+/// own unknowns. `None` if a neighbouring point cannot be evaluated. Correct derivatives leave only the error of the
+/// differences: the square of the step times the third derivative, and rounding over the step.
 pub fn derivative_error<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     x: &[f64; N],

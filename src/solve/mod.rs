@@ -1,7 +1,7 @@
-//! Numbers only: population searches, bounded least squares with a block a point, convex programs in a row,
-//! non-negative least squares, random streams.
+//! Numerical solvers: population searches, bounded least squares with one block per point, sequential convex
+//! programming, non-negative least squares, random streams.
 //!
-//! This room imports nothing else of the crate. It owns the traits that problems implement:
+//! This module imports nothing else of the crate. It owns the traits that problems implement:
 //! [`population::PopulationProblem`], [`levenberg_marquardt::BlockLeastSquares`] and
 //! [`compact_lm::CompactLeastSquares`].
 

@@ -1,28 +1,29 @@
 //! Non-negative least squares of a few columns: min |sum_i m_i g_i - q| with every m_i >= 0.
 //!
-//! The active-set method of C. L. Lawson and R. J. Hanson (1974), *Solving Least Squares Problems*, chapter 23:
-//! the column that promises most joins the passive set; where its least squares would make a multiplier
-//! negative, the way there ends at the first that becomes zero. A dozen columns of a dozen numbers take
-//! microseconds; larger problems are not what this is for.
+//! The active-set method of C. L. Lawson and R. J. Hanson (1974), *Solving Least Squares Problems*, chapter 23: in
+//! each round the column with the largest inner product with the residual joins the passive set; if the least-squares
+//! solution over the passive set has a negative multiplier, the step towards it ends at the first multiplier that
+//! becomes zero. A dozen columns of a dozen numbers take microseconds; it is not meant for larger problems.
 
 use nalgebra::{DMatrix, DVector};
 
-/// The answer of [`nonnegative_least_squares`].
+/// The solution of a non-negative least-squares problem, from [`nonnegative_least_squares`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Multipliers {
-    /// One non-negative number a column.
+    /// The multiplier of each column, not negative.
     pub values: Vec<f64>,
-    /// |sum_i m_i g_i - q|.
+    /// The norm of the residual, |sum_i m_i g_i - q|.
     pub residual: f64,
-    /// How much a unit of residual can have moved a multiplier: 1 over the least singular value of the columns
-    /// with a positive multiplier (infinite where they depend on each other), 0 where there is none.
+    /// The largest change of a multiplier that a unit of residual can have caused: 1 over the least singular value of
+    /// the columns with a positive multiplier (infinite if they depend on each other), 0 if there is no such column.
     pub sensitivity: f64,
 }
 
-/// A singular value below this part of the greatest means that columns depend on each other.
+/// The least singular value, relative to the greatest, with which columns count as linearly independent.
 const DEPENDENT: f64 = 1e-9;
 
-/// The multipliers of `columns` (all as long as `right`) that come nearest to `right`.
+/// Computes the non-negative multipliers of `columns` (all as long as `right`) whose combination comes nearest to
+/// `right`.
 ///
 /// Columns should be of like size: scale them to length 1.
 ///
@@ -41,7 +42,7 @@ pub fn nonnegative_least_squares(columns: &[Vec<f64>], right: &[f64]) -> Multipl
     let mut values = DVector::<f64>::zeros(count);
     let mut passive: Vec<usize> = Vec::new();
     let slack = 1e-12 * right.norm();
-    // Each column joins once or twice; a cycle would be rounding's, and ends here.
+    // Each column joins once or twice; the limit ends a cycle that rounding may cause.
     for _ in 0..4 * count {
         let promise = matrix.tr_mul(&(&right - &matrix * &values));
         let best = (0..count)
@@ -58,7 +59,8 @@ pub fn nonnegative_least_squares(columns: &[Vec<f64>], right: &[f64]) -> Multipl
                 }
                 break;
             }
-            // Towards the solution as far as all stay non-negative; what becomes zero leaves.
+            // A step towards the solution as far as all multipliers stay non-negative; those that become zero leave
+            // the passive set.
             let share = passive
                 .iter()
                 .zip(solved.iter())
@@ -105,7 +107,7 @@ mod tests {
     use super::*;
     use crate::solve::streams::{stream, uniform};
 
-    /// The Karush-Kuhn-Tucker conditions are sufficient: the problem is convex.
+    /// Checks the Karush-Kuhn-Tucker conditions, which are sufficient because the problem is convex.
     fn is_solution(columns: &[Vec<f64>], right: &[f64], found: &Multipliers) -> bool {
         let mut rest = right.to_vec();
         for (column, m) in columns.iter().zip(&found.values) {

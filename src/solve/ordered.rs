@@ -1,22 +1,24 @@
 //! Isotonic regression on a closed chain: points on a curve that may meet but not pass each other.
 //!
-//! Point j stands at s_j and wants to go to s_j + tau_j with stiffness k_j. The chain's places nearest to that,
-//! least sum k_j (v_j - s_j - tau_j)^2 subject to v_0 <= v_1 <= .. around the chain, are found by pooling
-//! adjacent violators (Ayer, Brunk, Ewing, Reid and Silverman 1955) in linear time: each pool goes to the
-//! weighted mean of what its members want. The chain is cut at its widest gap.
+//! Point j is at s_j, and its desired position is s_j + tau_j with the weight k_j (its stiffness). The positions v_j
+//! with the least sum k_j (v_j - s_j - tau_j)^2 subject to v_0 <= v_1 <= .. around the chain are found by pooling
+//! adjacent violators (Ayer, Brunk, Ewing, Reid and Silverman 1955) in linear time: each pool goes to the weighted
+//! mean of its members' desired positions. The chain is cut at its widest gap.
 
 use std::ops::Range;
 
-/// The pools of a chain and where they came from; kept to save allocations.
+/// Isotonic regression by pool adjacent violators: the pools of a chain, in buffers that are kept to save
+/// allocations.
 #[derive(Clone, Debug, Default)]
 pub struct Ordered {
     leaders: Vec<usize>,
-    /// (value, stiffness, members as a range of `chain`)
+    /// The pools: (value, stiffness, members as a range of `chain`).
     stack: Vec<(f64, f64, Range<usize>)>,
-    /// Point indices from the cut on, and their places.
+    /// Point indices from the cut on; `places` holds their positions.
     chain: Vec<usize>,
     places: Vec<f64>,
-    /// Members of the pools of more than one, with their way to the pool's own middle.
+    /// Members of the pools of more than one point, each with its step to the weighted mean of the members'
+    /// positions.
     members: Vec<(usize, f64)>,
     ranges: Vec<Range<usize>>,
     pooled: Vec<bool>,
@@ -24,14 +26,14 @@ pub struct Ordered {
 }
 
 impl Ordered {
-    /// For a chain of `n` points.
+    /// Creates the buffers for a chain of `n` points.
     pub fn new(n: usize) -> Self {
         Ordered { leaders: (0..n).collect(), pooled: vec![false; n], ..Ordered::default() }
     }
 
-    /// Pools the points. `gaps[j]` leads from point j to the next, the last one back to the first; negative
-    /// gaps are out of order already. `tau` comes back changed for the members of pools, so that all of them
-    /// end in one place.
+    /// Pools the points. `gaps[j]` is the distance from point j to the next, the last one back to the first; a
+    /// negative gap means that the two are out of order already. `tau` is changed for the members of pools, so that
+    /// all members of a pool end in one place.
     pub fn pool(&mut self, gaps: &[f64], tau: &mut [f64], stiffness: &[f64]) {
         let n = gaps.len();
         self.members.clear();
@@ -100,22 +102,23 @@ impl Ordered {
         }
     }
 
-    /// Whether a point is in no pool.
+    /// Returns whether a point is in no pool.
     pub fn is_alone(&self, j: usize) -> bool {
         !self.pooled[j]
     }
 
-    /// Whether there are pools of more than one.
+    /// Returns whether any pool has more than one point.
     pub fn any(&self) -> bool {
         self.any
     }
 
-    /// The pools of more than one point: (index, way to the pool's middle).
+    /// Returns the pools of more than one point, each member as (index, step to the weighted mean of the members'
+    /// positions).
     pub fn pools(&self) -> impl Iterator<Item = &[(usize, f64)]> {
         self.ranges.iter().map(|range| &self.members[range.clone()])
     }
 
-    /// The point whose place each point takes; itself where it is in no pool.
+    /// Returns for each point the index of the point whose position it takes; its own index if it is in no pool.
     pub fn leaders(&self) -> &[usize] {
         &self.leaders
     }
@@ -136,7 +139,7 @@ mod tests {
 
     #[test]
     fn violators_meet_at_their_weighted_mean() {
-        // Places 0, 1, 2; wants 0, 1.9, 1.1 with stiffness 1, 3, 1: the last two meet at 1.7.
+        // Positions 0, 1, 2; desired 0, 1.9, 1.1 with stiffness 1, 3, 1: the last two meet at 1.7.
         let mut ordered = Ordered::new(3);
         let mut tau = [0.0, 0.9, -0.9];
         ordered.pool(&[1.0, 1.0, 4.0], &mut tau, &[1.0, 3.0, 1.0]);
@@ -145,7 +148,7 @@ mod tests {
         assert!(ordered.is_alone(0) && !ordered.is_alone(1) && !ordered.is_alone(2));
         let pools: Vec<_> = ordered.pools().collect();
         assert_eq!(pools.len(), 1);
-        // The middle of the members' places by stiffness: 1.25.
+        // The mean of the members' positions, weighted by stiffness, is 1.25.
         assert_eq!(pools[0], [(1, 0.25), (2, -0.75)]);
     }
 

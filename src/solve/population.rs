@@ -1,4 +1,4 @@
-//! What a population search is made of: a problem, individuals, their order, and generations of them.
+//! The parts of a population search: a problem, individuals, their order, and generations of them.
 //!
 //! The problem is: minimise f(x) over the box `lower_j <= x_j <= upper_j`, subject to constraints that the problem has
 //! gathered into one number, the violation v(x) >= 0, zero where all hold. Two points are compared by the feasibility
@@ -23,55 +23,56 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::cmp::Ordering;
 
-/// What a population search needs to know of a problem.
+/// An optimisation problem for population searches.
 pub trait PopulationProblem: Sync {
-    /// The box: one pair (lower, upper) a gene, finite, lower < upper. It must not change during a search.
+    /// Returns the box: one pair (lower, upper) per gene, finite, lower < upper. It must not change during a search.
     fn bounds(&self) -> &[(f64, f64)];
 
-    /// The fitness at `x`, which has as many genes as the box and lies in it.
+    /// Computes the fitness at `x`, which has as many genes as the box and lies in it.
     ///
     /// A pure function, called from several threads at once; it should not allocate.
     fn evaluate(&self, x: &[f64]) -> Fitness;
 
-    /// A rough time for one evaluation in nanoseconds, from which is decided whether a generation is worth sharing
-    /// among threads. Zero, the default, means: never. It changes the time and no digit.
+    /// Returns a rough time for one evaluation in nanoseconds, which decides whether a generation is shared among
+    /// threads. Zero, the default, means never. It changes the time but no digit of a result.
     fn cost_hint_ns(&self) -> f64 {
         0.0
     }
 }
 
-/// How good a point is: by how much it breaks the constraints, and what it costs.
+/// The fitness of a point: its violation of the constraints and its cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fitness {
-    /// How far the point is from being feasible, >= 0; zero means feasible. The unit is the problem's.
+    /// The violation of the constraints, >= 0; zero means feasible. The unit is the problem's.
     #[serde(with = "exact_float")]
     pub violation: f64,
-    /// What is minimised. It is not looked at where the point is infeasible, and may be NaN there.
+    /// The cost, which is minimised. It is ignored if the point is infeasible, and may then be NaN.
     #[serde(with = "exact_float")]
     pub cost: f64,
 }
 
 impl Fitness {
-    /// A fitness that no point is worse than: what an individual has before it is evaluated.
+    /// The worst fitness, which an individual has before it is evaluated.
     pub const UNKNOWN: Self = Self { violation: f64::NAN, cost: f64::NAN };
 
-    /// The fitness of a feasible point.
+    /// Creates the fitness of a feasible point.
     pub const fn feasible(cost: f64) -> Self {
         Self { violation: 0.0, cost }
     }
 
-    /// Whether the point obeys all constraints. A NaN violation does not.
+    /// Returns whether the point obeys all constraints. A NaN violation does not.
     pub fn is_feasible(&self) -> bool {
         self.violation <= 0.0
     }
 
-    /// Whether a number that decides about this fitness is missing: the violation, or the cost of a feasible point.
+    /// Returns whether a number that decides about this fitness is missing: the violation, or the cost of a feasible
+    /// point.
     fn is_unknown(&self) -> bool {
         self.violation.is_nan() || (self.is_feasible() && self.cost.is_nan())
     }
 
-    /// Deb's order, `Less` being better: feasible before infeasible, by cost among the feasible, by violation among
-    /// the infeasible. A fitness whose deciding number is NaN comes after all others. A total order.
+    /// Compares by Deb's order, `Less` being better: feasible before infeasible, by cost among the feasible, by
+    /// violation among the infeasible. A fitness whose deciding number is NaN comes after all others. A total order.
     ///
     /// ```
     /// # use linkwright::solve::population::Fitness;
@@ -95,7 +96,8 @@ impl Fitness {
         }
     }
 
-    /// Whether `self` is better than `reference` by more than the share `relative` of the reference's deciding number.
+    /// Returns whether `self` is better than `reference` by more than the share `relative` of the reference's
+    /// deciding number.
     ///
     /// Becoming feasible, or known, or finite, always counts.
     pub fn improves_on(&self, reference: &Self, relative: f64) -> bool {
@@ -124,13 +126,13 @@ pub struct Individual {
 }
 
 impl Individual {
-    /// An individual of `genes` zeros, not evaluated: room to write into.
+    /// Creates an individual of `genes` zeros, not evaluated, to write into.
     pub fn blank(genes: usize) -> Self {
         Self { x: vec![0.0; genes], fitness: Fitness::UNKNOWN }
     }
 }
 
-/// A mistake of the caller: a box, a start, a limit or a parameter that makes no search.
+/// A mistake of the caller: an invalid box, start, limit or parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PopulationError {
@@ -140,7 +142,7 @@ pub enum PopulationError {
     /// A pair of the box is not an interval, or is out of range.
     #[error("gene {gene} has bounds [{lower}, {upper}]: need lower < upper, both within +-{WIDEST_BOUND:e}")]
     Bounds {
-        /// Which gene, from zero.
+        /// Index of the gene, from zero.
         gene: usize,
         /// Its lower bound.
         lower: f64,
@@ -150,27 +152,27 @@ pub enum PopulationError {
     /// A starting point has the wrong number of genes.
     #[error("start {start} has {genes} genes, the box has {expected}")]
     StartLength {
-        /// Which start, from zero.
+        /// Index of the start, from zero.
         start: usize,
-        /// How many genes it has.
+        /// The number of its genes.
         genes: usize,
-        /// How many it should have.
+        /// The number of genes that it should have.
         expected: usize,
     },
     /// A starting point has a gene that is not finite.
     #[error("start {start} has {value} for gene {gene}: need a finite number")]
     StartNotFinite {
-        /// Which start, from zero.
+        /// Index of the start, from zero.
         start: usize,
-        /// Which gene, from zero.
+        /// Index of the gene, from zero.
         gene: usize,
         /// Its value.
         value: f64,
     },
-    /// The problem cannot be put in the variables that were asked for.
+    /// The problem cannot be expressed in the variables that were asked for.
     #[error("{why}")]
     Form {
-        /// What stands in the way.
+        /// The reason.
         why: String,
     },
     /// The limit allows no evaluation at all.
@@ -189,7 +191,7 @@ pub enum PopulationError {
 }
 
 impl PopulationError {
-    /// `Ok` if `holds`, else the error for the parameter `name`.
+    /// Returns `Ok` if `holds`, else the error for the parameter `name`.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] if `holds` is false.
@@ -203,10 +205,10 @@ impl PopulationError {
     }
 }
 
-/// Bounds beyond this are refused: sums of a few differences of genes must not overflow.
+/// The largest magnitude of a bound that is accepted: sums of a few differences of genes must not overflow.
 pub const WIDEST_BOUND: f64 = 1e300;
 
-/// Looks for mistakes in a box and in the points that a search shall start from.
+/// Checks a box and the points that a search shall start from.
 ///
 /// # Errors
 /// [`PopulationError::EmptyBox`], [`Bounds`](PopulationError::Bounds),
@@ -236,10 +238,10 @@ pub fn check_box(bounds: &[(f64, f64)], starts: &[Vec<f64>]) -> Result<(), Popul
 /// A population algorithm, one generation at a time.
 ///
 /// Everything between [`initialise`](Self::initialise) and the next one is determined by the problem, the starts and
-/// the stream. An algorithm never evaluates more often than it is allowed to, and says how often it did; a generation
-/// that the allowance cuts short evaluates its first members. The best individual never gets worse.
+/// the stream. An algorithm never evaluates more often than it is allowed to, and returns the number of evaluations;
+/// a generation that the allowance cuts short evaluates its first members. The best individual never gets worse.
 pub trait Generations {
-    /// A short name for people: "differential evolution".
+    /// Returns a short name for people: "differential evolution".
     fn name(&self) -> &'static str;
 
     /// Forgets everything and draws the first population: the `starts`, moved into the box, as far as they fit into
@@ -261,49 +263,49 @@ pub trait Generations {
     /// If `allowance` is zero, or if [`initialise`](Self::initialise) has not made a whole population.
     fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64;
 
-    /// The present population, in no particular order; empty before [`initialise`](Self::initialise).
+    /// Returns the present population, in no particular order; empty before [`initialise`](Self::initialise).
     fn population(&self) -> &[Individual];
 
-    /// Whether more generations promise nothing: the best has stalled or the population has collapsed.
+    /// Returns whether the search has converged: the best has stalled or the population has collapsed.
     fn converged(&self) -> bool;
 
-    /// All that the next generations depend on, after a whole generation.
+    /// Returns the state that the next generations depend on, after a whole generation.
     fn state(&self) -> GenerationsState;
 
-    /// Takes the place of [`initialise`](Self::initialise): goes on from a state of the same algorithm with the same
-    /// parameters on a problem with the same box. `false`, and nothing changed, where it is no such state.
+    /// Continues from a state of the same algorithm with the same parameters on a problem with the same box, in place
+    /// of [`initialise`](Self::initialise). Returns `false` and changes nothing if it is no such state.
     fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool;
 }
 
-/// Where an algorithm stands between two generations: what [`Generations::restore`] goes on from.
+/// The state of an algorithm between two generations, from which [`Generations::restore`] continues.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum GenerationsState {
-    /// Of the genetic algorithm.
+    /// The state of the genetic algorithm.
     Genetic(GeneticState),
-    /// Of differential evolution.
+    /// The state of differential evolution.
     DifferentialEvolution(EvolutionState),
-    /// Of uniform sampling.
+    /// The state of uniform sampling.
     UniformSampling(SamplingState),
 }
 
-/// Whether these are `size` points of the box.
+/// Returns whether these are `size` points of the box.
 pub fn lie_in(individuals: &[Individual], size: usize, bounds: &[(f64, f64)]) -> bool {
     individuals.len() == size && individuals.iter().all(|individual| lies_in(&individual.x, bounds))
 }
 
-/// Whether this is a point of the box.
+/// Returns whether this is a point of the box.
 pub fn lies_in(x: &[f64], bounds: &[(f64, f64)]) -> bool {
     x.len() == bounds.len() && x.iter().zip(bounds).all(|(x, (lower, upper))| (lower..=upper).contains(&x))
 }
 
-/// A generation is shared among threads from this amount of work on; below, waking the other threads costs more than
-/// they save.
+/// The amount of work, in nanoseconds, above which a generation is shared among threads; below it, waking the other
+/// threads costs more than they save.
 const PARALLEL_FROM_NS: f64 = 300_000.0;
-/// A thread takes at least this much work at once, some ten times what handing it over costs.
+/// The least work, in nanoseconds, that a thread takes at once: some ten times the cost of handing it over.
 const PIECE_NS: f64 = 20_000.0;
 
-/// Evaluates every individual in place, on the calling thread or, where the problem's hint says that it pays, on the
+/// Evaluates every individual in place, on the calling thread or, if the problem's hint says that it pays, on the
 /// threads of the current rayon pool. The result is the same.
 pub fn evaluate_generation(problem: &dyn PopulationProblem, generation: &mut [Individual]) {
     let hint_ns = problem.cost_hint_ns();
@@ -316,7 +318,7 @@ pub fn evaluate_generation(problem: &dyn PopulationProblem, generation: &mut [In
     }
 }
 
-/// The best individual: the first in the order by (fitness, index). `None` of an empty slice.
+/// Returns the best individual, the first in the order by (fitness, index); `None` for an empty slice.
 pub fn best_of(individuals: &[Individual]) -> Option<&Individual> {
     // Of equal elements `min_by` returns the first.
     individuals.iter().min_by(|one, other| one.fitness.compare(&other.fitness))
@@ -328,7 +330,7 @@ pub fn sort_best_first(individuals: &mut [Individual]) {
     individuals.sort_by(|one, other| one.fitness.compare(&other.fitness));
 }
 
-/// How many of `wanted` evaluations an allowance admits.
+/// Returns the number of evaluations that an allowance admits, of `wanted`.
 ///
 /// # Panics
 /// If the allowance is zero.
@@ -337,7 +339,7 @@ pub fn admitted(wanted: usize, allowance: u64) -> usize {
     usize::try_from(allowance).map_or(wanted, |allowance| wanted.min(allowance))
 }
 
-/// Makes `population` hold `size` evaluated individuals, or as many as `allowance` admits: first the starts, moved
+/// Fills `population` with `size` evaluated individuals, or as many as `allowance` admits: first the starts, moved
 /// into the box, then points drawn uniformly from it. Returns the number of evaluations.
 ///
 /// # Panics
@@ -374,8 +376,8 @@ pub fn draw_uniform(stream: &mut Stream, bounds: &[(f64, f64)], x: &mut [f64]) {
     }
 }
 
-/// The largest extent of a population along any gene, as a share of the box's width there: 0 when all individuals are
-/// one point, 1 when they span the box.
+/// Computes the largest extent of a population along any gene, as a share of the box's width there: 0 when all
+/// individuals are one point, 1 when they span the box.
 pub fn spread(population: &[Individual], bounds: &[(f64, f64)]) -> f64 {
     let mut widest = 0.0_f64;
     for (gene, &(lower, upper)) in bounds.iter().enumerate() {
@@ -390,10 +392,10 @@ pub fn spread(population: &[Individual], bounds: &[(f64, f64)]) -> f64 {
 }
 
 /// The least share by which the best must improve to count as progress: an answer that changes in the seventh digit
-/// only is one for a local solver, which gains digits far more cheaply.
+/// only is left to a local solver, which gains digits far more cheaply.
 pub const STALL_IMPROVEMENT: f64 = 1e-6;
 
-/// Counts the generations since the best last made progress.
+/// Stall detection: a counter of the generations since the best last made progress.
 ///
 /// Progress is measured from the fitness at the last progress, so many small steps add up.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -403,12 +405,12 @@ pub struct StallWatch {
 }
 
 impl StallWatch {
-    /// A watch that begins at the fitness `best`.
+    /// Creates a watch that begins at the fitness `best`.
     pub const fn new(best: Fitness) -> Self {
         Self { reference: best, idle_generations: 0 }
     }
 
-    /// Takes note of the best fitness after one more generation.
+    /// Records the best fitness after one more generation.
     pub fn note(&mut self, best: Fitness) {
         if best.improves_on(&self.reference, STALL_IMPROVEMENT) {
             *self = Self::new(best);
@@ -417,7 +419,7 @@ impl StallWatch {
         }
     }
 
-    /// The number of generations in which the best gained less than [`STALL_IMPROVEMENT`] altogether.
+    /// Returns the number of generations in which the best gained less than [`STALL_IMPROVEMENT`] altogether.
     pub const fn idle_generations(&self) -> u64 {
         self.idle_generations
     }

@@ -1,4 +1,4 @@
-//! What holds of every population search, whichever the algorithm.
+//! Tests of the properties that every population search has, whichever the algorithm.
 
 use super::argmin_bridge::{Limits, PopulationOutcome, PopulationProgress, StopReason, run, run_restarts};
 use super::differential_evolution::{DifferentialEvolution, DifferentialEvolutionParameters};

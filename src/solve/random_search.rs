@@ -1,7 +1,8 @@
 //! Uniform random sampling of the box: the baseline that every other search has to beat.
 //!
-//! Each point is drawn independently and uniformly; nothing is learnt. It remembers the best points it met, so that it
-//! answers in the same form as the population algorithms and can be compared with them evaluation by evaluation.
+//! Each point is drawn independently and uniformly; nothing is learnt. The best points are remembered, so that the
+//! result has the same form as that of the population algorithms and can be compared with it evaluation by
+//! evaluation.
 
 use super::population::{
     Generations, GenerationsState, Individual, PopulationError, PopulationProblem, admitted, draw_uniform,
@@ -28,7 +29,7 @@ impl Default for UniformSamplingParameters {
 }
 
 impl UniformSamplingParameters {
-    /// Looks for a parameter outside its domain.
+    /// Checks that every parameter is in its domain.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] if the population is empty.
@@ -38,17 +39,17 @@ impl UniformSamplingParameters {
     }
 }
 
-/// Uniform random sampling: see the module.
+/// Uniform random sampling of the box, as the module describes.
 #[derive(Clone, Debug)]
 pub struct UniformSampling {
     parameters: UniformSamplingParameters,
     stream: Stream,
-    /// The best points so far, best first; of equals the earlier drawn.
+    /// The best points so far, best first; of equal points the one drawn earlier comes first.
     best: Vec<Individual>,
     drawn: Vec<Individual>,
 }
 
-/// Where [`UniformSampling`] stands between two generations.
+/// The state of [`UniformSampling`] between two generations, for a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SamplingState {
     stream: Stream,
@@ -56,7 +57,7 @@ pub struct SamplingState {
 }
 
 impl UniformSampling {
-    /// A sampler that has not drawn anything yet.
+    /// Creates a sampler that has not drawn anything yet.
     ///
     /// # Errors
     /// [`PopulationError::Parameter`] if a parameter is outside its domain.
@@ -96,7 +97,7 @@ impl Generations for UniformSampling {
         }
         evaluate_generation(problem, drawn);
         for newcomer in drawn.iter_mut() {
-            // A newcomer that beats the worst remembered one takes its room and moves up behind its equals.
+            // A newcomer that beats the worst remembered one takes its place and moves up behind its equals.
             let order = newcomer.fitness;
             if order.compare(&self.best[kept - 1].fitness).is_lt() {
                 std::mem::swap(newcomer, &mut self.best[kept - 1]);
@@ -111,7 +112,7 @@ impl Generations for UniformSampling {
         &self.best
     }
 
-    /// Never: a sampler that starts again is the same sampler.
+    /// Returns false: a restarted sampler is the same sampler.
     fn converged(&self) -> bool {
         false
     }
@@ -148,7 +149,7 @@ mod tests {
         let mut all = sampler.population().to_vec();
         for _ in 0..40 {
             sampler.advance(&problem, u64::MAX);
-            // The room of the newcomers also holds those pushed out: nothing else may be better than what is kept.
+            // The buffer of newcomers also holds the points pushed out: none of them may be better than those kept.
             all.extend(sampler.drawn.iter().cloned());
             all.extend(sampler.best.iter().cloned());
         }

@@ -1,4 +1,4 @@
-//! Random streams that a seed and a number determine, and the draws made from them.
+//! Streams of pseudo-random numbers, each determined by a seed and an index, and the draws made from them.
 //!
 //! Restart `i` of a search uses stream `i` of the search's seed, so a restart can be repeated alone and no thread can
 //! change what another one draws. The generator is xoshiro256++ (Blackman & Vigna 2021); its 256 bits of state are
@@ -20,22 +20,22 @@ use rand::{Rng, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::f64::consts::PI;
 
-/// The generator that every population search draws from.
+/// The pseudo-random generator that every population search draws from.
 pub type Stream = Xoshiro256PlusPlus;
 
 /// 2^64 divided by the golden ratio, made odd: the step of SplitMix64.
 const SEED_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
-/// 2^64 times (sqrt(2) - 1), made odd: a second step, so that seed and index cannot stand in for one another.
+/// 2^64 times (sqrt(2) - 1), made odd: a second step, so that seed and index cannot replace one another.
 const INDEX_STEP: u64 = 0x6A09_E667_F3BC_C909;
 
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014, with Stafford's variant 13): a bijection.
+/// Applies the finaliser of SplitMix64 (Steele, Lea & Flood 2014, with Stafford's variant 13): a bijection.
 const fn mix(word: u64) -> u64 {
     let word = (word ^ (word >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     word ^ (word >> 31)
 }
 
-/// The stream with number `index` of `seed`.
+/// Returns the stream with index `index` of `seed`.
 ///
 /// The same pair always gives the same stream; two indices of one seed give states that differ in every word.
 ///
@@ -55,18 +55,18 @@ pub fn stream(seed: u64, index: u64) -> Stream {
     Stream::from_seed(state)
 }
 
-/// A number uniform in [0, 1): a multiple of 2^-53.
+/// Draws a number uniform in [0, 1): a multiple of 2^-53.
 pub fn unit(stream: &mut Stream) -> f64 {
     (stream.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
 }
 
-/// A number uniform in [`lower`, `upper`], for finite `lower <= upper` with a finite difference.
+/// Draws a number uniform in [`lower`, `upper`], for finite `lower <= upper` with a finite difference.
 pub fn uniform(stream: &mut Stream, lower: f64, upper: f64) -> f64 {
     // The sum may round up past the upper end, by one unit in its last place.
     (lower + (upper - lower) * unit(stream)).min(upper)
 }
 
-/// A whole number uniform in 0..`count`.
+/// Draws a whole number uniform in 0..`count`.
 ///
 /// By the multiply-and-shift of Lemire (2019) without its rejection step: the bias is at most `count` / 2^64.
 ///
@@ -77,7 +77,7 @@ pub fn below(stream: &mut Stream, count: usize) -> usize {
     ((u128::from(stream.next_u64()) * count as u128) >> 64) as usize
 }
 
-/// A number from the normal distribution with the given mean and standard deviation (Box & Muller 1958).
+/// Draws a number from the normal distribution with the given mean and standard deviation (Box & Muller 1958).
 ///
 /// Of the pair that the transform yields, one is used: every call takes two words, whatever was drawn before.
 pub fn normal(stream: &mut Stream, mean: f64, deviation: f64) -> f64 {
@@ -85,7 +85,7 @@ pub fn normal(stream: &mut Stream, mean: f64, deviation: f64) -> f64 {
     mean + deviation * radius * (2.0 * PI * unit(stream)).cos()
 }
 
-/// A number from the Cauchy distribution with the given median and half width at half height, by inversion.
+/// Draws a number from the Cauchy distribution with the given median and half width at half height, by inversion.
 pub fn cauchy(stream: &mut Stream, location: f64, scale: f64) -> f64 {
     location + scale * (PI * (unit(stream) - 0.5)).tan()
 }

@@ -3,7 +3,8 @@
 use super::population::{Fitness, PopulationProblem};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// f = sum (x_j - 1/j)^2 in [-5, 5]^n: minimum 0 at x_j = 1/j, which is off the middle of the box.
+/// The sphere function f = sum (x_j - 1/j)^2 in [-5, 5]^n: minimum 0 at x_j = 1/j, which is off the middle of the
+/// box.
 pub struct Sphere {
     bounds: Vec<(f64, f64)>,
 }
@@ -46,13 +47,13 @@ impl PopulationProblem for Rosenbrock {
         Fitness::feasible(x.windows(2).map(step).sum())
     }
 
-    /// So much that every generation is shared among the threads of the pool.
+    /// Returns a cost so high that every generation is shared among the threads of the pool.
     fn cost_hint_ns(&self) -> f64 {
         1e6
     }
 }
 
-/// Minimise x + y in [-3, 3]^2 on the disc x^2 + y^2 <= 2 above the parabola y >= x^2 - 1.
+/// The minimisation of x + y in [-3, 3]^2 on the disc x^2 + y^2 <= 2 above the parabola y >= x^2 - 1.
 ///
 /// On the parabola x + y = x^2 + x - 1 is least at x = -1/2: the minimum is -5/4 at (-1/2, -3/4), inside the disc.
 pub struct Constrained;
@@ -65,12 +66,12 @@ impl PopulationProblem for Constrained {
     fn evaluate(&self, x: &[f64]) -> Fitness {
         let (x, y) = (x[0], x[1]);
         let violation = (x * x + y * y - 2.0).max(0.0) + (x * x - 1.0 - y).max(0.0);
-        // The cost is not defined where it must not be looked at.
+        // The cost is undefined at infeasible points, where it must not be used.
         Fitness { violation, cost: if violation > 0.0 { f64::NAN } else { x + y } }
     }
 }
 
-/// Another problem, with its evaluations counted and every point checked against the box.
+/// A wrapper that counts the evaluations of a problem and checks every point against the box.
 pub struct Counted<P> {
     problem: P,
     evaluations: AtomicU64,

@@ -1,9 +1,10 @@
-//! The problems of the literature, as they are in `problems/literature`, inside the program: the suite runs anywhere.
+//! The problems of the literature, as they are in `problems/literature`, built into the program: the suite runs
+//! anywhere.
 
 use crate::diagnostic::Diagnostic;
 use crate::problem_file::{self, ProblemFile};
 
-/// A file of `problems/literature` with its name there.
+/// Includes a file of `problems/literature` with its name there.
 macro_rules! file {
     ($name:literal) => {
         ($name, include_str!(concat!("../../problems/literature/", $name)))
@@ -30,7 +31,7 @@ pub const PROBLEMS: [(&str, &str); 16] = [
     file!("v6.toml"),
 ];
 
-/// The points files that they name.
+/// The points files that the problem files refer to, by name.
 pub const POINTS: [(&str, &str); 6] = [
     file!("shapes/L.csv"),
     file!("shapes/S.csv"),
@@ -40,10 +41,10 @@ pub const POINTS: [(&str, &str); 6] = [
     file!("shapes/square.csv"),
 ];
 
-/// Every problem with the name of its file.
+/// Returns every problem with the name of its file.
 ///
 /// # Errors
-/// The [`Diagnostic`] of a file that is no problem file: a fault of this program.
+/// The [`Diagnostic`] of a file that is not a valid problem file: a fault of this program.
 pub fn problems() -> Result<Vec<(&'static str, ProblemFile)>, Box<Diagnostic>> {
     let read = |(name, text)| Ok((name, problem_file::parse_beside(name, text, &POINTS)?));
     PROBLEMS.into_iter().map(read).collect()

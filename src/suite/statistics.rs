@@ -1,15 +1,15 @@
-//! Figures of many runs: medians, hits, the best.
+//! Statistics of many runs: medians, hits, the best run.
 //!
-//! Sums of squares are compared with [`WITHIN`] of slack, and below the problem's exactness floor every sum
-//! counts as zero: there, rounding is all that is left.
+//! Sums of squares are compared with a tolerance of [`WITHIN`], and below the problem's exactness floor every sum
+//! counts as zero: there, only rounding is left.
 
 use super::Run;
 use serde::Serialize;
 
-/// A sum of squares reaches another within this part of it: published optima carry seven digits and more.
+/// The relative tolerance within which a sum of squares reaches another: published optima have seven digits and more.
 pub const WITHIN: f64 = 1e-6;
 
-/// What the runs of a problem are measured against.
+/// The sums of squares with which the runs of a problem are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bar {
     /// The sum of squares that counts as a hit.
@@ -21,56 +21,56 @@ pub struct Bar {
 }
 
 impl Bar {
-    /// sum_sq <= goal (1 + [`WITHIN`]) + exact.
+    /// Returns whether sum_sq <= goal (1 + [`WITHIN`]) + exact.
     pub fn is_reached_by(&self, sum_sq: f64) -> bool {
         sum_sq <= self.goal * (1.0 + WITHIN) + self.exact
     }
 
-    /// The same for the best known sum.
+    /// Returns whether sum_sq <= best known (1 + [`WITHIN`]) + exact.
     pub fn best_known_is_reached_by(&self, sum_sq: f64) -> bool {
         sum_sq <= self.best_known * (1.0 + WITHIN) + self.exact
     }
 
-    /// sum_sq < best known (1 - [`WITHIN`]) - exact: smaller than anything known, and not by rounding.
+    /// Returns whether sum_sq < best known (1 - [`WITHIN`]) - exact: smaller than anything known, and not by rounding.
     pub fn is_beaten_by(&self, sum_sq: f64) -> bool {
         sum_sq < self.best_known * (1.0 - WITHIN) - self.exact
     }
 }
 
-/// The figures of the runs of one method on one problem. Sums are of accepted candidates only.
+/// The summary of the runs of one method on one problem. Sums are of accepted candidates only.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
-    /// Runs whose first candidate is accepted.
+    /// The number of runs whose first candidate is accepted.
     pub accepted: usize,
-    /// The accepted run with the least sum of squares, the first of equals.
+    /// The accepted run with the least sum of squares, the first of equal ones.
     pub best: Option<Best>,
     /// The median sum of squares of the accepted runs.
     pub median_sum_sq: Option<f64>,
-    /// Accepted runs that reach the goal.
+    /// The number of accepted runs that reach the goal.
     pub hits: usize,
-    /// Accepted runs that reach the best known sum.
+    /// The number of accepted runs that reach the best known sum.
     pub hits_of_best_known: usize,
-    /// The median time of a search, seconds, over all runs.
+    /// The median time of a search over all runs, in seconds.
     pub median_search_s: Option<f64>,
-    /// The longest time of a search, seconds.
+    /// The longest time of a search, in seconds.
     pub worst_search_s: Option<f64>,
-    /// The median of the evaluations of the objective, over all runs.
+    /// The median number of evaluations of the objective, over all runs.
     pub median_evaluations: Option<u64>,
 }
 
-/// The best of several runs.
+/// The run with the best accepted answer of several runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Best {
-    /// Its seed.
+    /// The seed.
     pub seed: u64,
-    /// Its sum of squares at the crank angles.
+    /// The sum of squares at the crank angles.
     pub sum_sq: f64,
-    /// The sum of squared distances of the points to its whole curve.
+    /// The sum of squared distances of the points to the whole curve.
     pub to_curve_sum_sq: Option<f64>,
 }
 
 impl Summary {
-    /// The figures of these runs.
+    /// Returns the summary of these runs.
     pub fn of(runs: &[Run], bar: &Bar) -> Self {
         let accepted = || runs.iter().filter(|run| run.accepted);
         let sums: Vec<f64> = accepted().filter_map(|run| run.sum_sq).collect();
@@ -94,7 +94,7 @@ impl Summary {
     }
 }
 
-/// The middle value; of an even number of values the mean of the two in the middle. `None` without values.
+/// Returns the median: the middle value, or the mean of the two middle values of an even number. `None` without values.
 ///
 /// ```
 /// use linkwright::suite::statistics::median;
@@ -109,7 +109,7 @@ pub fn median(values: &[f64]) -> Option<f64> {
     Some(0.5 * low + 0.5 * high)
 }
 
-/// As [`median`] of whole numbers, rounded down.
+/// Returns the median of whole numbers, as [`median`] does, rounded down.
 pub fn median_whole(values: &[u64]) -> Option<u64> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable();
@@ -117,7 +117,7 @@ pub fn median_whole(values: &[u64]) -> Option<u64> {
     Some(low + (high - low) / 2)
 }
 
-/// The two in the middle of a sorted list; the same twice where their number is odd.
+/// Returns the two middle values of a sorted list; the same value twice if their number is odd.
 fn middle<T: Copy>(sorted: &[T]) -> Option<(T, T)> {
     let n = sorted.len();
     Some((*sorted.get(n.checked_sub(1)? / 2)?, *sorted.get(n / 2)?))

@@ -1,22 +1,22 @@
-//! A curve by its arc length: s(t) = integral of |r'|, and the points at given s.
+//! A curve measured by its arc length: s(t) = integral of |r'|, and the points at given s.
 
 use super::shape::Outline;
 use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Point};
 
-/// Ends nearer than this part of the size are one point: drawings are written with six digits.
+/// The relative distance below which two ends are one point: drawings are written with six digits.
 const SAME_END: f64 = 1e-5;
-/// The length of all segments is known to this part of the size.
+/// The accuracy of the length of all segments, relative to the size.
 const ACCURACY: f64 = 1e-9;
-/// No segment is measured more finely: parameters have to stay apart from their neighbours in f64.
+/// The finest accuracy of a segment's length: parameters have to stay apart from their neighbours in f64.
 const FINEST: f64 = 1e-12;
 
-/// Segments with their lengths.
+/// The segments of a curve with their lengths.
 pub(super) struct Measured {
-    /// In the target's own coordinates.
+    /// The segments in the target's own coordinates.
     segments: Vec<PathSeg>,
-    /// The same moved and scaled into the unit square, where no square overflows or vanishes.
+    /// The segments moved and scaled into the unit square, in which no square overflows or vanishes.
     unit: Vec<PathSeg>,
-    /// Where each segment starts on the unit curve; one more than segments.
+    /// The arc length at which each segment of the unit curve starts, and the total; one more than segments.
     starts: Vec<f64>,
     accuracy: f64,
     size: f64,
@@ -24,7 +24,7 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// `None` where the curve has no extent.
+    /// Measures a curve; `None` if it has no extent.
     pub fn new(outline: &Outline, closed: Option<bool>) -> Option<Measured> {
         let mut segments = outline.segments.clone();
         let corners = segments.iter().map(hull).reduce(|a, b| a.union(b))?;
@@ -64,20 +64,21 @@ impl Measured {
         self.unit_length() * self.size
     }
 
-    /// `count` points evenly by arc length: of a closed curve from its start, without its start again at the end.
+    /// Returns `count` points evenly by arc length: of a closed curve from its start, without its start again at the
+    /// end.
     pub fn samples(&self, count: usize) -> Vec<[f64; 2]> {
         let intervals = if self.closed { count } else { count.saturating_sub(1) };
         let step = self.unit_length() / intervals.max(1) as f64;
         (0..count).map(|i| self.at(step * i as f64)).map(|p| [p.x, p.y]).collect()
     }
 
-    /// The point at arc length s of the unit curve.
+    /// Returns the point at arc length s of the unit curve.
     fn at(&self, s: f64) -> Point {
         let after = self.starts.partition_point(|start| *start <= s);
         let index = after.saturating_sub(1).min(self.segments.len() - 1);
         let (start, end) = (self.starts[index], self.starts[index + 1]);
         let t = match &self.unit[index] {
-            // Strokes without length are drawn too, and nothing divides by them.
+            // Segments without length are allowed, and must not lead to a division by zero.
             _ if end <= start => 0.0,
             PathSeg::Line(_) => ((s - start) / (end - start)).clamp(0.0, 1.0),
             segment => segment.inv_arclen(s - start, self.accuracy),
@@ -86,7 +87,7 @@ impl Measured {
     }
 }
 
-/// The box of a segment's control points.
+/// Returns the bounding box of a segment's control points.
 pub(super) fn hull(segment: &PathSeg) -> kurbo::Rect {
     let controls: &[Point] = match segment {
         PathSeg::Line(line) => &[line.p0, line.p1],

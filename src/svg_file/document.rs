@@ -1,4 +1,4 @@
-//! Which shape of a drawing is meant, and the transforms above it: groups, nested svg, symbols, uses.
+//! The choice of a drawing's shape, and the transforms above it: groups, nested svg, symbols, uses.
 
 use super::shape::{Outline, Scope};
 use super::viewport::{self, Page};
@@ -12,10 +12,10 @@ use svgtypes::{AspectRatio, Length, Transform, ViewBox};
 
 const SVG: &str = "http://www.w3.org/2000/svg";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
-/// A list of shapes in a message names so many.
+/// The largest number of shapes that a message lists.
 const NAMED: usize = 8;
 
-/// A shape where the drawing shows it.
+/// A shape with its place in the drawing.
 #[derive(Clone)]
 struct Placed<'a, 'input> {
     node: Node<'a, 'input>,
@@ -25,11 +25,11 @@ struct Placed<'a, 'input> {
 
 /// The shape that was chosen.
 pub(super) struct Chosen {
-    /// In its own coordinates.
+    /// The shape's curve in its own coordinates.
     pub outline: Outline,
-    /// To the page's coordinates, y down.
+    /// The transform to the page's coordinates, y down.
     pub transform: Affine,
-    /// Where its element stands.
+    /// The place of its element in the text.
     pub place: Range<usize>,
 }
 
@@ -46,17 +46,17 @@ pub(super) struct Document<'a, 'input> {
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
-/// What a group, a symbol or a drawing inside another is to its contents.
+/// Returns whether an element is a container: a group, a symbol or a drawing inside another.
 fn is_container(name: &str) -> bool {
     matches!(name, "g" | "a" | "switch" | "svg" | "symbol")
 }
 
-/// The shapes that are taken before others.
+/// Returns whether an element is a shape that is preferred to others.
 fn is_curve(name: &str) -> bool {
     matches!(name, "path" | "polyline" | "polygon" | "circle" | "ellipse")
 }
 
-/// The shapes that are often frames and axes.
+/// Returns whether an element is a shape that is often a frame or an axis.
 fn is_plain(name: &str) -> bool {
     matches!(name, "line" | "rect")
 }
@@ -93,7 +93,7 @@ impl<'a, 'input> Document<'a, 'input> {
         Ok(document)
     }
 
-    /// Whether lengths are physical.
+    /// Returns whether lengths are physical.
     pub fn physical(&self) -> bool {
         self.page.physical
     }
@@ -102,7 +102,7 @@ impl<'a, 'input> Document<'a, 'input> {
         self.warnings
     }
 
-    /// The shape with an id, or the first.
+    /// Returns the shape with an id, or the first.
     pub fn target(&mut self, id: Option<&str>) -> Answer<Chosen> {
         let mut shapes = Vec::new();
         match id {
@@ -126,7 +126,7 @@ impl<'a, 'input> Document<'a, 'input> {
                 if (curves && is_curve(name)) || (others && is_plain(name)) {
                     let scope =
                         Scope { file: self.file, text: self.text, node: placed.node, extent: placed.extent };
-                    // The first is read as a whole; of the others only where they stand is told.
+                    // The first shape is read as a whole; of the others only the place is reported.
                     if !drawn.is_empty() {
                         drawn.push((placed, None));
                     } else if let Some(outline) = scope.outline()? {
@@ -153,7 +153,7 @@ impl<'a, 'input> Document<'a, 'input> {
         Ok(chosen)
     }
 
-    /// Collects the shapes of an element and of what it holds.
+    /// Collects the shapes of an element and of its contents.
     fn visit(
         &mut self,
         node: Node<'a, 'input>,
@@ -181,7 +181,7 @@ impl<'a, 'input> Document<'a, 'input> {
         } else if name == "use" {
             self.visit_use(&node, transform, extent, depth, shapes)?;
         } else if is_container(name) && (name != "symbol" || depth == 0) {
-            // A symbol shows by a use only, or where it was named itself.
+            // A symbol is shown only by a use, or if it was named itself.
             let (transform, extent) = match name {
                 "svg" | "symbol" => self.inner(&node, transform, extent, (None, None))?,
                 _ => (transform, extent),
@@ -193,7 +193,7 @@ impl<'a, 'input> Document<'a, 'input> {
         Ok(())
     }
 
-    /// What a use shows, moved to its x and y.
+    /// Collects the shapes that a use shows, moved to its x and y.
     fn visit_use(
         &mut self,
         node: &Node<'a, 'input>,
@@ -226,7 +226,7 @@ impl<'a, 'input> Document<'a, 'input> {
         self.visit(shown, transform, extent, depth + 1, shapes)
     }
 
-    /// The coordinates inside a nested svg or a symbol; `size` takes the place of its own width and height.
+    /// Returns the coordinates inside a nested svg or a symbol; `size` replaces its own width and height.
     fn inner(
         &self,
         node: &Node<'a, 'input>,
@@ -255,7 +255,7 @@ impl<'a, 'input> Document<'a, 'input> {
         Ok((transform * placed, Some(Vec2::new(view.w, view.h))))
     }
 
-    /// The transform of everything above an element.
+    /// Returns the transform of everything above an element.
     fn above(&self, node: &Node<'a, 'input>) -> Answer<(Affine, Option<Vec2>)> {
         let mut line: Vec<Node<'a, 'input>> = node.ancestors().skip(1).filter(Node::is_element).collect();
         line.reverse();
@@ -376,7 +376,7 @@ impl<'a, 'input> Document<'a, 'input> {
         })
     }
 
-    /// Every shape of the file, shown or not.
+    /// Returns a list of every shape of the file, shown or not.
     fn all_shapes(&self) -> String {
         let nodes: Vec<Node<'_, '_>> = self.root.descendants().filter(is_shape).collect();
         self.list(&nodes)
@@ -390,7 +390,7 @@ impl<'a, 'input> Document<'a, 'input> {
         names.join(", ")
     }
 
-    /// `path "leg"`, or `path of line 12`.
+    /// Returns a description of a shape: `path "leg"`, or `path of line 12`.
     fn describe(&self, node: &Node<'_, '_>) -> String {
         let name = node.tag_name().name();
         match node.attribute("id") {
@@ -402,7 +402,7 @@ impl<'a, 'input> Document<'a, 'input> {
         }
     }
 
-    /// The place of an element's name.
+    /// Returns the place of an element's name.
     fn tag(&self, node: &Node<'_, '_>) -> Range<usize> {
         let range = node.range();
         let own = self.text.get(range.clone()).unwrap_or("");
@@ -423,12 +423,12 @@ fn is_shape(node: &Node<'_, '_>) -> bool {
     node.is_element() && (is_curve(name_of(node)) || is_plain(name_of(node)))
 }
 
-/// What may be named by `svg_id`.
+/// Returns whether an element may be named by `svg_id`.
 fn is_shown(node: &Node<'_, '_>) -> bool {
     is_shape(node) || is_container(name_of(node)) || name_of(node) == "use"
 }
 
-/// Whether display = none, as an attribute or a style.
+/// Returns whether an element has display = none, as an attribute or a style.
 fn is_hidden(node: &Node<'_, '_>) -> bool {
     let styled = node.attribute("style").is_some_and(|style| {
         style

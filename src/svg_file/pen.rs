@@ -1,17 +1,17 @@
-//! Path data: what each command draws from where the pen is (SVG 1.1, 8.3).
+//! Path data: each command draws from the current point of the pen (SVG 1.1, 8.3).
 
 use super::shape::Outline;
 use kurbo::{CubicBez, Line, PathSeg, Point, QuadBez, Vec2};
 use svgtypes::PathSegment;
 
-/// A pen that draws.
+/// A pen, which draws the segments of path data.
 #[derive(Default)]
 pub(super) struct Pen {
-    /// What was drawn so far; some strokes may be empty.
+    /// The strokes drawn so far; some may be empty.
     pub strokes: Vec<Outline>,
     start: Point,
     at: Point,
-    /// The last control point of a cubic, of a quadratic.
+    /// The last control point of a cubic and of a quadratic curve.
     cubic: Option<Point>,
     quadratic: Option<Point>,
     /// Whether the next command begins a stroke.
@@ -46,7 +46,7 @@ impl Pen {
     }
 
     fn quad(&mut self, p1: Point, to: Point) {
-        // As a cubic, exactly: one formula for arc lengths.
+        // Raised to a cubic, which is exact: one formula for arc lengths.
         self.push(PathSeg::Cubic(QuadBez::new(self.at, p1, to).raise()), to);
         self.quadratic = Some(p1);
     }

@@ -1,4 +1,4 @@
-//! The curve that an element draws, in its own coordinates: lines, quadratic and cubic curves.
+//! The curve that an element draws, in its own coordinates: line segments, quadratic and cubic curves.
 //!
 //! Arcs become cubics whose distance from the ellipse is below 1e-11 of its radius.
 
@@ -12,9 +12,9 @@ use roxmltree::Node;
 use std::f64::consts::TAU;
 use svgtypes::{Length, LengthUnit, NumberListParser, PathParser};
 
-/// How far a cubic may lie from its ellipse, in radii.
+/// The largest distance of a cubic from its ellipse, in radii.
 const ARC_TOLERANCE: f64 = 1e-11;
-/// How points are written.
+/// The help text for lists of points.
 const PAIRS: &str = "write pairs of numbers: 0,0 10,5 20,0";
 
 /// One stroke of a pen.
@@ -30,17 +30,17 @@ impl Outline {
         Outline { segments: self.segments.iter().map(|s| by * *s).collect(), closed: self.closed }
     }
 
-    /// The largest coordinate of its control points; not finite where one of them is not.
+    /// Returns the largest coordinate of its control points; not finite if one of them is not.
     pub fn reach(&self) -> f64 {
         let of = |p: &Point| if p.is_finite() { p.x.abs().max(p.y.abs()) } else { f64::INFINITY };
         self.segments.iter().map(hull).fold(0.0, |reach, b| {
             let corners = [Point::new(b.x0, b.y0), Point::new(b.x1, b.y1)];
-            // A box of NaN hides behind min and max: the ends do not.
+            // A box of NaN is hidden by min and max: the ends are not.
             corners.iter().map(of).fold(reach, f64::max)
         })
     }
 
-    /// Whether every control point is finite.
+    /// Returns whether every control point is finite.
     fn is_finite(&self) -> bool {
         self.segments.iter().all(|segment| {
             let cubic = segment.to_cubic();
@@ -61,8 +61,8 @@ impl Outline {
         });
     }
 
-    /// An elliptical arc of a path (SVG 1.1, F.6): scaled so that its chord is 1, because kurbo's tests for straight
-    /// arcs are absolute.
+    /// Adds an elliptical arc of a path (SVG 1.1, F.6): scaled so that its chord is 1, because kurbo's tests for
+    /// straight arcs are absolute.
     pub fn arc_to(
         &mut self,
         from: Point,
@@ -80,7 +80,7 @@ impl Outline {
         if rx == 0.0 || ry == 0.0 {
             return self.line_to(from, to);
         }
-        // Radii that are too small to reach are scaled up by the standard; their ratio is what counts.
+        // The standard scales up radii that are too small to reach; only their ratio matters then.
         let largest = rx.max(ry);
         let scale = if largest < 0.5 * chord { 0.5 / largest } else { 1.0 / chord };
         let unit = SvgArc {
@@ -97,7 +97,7 @@ impl Outline {
         let back = Affine::translate(from.to_vec2()) * Affine::scale(chord);
         let first = self.segments.len();
         self.segments.extend(one.segments.iter().map(|s| back * *s));
-        // The ends are those that were written.
+        // The ends are exactly as they were written.
         if let Some(PathSeg::Cubic(cubic)) = self.segments.get_mut(first) {
             cubic.p0 = from;
         }
@@ -113,19 +113,19 @@ fn ellipse_point(radii: Vec2, rotation: f64, angle: f64) -> Vec2 {
     Vec2::new(u * cos - v * sin, u * sin + v * cos)
 }
 
-/// An element with what its attributes are read against.
+/// An element with the context in which its attributes are read.
 pub(super) struct Scope<'a, 'input> {
     pub file: &'a str,
     pub text: &'a str,
     pub node: Node<'a, 'input>,
-    /// Width and height that percentages are of.
+    /// The width and height to which percentages refer.
     pub extent: Option<Vec2>,
 }
 
 type Answer<T> = Result<T, Box<Diagnostic>>;
 
 impl Scope<'_, '_> {
-    /// The curve of a shape; `None` where it draws nothing.
+    /// Returns the curve of a shape; `None` if it draws nothing.
     pub fn outline(&self) -> Answer<Option<Outline>> {
         let outline = match self.node.tag_name().name() {
             "path" => self.path()?,
@@ -160,7 +160,7 @@ impl Scope<'_, '_> {
         }
     }
 
-    /// What cannot be read in an attribute, at the character where the reading stopped.
+    /// Returns a diagnostic about an unreadable attribute, at the character at which the reading stopped.
     pub fn at_error(&self, key: &str, what: &str, error: &svgtypes::Error, example: &str) -> Box<Diagnostic> {
         use svgtypes::Error::{InvalidChar, InvalidNumber, InvalidString, UnexpectedData};
         let help = format!("export the drawing again; this is how a {what} is written: {example}");
@@ -169,7 +169,7 @@ impl Scope<'_, '_> {
             UnexpectedData(at) | InvalidChar(_, at) | InvalidString(_, at) | InvalidNumber(at) => Some(*at),
             _ => None,
         };
-        // Where the text is as it stands in the file; positions count characters from 1.
+        // If the text is the same in the file as in the value; positions count characters from 1.
         if let (Some(position), Some((value, range))) = (position, value)
             && self.text.get(range.clone()) == Some(value)
             && let Some((start, c)) = value.char_indices().nth(position.saturating_sub(1))
@@ -182,7 +182,7 @@ impl Scope<'_, '_> {
         self.at(key, format!("this {what} cannot be read: {error}"), &help)
     }
 
-    /// A length in user units; `axis` says what a percentage is of: x, y or r.
+    /// Returns a length in user units; `axis` is the axis to which a percentage refers: x, y or r.
     pub fn length(&self, key: &str, axis: char) -> Answer<Option<f64>> {
         let Some(text) = self.node.attribute(key).filter(|text| text.trim() != "auto") else {
             return Ok(None);
@@ -211,7 +211,7 @@ impl Scope<'_, '_> {
         Ok(self.length(key, axis)?.unwrap_or(0.0))
     }
 
-    /// A length that must not be negative.
+    /// Returns a length that must not be negative.
     fn size(&self, key: &str, axis: char) -> Answer<Option<f64>> {
         match self.length(key, axis)? {
             Some(value) if value < 0.0 => {
@@ -245,7 +245,7 @@ impl Scope<'_, '_> {
         Ok(Some(outline))
     }
 
-    /// From the middle of the upper left corner's end, with y down clockwise (SVG 1.1, 9.2).
+    /// Returns the outline of a rectangle, from the end of its upper left corner, clockwise with y down (SVG 1.1, 9.2).
     fn rect(&self) -> Answer<Option<Outline>> {
         let (x, y) = (self.or_zero("x", 'x')?, self.or_zero("y", 'y')?);
         let (w, h) = (self.size("width", 'x')?.unwrap_or(0.0), self.size("height", 'y')?.unwrap_or(0.0));

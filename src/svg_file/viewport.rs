@@ -1,14 +1,14 @@
-//! Lengths with units, and where a viewBox is put: SVG 1.1, sections 7.7, 7.8 and 7.10.
+//! Lengths with units, and the placement of a viewBox: SVG 1.1, sections 7.7, 7.8 and 7.10.
 
 use kurbo::{Affine, Vec2};
 use svgtypes::{Align, AspectRatio, Length, LengthUnit, ViewBox};
 
-/// Millimetres in an inch.
+/// The number of millimetres in an inch.
 pub(super) const MM_PER_INCH: f64 = 25.4;
-/// A px is 1/96 of an inch (CSS 2.1, 4.3.2).
+/// The number of px in an inch (CSS 2.1, 4.3.2).
 pub(super) const PX_PER_INCH: f64 = 96.0;
 
-/// The length in px of a unit that has one.
+/// Returns the length in px of an absolute unit, `None` for other units.
 pub(super) fn px_of(unit: LengthUnit) -> Option<f64> {
     match unit {
         LengthUnit::None | LengthUnit::Px => Some(1.0),
@@ -21,13 +21,13 @@ pub(super) fn px_of(unit: LengthUnit) -> Option<f64> {
     }
 }
 
-/// Whether a length is one of the world outside, such as 20mm.
+/// Returns whether a length is physical, such as 20mm.
 pub(super) fn is_physical(length: Length) -> bool {
     use LengthUnit::{Cm, In, Mm, Pc, Pt};
     matches!(length.unit, Mm | Cm | In | Pt | Pc)
 }
 
-/// The map from a viewBox onto a viewport of width x height at the origin.
+/// Returns the map from a viewBox onto a viewport of width x height at the origin.
 pub(super) fn placed(view: ViewBox, width: f64, height: f64, aspect: AspectRatio) -> Affine {
     let (sx, sy) = (width / view.w, height / view.h);
     let (sx, sy) = match (aspect.align, aspect.slice) {
@@ -53,10 +53,10 @@ pub(super) fn placed(view: ViewBox, width: f64, height: f64, aspect: AspectRatio
         * Affine::translate(Vec2::new(-view.x, -view.y))
 }
 
-/// Where the drawing as a whole lies.
+/// The placement of the drawing as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Page {
-    /// User units to millimetres where lengths are physical, else to user units.
+    /// The map from user units to millimetres if lengths are physical, otherwise to user units.
     pub affine: Affine,
     /// Whether lengths are physical.
     pub physical: bool,
@@ -64,7 +64,7 @@ pub(super) struct Page {
     pub extent: Option<Vec2>,
 }
 
-/// The page of a root element with these attributes.
+/// Returns the page of a root element with these attributes.
 pub(super) fn page(
     width: Option<Length>,
     height: Option<Length>,
@@ -87,7 +87,7 @@ pub(super) fn page(
         (Some(view), None, Some(one)) if physical => {
             Affine::scale(to_mm) * placed(view, one * view.w / view.h, one, aspect)
         }
-        // Drawn askew on purpose: user units alone would not show that.
+        // The drawing is distorted on purpose: user units alone would not show that.
         (Some(view), Some(w), Some(h)) if aspect.align == Align::None => placed(view, w, h, aspect),
         (None, ..) if physical => Affine::scale(to_mm),
         _ => Affine::IDENTITY,

@@ -9,37 +9,37 @@ use rayon::prelude::*;
 /// The errors T_j - P_j at the positions of the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PathError {
-    /// Desired minus generated, one a point.
+    /// The error vectors, desired minus generated, one per point.
     pub structural: Vec<Complex>,
-    /// sum_j w_j |T_j - P_j|^2.
+    /// The weighted sum of squares, sum_j w_j |T_j - P_j|^2.
     pub objective: f64,
-    /// sum_j |T_j - P_j|^2.
+    /// The sum of squares, sum_j |T_j - P_j|^2.
     pub sum_sq: f64,
-    /// max_j |T_j - P_j|.
+    /// The largest error, max_j |T_j - P_j|.
     pub max: f64,
-    /// The first j at which the maximum stands.
+    /// The index of the first point with the largest error.
     pub max_at: usize,
 }
 
 /// Distances from the target points to the coupler curve of a circuit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveError {
-    /// One a point.
+    /// One distance per point.
     pub distances: Vec<f64>,
-    /// The sum of their squares.
+    /// The sum of the squared distances.
     pub sum_sq: f64,
-    /// The largest.
+    /// The largest distance.
     pub max: f64,
 }
 
-/// sqrt(sum_sq / n), the root of the mean square.
+/// Returns sqrt(sum_sq / n), the root of the mean square.
 pub fn rms(sum_sq: f64, n: usize) -> f64 {
     (sum_sq / n as f64).sqrt()
 }
 
 impl PathError {
-    /// max_j |T_j - P_j| / tol_j, a number without a unit: 1 where the tolerances are just met; without
-    /// tolerances the largest error, a length.
+    /// Returns max_j |T_j - P_j| / tol_j, without a unit: 1 if the tolerances are just met; without tolerances the
+    /// largest error, a length.
     pub fn deviation(&self, tolerances: Option<&[f64]>) -> f64 {
         let Some(tolerances) = tolerances else { return self.max };
         let parts = self.structural.iter().zip(tolerances).map(|(error, tolerance)| error.norm() / tolerance);
@@ -48,11 +48,11 @@ impl PathError {
 }
 
 impl PathTask {
-    /// The errors of a linkage at the given crank angles (radians) and assemblies, one a point; `None` where
-    /// the loop is open at a point.
+    /// Returns the errors of a linkage at the given crank angles (radians) and assemblies, one per point; `None` if the
+    /// loop is open at a point.
     ///
     /// # Panics
-    /// When there are fewer angles or assemblies than points.
+    /// If there are fewer angles or assemblies than points.
     pub fn errors(
         &self,
         linkage: &FourBar,
@@ -77,8 +77,8 @@ impl PathTask {
         Some(error)
     }
 
-    /// The distances from the points to the coupler curve of the circuit that holds the given position;
-    /// `None` where that circuit has no point.
+    /// Returns the distances from the points to the coupler curve of the circuit that holds the given position; `None`
+    /// if that circuit has no point.
     pub fn errors_to_curve(
         &self,
         linkage: &FourBar,
@@ -89,12 +89,13 @@ impl PathTask {
     }
 }
 
-/// Positions that the nearest point of a curve is worth: 720 samples are compared, and one or two minima refined.
+/// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima
+/// refined.
 const NEAREST: usize = 150;
-/// Points whose distances to a curve a thread takes at once: some milliseconds of work.
+/// Least number of points whose distances to a curve a thread takes at once: some milliseconds of work.
 const AT_ONCE: usize = 512;
 
-/// The distances from any points to the coupler curve of the circuit that holds the given position; `None` where
+/// Returns the distances from any points to the coupler curve of the circuit that holds the given position; `None` if
 /// that circuit has no point.
 pub fn distances_to_curve(
     points: &[Complex],
@@ -104,7 +105,7 @@ pub fn distances_to_curve(
 ) -> Option<CurveError> {
     let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
     computed(NEAREST * points.len());
-    // Side by side, and summed in the order of the points: threads change no digit.
+    // In parallel, and summed in the order of the points: the number of threads changes no digit.
     let distances: Option<Vec<f64>> =
         points.par_iter().with_min_len(AT_ONCE).map(|&point| Some(curve.nearest(point)?.distance)).collect();
     let mut error = CurveError { distances: distances?, sum_sq: 0.0, max: 0.0 };

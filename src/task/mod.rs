@@ -1,9 +1,9 @@
-//! What is wanted: a path for the coupler point, with or without the crank angles at its points.
+//! The synthesis task: a path for the coupler point, with or without crank angles at its points.
 //!
-//! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is
-//! T_j - P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the
-//! x axis, or from the ground line A -> B); with *free timing* each is chosen to be nearest. This room knows
-//! linkages and nothing else of the crate.
+//! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is T_j -
+//! P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
+//! the ground line A -> B); with *free timing* each is chosen to be nearest. This module depends on the linkage module
+//! and on nothing else of the crate.
 
 pub mod error;
 pub mod referee;
@@ -28,33 +28,34 @@ pub enum AngleOffset {
     Ground,
 }
 
-/// When the coupler point is to be at the target points.
+/// The timing of the target points: the crank angles at which the coupler point is to reach them.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Timing {
-    /// At whatever crank angle is nearest.
+    /// Free timing: at the crank angle that is nearest.
     Free,
-    /// At these crank angles.
+    /// Prescribed timing: at these crank angles.
     Prescribed {
-        /// One a point, radians, counter-clockwise positive, not wrapped.
+        /// The crank angle at each point, in radians, counter-clockwise positive, not wrapped.
         crank_angles: Vec<f64>,
-        /// What they are measured from.
+        /// Reference direction of the crank angles.
         offset: AngleOffset,
     },
 }
 
-/// How the motion may come back to the first point of a path that ends where it begins.
+/// The ways in which the motion may come back to the first point of a path that ends where it begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Return {
-    /// By turning on: the crank turns fully.
+    /// By turning on in the same direction: the crank turns fully.
     #[default]
     TurningOn,
-    /// By going on around its circuit, where the crank rocks through both of its toggles.
+    /// By going on around its circuit; a crank that rocks does so through both of its toggles.
     AroundTheCircuit,
     /// Also by going back through all points.
     Any,
 }
 
-/// Targets of a smaller extent are refused: squares of their errors would be lost below the smallest number.
+/// The least extent of a target; smaller ones are refused: squares of their errors would be lost below the smallest
+/// number.
 pub const SMALLEST_SIZE: f64 = 1e-100;
 
 /// A path to trace.
@@ -70,21 +71,22 @@ pub struct PathTask {
     centre: Complex,
 }
 
-/// What makes numbers no path task.
+/// The error of numbers that do not make a path task.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TaskError {
-    /// A path needs two points.
+    /// The path has fewer than two points.
     #[error("a path needs at least 2 points, this one has {0}")]
     TooFewPoints(usize),
     /// A number that is NaN, infinite or too large.
     #[error("point {index}: {value} is not a finite number below 1e12 in magnitude")]
     NotFinite {
-        /// Which point, counted from 0.
+        /// Index of the point, counted from 0.
         index: usize,
         /// The value.
         value: f64,
     },
-    /// Two equal neighbours that no different crank angle tells apart.
+    /// Two adjacent points are equal, and no different crank angles distinguish them. Carries the index of the first,
+    /// counted from 0.
     #[error("points {0} and {next} are equal", next = .0 + 1)]
     AdjacentEqual(usize),
     /// All points in one place, within [`SMALLEST_SIZE`].
@@ -93,23 +95,23 @@ pub enum TaskError {
     /// A list beside the points has another length.
     #[error("{points} points but {values} values of {what}")]
     LengthMismatch {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// How many points.
+        /// Number of points.
         points: usize,
-        /// How many values.
+        /// Number of values.
         values: usize,
     },
     /// A weight that is not positive or a tolerance that is negative.
     #[error("{what} of point {index} is {value}: it must be {must}")]
     OutOfRange {
-        /// Which list.
+        /// Name of the list.
         what: &'static str,
-        /// Which point, counted from 0.
+        /// Index of the point, counted from 0.
         index: usize,
         /// The value.
         value: f64,
-        /// What is allowed.
+        /// The allowed range, in words.
         must: &'static str,
     },
 }
@@ -117,22 +119,22 @@ pub enum TaskError {
 /// The optional lists of a path task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathOptions {
-    /// One positive weight a point; they enter the objective only.
+    /// One positive weight per point; they enter the objective only.
     pub weights: Option<Vec<f64>>,
-    /// One tolerance a point: the largest error accepted there.
+    /// One tolerance per point: the largest error accepted there.
     pub tolerances: Option<Vec<f64>>,
     /// Whether the target is a closed curve: the last point is followed by the first.
     pub closed: bool,
 }
 
 impl PathTask {
-    /// A path through `points` with the given timing.
+    /// Creates a path through `points` with the given timing.
     ///
     /// A last point equal to the first is kept. Adjacent equal points are refused unless their prescribed
     /// crank angles are equal modulo a turn.
     ///
     /// # Errors
-    /// [`TaskError`] as its variants say.
+    /// [`TaskError`], by its variants.
     pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: PathOptions) -> Result<Self, TaskError> {
         let n = points.len();
         if n < 2 {
@@ -202,10 +204,10 @@ impl PathTask {
         })
     }
 
-    /// The same task with other weights, positive and one a point.
+    /// Returns the same task with other weights, one per point.
     ///
     /// # Errors
-    /// [`TaskError`] where they are not.
+    /// [`TaskError`] if one is not positive or there are not as many as points.
     pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, TaskError> {
         let options =
             PathOptions { weights: Some(weights), tolerances: self.tolerances, closed: self.closed };
@@ -213,68 +215,68 @@ impl PathTask {
         Ok(PathTask::new(points, self.timing, options)?.coming_back(self.comes_back))
     }
 
-    /// The same task with another rule for the way back to its first point.
+    /// Returns the same task with another rule for the way back to its first point.
     pub fn coming_back(self, comes_back: Return) -> Self {
         PathTask { comes_back, ..self }
     }
 
-    /// The target points.
+    /// Returns the target points.
     pub fn points(&self) -> &[Complex] {
         &self.points
     }
 
-    /// How many points.
+    /// Returns the number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Never: a path has at least two points.
+    /// Returns whether there are no points: never, since a path has at least two.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// One positive weight a point, 1 where none was given.
+    /// Returns the positive weight of each point, 1 if none was given.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// The largest error accepted at each point.
+    /// Returns the largest error accepted at each point.
     pub fn tolerances(&self) -> Option<&[f64]> {
         self.tolerances.as_deref()
     }
 
-    /// Whether the target is a closed curve.
+    /// Returns whether the target is a closed curve.
     pub fn closed(&self) -> bool {
         self.closed
     }
 
-    /// How the motion may come back to the first point; asked only where [`PathTask::returns`].
+    /// Returns the rule for the motion's way back to the first point; it matters only if [`PathTask::returns`].
     pub fn comes_back(&self) -> Return {
         self.comes_back
     }
 
-    /// Whether the motion has to come back to the first point: the target is closed, or its last point repeats the
-    /// first and the timing is free. (Prescribed angles say themselves how the repeated point is reached.)
+    /// Returns whether the motion has to come back to the first point: the target is closed, or its last point repeats
+    /// the first and the timing is free. (Prescribed angles determine themselves how the repeated point is reached.)
     pub fn returns(&self) -> bool {
         self.closed || (self.timing == Timing::Free && self.repeats_first())
     }
 
-    /// Whether the last point repeats the first.
+    /// Returns whether the last point repeats the first.
     pub fn repeats_first(&self) -> bool {
         self.points.len() > 2 && self.points[0] == self.points[self.points.len() - 1]
     }
 
-    /// The timing.
+    /// Returns the timing.
     pub fn timing(&self) -> &Timing {
         &self.timing
     }
 
-    /// The diagonal of the target's bounding box; positive.
+    /// Returns the diagonal of the target's bounding box; positive.
     pub fn size(&self) -> f64 {
         self.size
     }
 
-    /// The centre of the target's bounding box.
+    /// Returns the centre of the target's bounding box.
     pub fn centre(&self) -> Complex {
         self.centre
     }

@@ -1,19 +1,18 @@
-//! The referee: order, circuit and branch of a motion through target points.
+//! The referee: judges order, circuit and branch of a motion through target points.
 //!
-//! Circuits and branches are those of Chase and Mirth (1993), told from the closed forms of
-//! [`crate::linkage::mobility`]; that the loop stays closed between the points is checked on dense samples.
-//! Nothing here asks an optimiser: every verdict is worked out from the linkage and its positions alone. Searches do ask
-//! the referee: they rank by its verdicts and keep its [`ORDER_TOLERANCE`].
+//! Circuits and branches are those of Chase and Mirth (1993), determined from the closed forms of
+//! [`crate::linkage::mobility`]; that the loop stays closed between the points is checked on dense samples. Nothing
+//! here uses an optimiser: every verdict follows from the linkage and its positions alone. Searches use the referee:
+//! they rank by its verdicts and keep its [`ORDER_TOLERANCE`].
 //!
-//! *Order* is judged where the timing is free (prescribed angles are an order by themselves): the parameter
-//! of the circuit (the crank angle, or psi where the input rocks) must run one way through the points and
-//! less than once around.
+//! *Order* is judged if the timing is free (prescribed angles are an order by themselves): the parameter of the circuit
+//! (the crank angle, or psi if the input rocks) must run one way through the points and less than once around.
 //!
-//! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its
-//! first, and that is taken without reversing: a crank that turns fully turns on; one that rocks comes back only by
-//! way of both toggles, around the whole circuit, where the task allows that ([`Return`]). A motion that returns
-//! through all of its points in reverse is out of order at point 0, unless the task allows that too. Prescribed
-//! angles of a closed target have to run one way for the same reason.
+//! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its first,
+//! and that has to be taken without reversing: a crank that turns fully turns on; one that rocks comes back only by way
+//! of both toggles, around the whole circuit, if the task allows that ([`Return`]). A motion that returns through all
+//! of its points in reverse is out of order at point 0, unless the task allows that too. Prescribed angles of a closed
+//! target have to run one way for the same reason.
 
 use super::{PathTask, Return, Timing};
 use crate::linkage::effort::computed;
@@ -25,12 +24,12 @@ use crate::linkage::{
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Steps of the circuit's parameter smaller than this (radians) are no step: two points may share a position.
+/// The step of the circuit's parameter (radians) below which it counts as no step: two points may share a position.
 pub const ORDER_TOLERANCE: f64 = 1e-9;
 
-/// Samples of the motion between two neighbouring points on which closure is checked.
+/// Number of samples of the motion between two neighbouring points on which closure is checked.
 const CLOSURE_SAMPLES: usize = 24;
-/// .. and at most so many in all: a turn in steps of 0.018 degrees.
+/// Greatest number of such samples in all: a turn in steps of 0.018 degrees.
 const MOST_CLOSURE_SAMPLES: usize = 20_000;
 
 /// What can be wrong with a motion through the points, and at which points (counted from 0).
@@ -56,17 +55,17 @@ pub enum Defect {
 }
 
 impl Defect {
-    /// The defect of a motion that returns to its first point only by reversing.
+    /// Returns the defect of a motion that returns to its first point only by reversing.
     pub fn to_and_fro() -> Defect {
         Defect::Order { at: vec![0] }
     }
 
-    /// Whether the motion runs through its points in order, and returns to the first only by reversing.
+    /// Returns whether the motion runs through its points in order, and returns to the first only by reversing.
     pub fn is_to_and_fro(&self) -> bool {
         *self == Defect::to_and_fro()
     }
 
-    /// order, branch or circuit.
+    /// Returns its name: order, branch or circuit.
     pub fn name(&self) -> &'static str {
         match self {
             Defect::Order { .. } => "order",
@@ -75,7 +74,7 @@ impl Defect {
         }
     }
 
-    /// The points that show it, counted from 0.
+    /// Returns the points at which it occurs, counted from 0.
     pub fn at(&self) -> &[usize] {
         match self {
             Defect::Order { at } | Defect::Branch { at } | Defect::Circuit { at } => at,
@@ -95,12 +94,13 @@ pub struct UsedMotion {
     range: [f64; 2],
 }
 
-/// What the referee says.
+/// The referee's verdict on a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
     /// Every defect, whether it is allowed or not.
     pub defects: Vec<Defect>,
-    /// +1 when the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 clockwise.
+    /// The direction: +1 if the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 if
+    /// clockwise.
     pub direction: f64,
     /// Whether the motion comes back to the first point of a target that ends there only by reversing.
     pub to_and_fro: bool,
@@ -108,11 +108,11 @@ pub struct Verdict {
     pub motion: UsedMotion,
 }
 
-/// Judges the motion of a linkage through the points of a task at the given crank angles (radians) and
-/// assemblies, one a point.
+/// Judges the motion of a linkage through the points of a task at the given crank angles (radians) and assemblies, one
+/// per point.
 ///
 /// # Panics
-/// When there are fewer angles or assemblies than points.
+/// If there are fewer angles or assemblies than points.
 pub fn judge(
     task: &PathTask,
     linkage: &FourBar,
@@ -134,7 +134,7 @@ pub fn judge(
     for j in 0..n {
         let branch = mobility.branch(crank_angles[j], assemblies[j]);
         let open = !linkage.position_with(crank_angles[j], assemblies[j]).is_closed();
-        // A rocking crank cannot get from one turn to the next, whatever the angles modulo a turn say.
+        // A rocking crank cannot get from one turn to the next, even if the angles agree modulo a turn.
         let other_turn = prescribed
             && arc.is_some_and(|arc| {
                 let turns = |angle: f64| ((angle - arc.offset(angle) - arc.middle) / TAU).round();
@@ -155,12 +155,12 @@ pub fn judge(
         })
         .collect();
     if rocks {
-        // psi is a circle: each point the nearer way round from the one before it.
+        // psi is periodic: each point is reached the nearer way round from the one before it.
         for j in 1..n {
             parameter[j] = parameter[j - 1] + wrapped(parameter[j] - parameter[j - 1]);
         }
     }
-    // The closing point is the first one again and says nothing of the order.
+    // The closing point is the first one again and does not count for the order.
     let ordered = if task.repeats_first() { n - 1 } else { n };
     let one_branch = rocks && off_branch.is_empty();
     let comes_back = task.comes_back();
@@ -175,7 +175,7 @@ pub fn judge(
         let jumps = if one_way { Course::within_a_branch(&parameter).jumps } else { Vec::new() };
         Course { direction, range: [low, high], jumps }
     } else if prescribed || !off_circuit.is_empty() {
-        // The hull of what is used; within a branch psi is monotone in the crank angle.
+        // The hull of the parameters used; within a branch psi is monotone in the crank angle.
         let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
         let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
@@ -197,7 +197,7 @@ pub fn judge(
                 }
             }
             _ => {
-                // Back at the first point, the motion has gone the whole way round.
+                // Once back at the first point, the motion has gone the whole way round.
                 let whole = task.returns() && !(one_branch && comes_back == Return::Any);
                 let around = Course::through(&parameter[..ordered], whole);
                 if let Some(within) = within.filter(|_| around.jumps.is_empty()) {
@@ -208,7 +208,7 @@ pub fn judge(
             }
         }
     };
-    // Whatever lies beyond a whole turn has been passed already.
+    // Any part beyond a whole turn has been passed already.
     let [low, high] = course.range;
     let range = [low, high.min(low + TAU)];
     let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range };
@@ -233,7 +233,7 @@ pub fn judge(
     Verdict { defects, direction: course.direction, to_and_fro, motion }
 }
 
-/// How a cyclic parameter runs through the points.
+/// The course of a cyclic parameter through the points: its direction, range and steps back.
 struct Course {
     direction: f64,
     range: [f64; 2],
@@ -241,7 +241,8 @@ struct Course {
 }
 
 impl Course {
-    /// One way along a branch: the sense from the first to the last point, out of order where a step goes back.
+    /// Returns the course along a branch: its sense is from the first to the last point, and it is out of order where a
+    /// step goes back.
     fn within_a_branch(parameter: &[f64]) -> Course {
         let last = parameter[parameter.len() - 1];
         let direction = if last < parameter[0] { -1.0 } else { 1.0 };
@@ -252,7 +253,8 @@ impl Course {
         Course { direction, range: [low, high], jumps: back.map(|(_, j)| j).collect() }
     }
 
-    /// The direction in which the parameter goes less far in total; it is in order when that is less than once around.
+    /// Returns the course in the direction in which the parameter travels less in total; it is in order if that is less
+    /// than once around.
     fn through(parameter: &[f64], whole: bool) -> Course {
         let along = |direction: f64| {
             let steps: Vec<f64> = parameter
@@ -284,7 +286,7 @@ impl UsedMotion {
         self.range[0] + (self.range[1] - self.range[0]) * i as f64 / of as f64
     }
 
-    /// The crank angle and assembly at a parameter.
+    /// Returns the crank angle and assembly at a parameter.
     fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
         match self.mobility.arc(self.circuit) {
             Some(arc) if self.rocks => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
@@ -297,13 +299,13 @@ impl UsedMotion {
         self.linkage.position_with(crank_angle, assembly).joints()
     }
 
-    /// The joints at `n` + 1 evenly spaced positions of the motion; open ones left out.
+    /// Returns the joints at `n` + 1 evenly spaced positions of the motion, without open ones.
     pub fn joints(&self, n: usize) -> Vec<Joints> {
         (0..=n).filter_map(|i| self.joints_at(self.blend(i, n))).collect()
     }
 
-    /// The extremes of the transmission angle over the motion, in closed form: they stand at its ends, where
-    /// the crank lies along the ground, or at a toggle.
+    /// Returns the extremes of the transmission angle over the motion, in closed form: they lie at its ends, where the
+    /// crank lies along the ground, or at a toggle.
     pub fn transmission(&self) -> TransmissionExtremes {
         let [low, high] = self.range;
         let ground = self.linkage.ground_angle();
@@ -319,7 +321,7 @@ impl UsedMotion {
         TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
     }
 
-    /// [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
+    /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
     /// ternary search around its sample.
     pub fn footprint(&self) -> [f64; 4] {
         const SAMPLES: usize = 720;
@@ -345,7 +347,7 @@ impl UsedMotion {
                     let joints = self.joints_at(t.clamp(self.range[0], self.range[1]));
                     joints.as_ref().map_or(f64::NEG_INFINITY, toward)
                 };
-                // Of equal ones the last.
+                // Of equal ones the last is taken.
                 let samples = (0..=SAMPLES).map(|i| self.blend(i, SAMPLES)).zip(&sampled);
                 let best = samples
                     .map(|(t, joints)| (t, joints.as_ref().map_or(f64::NEG_INFINITY, toward)))
@@ -370,23 +372,23 @@ impl UsedMotion {
         bounds
     }
 
-    /// Whether the input turns fully.
+    /// Returns whether the input turns fully.
     pub fn input_turns_fully(&self) -> bool {
         self.mobility.input == InputRange::Full
     }
 
-    /// The linkage, closed as at the first point.
+    /// Returns the linkage, in the assembly of the first point.
     pub fn linkage(&self) -> &FourBar {
         &self.linkage
     }
 
-    /// The arc on which the crank rocks, whose psi is then the parameter; `None` where the parameter is the crank
+    /// Returns the arc on which the crank rocks, whose psi is then the parameter; `None` if the parameter is the crank
     /// angle.
     pub fn arc(&self) -> Option<InputArc> {
         self.mobility.arc(self.circuit).filter(|_| self.rocks)
     }
 
-    /// The parameter's range, low to high, at most a whole turn.
+    /// Returns the parameter's range, low to high, at most a whole turn.
     pub fn range(&self) -> [f64; 2] {
         self.range
     }

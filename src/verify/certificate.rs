@@ -1,4 +1,5 @@
-//! A recorded certificate: what follows from its bounds, and the bounds worked out again box by box.
+//! Verification of a recorded certificate: the statements that follow from its bounds, and the bounds recomputed box by
+//! box.
 
 use super::Mismatch;
 use crate::certificate::{NoCertificate, Progress, Proof, Request, Subject, recheck};
@@ -14,12 +15,12 @@ fn mismatch(difference: Difference) -> Mismatch {
     }
 }
 
-/// Compares a recorded certificate with one that is worked out anew from the recorded problem, with as many boxes;
-/// an empty list: it is true; `None`: `cancel` was set before. It takes as long as the certificate took. A record without
-/// one has nothing to compare.
+/// Compares a recorded certificate with one that is computed again from the recorded problem, with as many boxes.
+/// Returns the mismatches, an empty list if it is true, or `None` if `cancel` was set before the end. It takes as long
+/// as the certificate took. A record without a certificate has nothing to compare.
 ///
 /// # Errors
-/// [`NoCertificate`] where there is none for the record's task.
+/// [`NoCertificate`] if there can be no certificate for the record's task.
 pub fn verify_certificate(
     record: &Record,
     cancel: &AtomicBool,
@@ -30,8 +31,8 @@ pub fn verify_certificate(
     Ok(Some(recorded.differences(&found).into_iter().map(mismatch).collect()))
 }
 
-/// What a certificate says besides the bounds of its parts follows from these and the problem: its sentence, its bound,
-/// gap and verdict, what it covers. The bounds themselves are worked out by [`verify_certificate`] alone.
+/// Checks the statements of a certificate that follow from the bounds of its parts and the problem: its sentence,
+/// bound, gap and verdict, and its coverage. The bounds themselves are recomputed only by [`verify_certificate`].
 pub(super) fn stated(record: &Record, mismatches: &mut Vec<Mismatch>) {
     let mut whole = |what: &str, recorded: String, found: String| {
         if recorded != found {
@@ -57,8 +58,8 @@ pub(super) fn stated(record: &Record, mismatches: &mut Vec<Mismatch>) {
     mismatches.extend(recorded.differences(&found).into_iter().map(mismatch));
 }
 
-/// The parts are the classes and directions of the problem; no bound is above the one that closes the gap, and that of a
-/// closed part is that one.
+/// Checks that the parts are the classes and directions of the problem, that no bound is above the one that closes the
+/// gap, and that the bound of a closed part is equal to that one.
 fn parts(subject: &Subject, recorded: &Certificate, whole: &mut dyn FnMut(&str, String, String)) {
     let names = |(class, way): (String, i8)| format!("{class} {way:+}");
     let own = recorded.parts.iter().map(|part| names((part.linkage_type.clone(), part.direction)));
@@ -68,7 +69,7 @@ fn parts(subject: &Subject, recorded: &Certificate, whole: &mut dyn FnMut(&str, 
     whole("certificate.parts", own.collect::<Vec<_>>().join(", "), asked.collect::<Vec<_>>().join(", "));
     let most = subject.wanted();
     for (i, part) in recorded.parts.iter().enumerate() {
-        // What is open has a box whose bound is below it.
+        // An open part has a box whose bound is below it.
         let possible = part.lower_bound >= 0.0 && part.lower_bound <= most;
         if !possible || part.closed != (part.lower_bound == most) {
             let closes = if part.closed { "" } else { "less than " };

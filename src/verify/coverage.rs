@@ -1,21 +1,21 @@
-//! What of a record is checked, and how far: each key is recomputed, held to limits, or not checked.
+//! Coverage of the verification of a record: each key is recomputed, held to limits, or not checked.
 //!
-//! `docs/results.md` has the whole table, and a test changes every figure of records and looks whether what happens is
-//! what stands there.
+//! `docs/results.md` has the whole table, and a test changes every figure of records and compares the outcome with the
+//! table.
 
 use crate::record::Record;
 
-/// How far a key of a record is checked.
+/// The extent to which a key of a record is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Checked {
-    /// Only a search or a proof could find it again: it is held to what can be.
+    /// Held to limits: only a search or a proof could find the value again.
     Bounded,
-    /// Nothing says whether it is so.
+    /// Not checked.
     Not,
 }
 
-/// The keys that are not recomputed, as docs/results.md has them: `a.b[].c`, `a.b.*` for all that stands below `a.b`, and
-/// `a[]` for how many entries a list has.
+/// The keys that are not recomputed, as in docs/results.md: `a.b[].c`, `a.b.*` for all keys below `a.b`, and `a[]` for
+/// the number of entries of a list.
 pub const UNCHECKED: &[(&str, Checked)] = &[
     ("tool.version", Checked::Not),
     ("problem.name", Checked::Not),
@@ -55,21 +55,21 @@ pub const UNCHECKED: &[(&str, Checked)] = &[
     ("certificate.parts[].leaves_sha256", Checked::Not),
 ];
 
-/// How far a key is checked, written as in [`UNCHECKED`]; `None` where it is recomputed.
+/// Returns the extent to which a key, written as in [`UNCHECKED`], is checked; `None` if it is recomputed.
 pub fn checked(key: &str) -> Option<Checked> {
     let covers = |row: &str| row == key || row.strip_suffix('*').is_some_and(|start| key.starts_with(start));
     UNCHECKED.iter().find(|(row, _)| covers(row)).map(|(_, how)| *how)
 }
 
-/// The keys of a record that are checked no further than this. Lists are left out: how many there are is said of the keys
-/// below them.
+/// Returns the keys of a record that are checked to this extent. Lengths of lists are left out: the keys below the
+/// lists cover them.
 pub fn unchecked(record: &Record, how: Checked) -> Vec<&'static str> {
     let Ok(document) = serde_json::to_value(record) else { return Vec::new() };
     let asked = UNCHECKED.iter().filter(|(row, is)| *is == how && !row.ends_with("[]"));
     asked.map(|(row, _)| *row).filter(|row| holds(&document, row)).collect()
 }
 
-/// Whether a document has a key: of lists, in one of their entries.
+/// Returns whether a document has a key; of a list, whether one of its entries has it.
 fn holds(value: &serde_json::Value, key: &str) -> bool {
     let (first, rest) = key.split_once('.').map_or((key, None), |(first, rest)| (first, Some(rest)));
     if first == "*" {

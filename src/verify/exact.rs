@@ -1,5 +1,5 @@
-//! Exact answers, recomputed: the census adds up, each linkage passes the points, can do what is said of it, and is
-//! proved again. (That the census is complete is a search of its own: run it.)
+//! Verification of exact linkages: the census adds up, and each linkage passes the points, has the stated abilities,
+//! and is proved again. (Whether the census is complete takes a search of its own: run it.)
 
 use super::{Against, Mismatch, verdict};
 use crate::assess::assess;
@@ -11,11 +11,11 @@ use crate::record::{
 use crate::search::continuation::{certified, nearly_exact, same, target};
 use crate::search::exact_linkages::class_at;
 
-/// A proof found again may be wider or narrower by this factor: the radius is an upper bound made of roundings.
+/// The factor by which the radius of a recomputed proof may differ: it is an upper bound that depends on rounding.
 const WIDER: f64 = 1.5;
 
-/// A target farther than this many of its sizes from the origin: coordinates are rounded to 1e-10 of its size, which is
-/// what a mechanism may miss the points by, and the class of a listed linkage cannot be found again from them.
+/// The distance of a target from the origin, in its sizes, beyond which the class of a listed linkage cannot be found
+/// again: so far away, coordinates are rounded to 1e-10 of its size, by which a mechanism may miss the points.
 const FOUND_AGAIN: f64 = 2e4;
 
 pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mismatch>) {
@@ -47,7 +47,7 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
             whole(&format!("exact.linkages {}: {figure}", i + 1), recorded, found);
         };
         if !found_again {
-            // The linkage itself is judged all the same.
+            // The linkage itself is judged nevertheless.
             let n = problem.task().len();
             let counts = listed.crank_deg.len() == n && listed.t1_at.len() == n;
             let judged = || assess(problem, &listed.linkage, &listed.crank_deg, &listed.t1_at);
@@ -74,7 +74,7 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
         let first = listed.t1_at.first().copied().map_or("none".into(), sign);
         whole("linkage.t1", sign(listed.linkage.assembly()), first);
         let all = [listed.one_circuit, listed.in_order, listed.free_of_defects];
-        // What is in doubt is as it is recorded.
+        // An ability in doubt keeps its recorded value.
         let pairs = || all.into_iter().zip(class.abilities);
         let found: Vec<bool> = pairs().map(|(is, can)| can.certain || is && can.possible).collect();
         whole("what the class can do", format!("{all:?}"), format!("{found:?}"));
@@ -87,7 +87,8 @@ pub(super) fn exact(problem: &Problem, record: &Record, mismatches: &mut Vec<Mis
     }
 }
 
-/// The other mechanisms of a class: all of them that pass beyond doubt, each with its type and its defects.
+/// Checks the other mechanisms of a class: all that pass the points beyond doubt are listed, each with its type and
+/// defects.
 fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn FnMut(&str, String, String)) {
     for (i, other) in listed.others.iter().enumerate() {
         let what = |figure: &str| format!("others {}: {figure}", i + 1);
@@ -111,7 +112,7 @@ fn others(listed: &ExactLinkage, forms: &[(ExactForm, bool)], whole: &mut dyn Fn
     whole("others", count.to_string(), (count + forms.iter().filter(missing).count()).to_string());
 }
 
-/// Both in words where the recorded proof is not the one that is found.
+/// Returns the recorded and the recomputed proof in words if they differ.
 fn proof(recorded: Certified, found: Option<Certified>) -> Option<(String, String)> {
     let near = |one: f64, other: f64| one <= WIDER * other;
     let holds =
@@ -138,7 +139,7 @@ fn census(exact: &ExactRecord, cancelled: bool, whole: &mut dyn FnMut(&str, Stri
     for (name, recorded, found) in sums {
         whole(&format!("exact.census.{name}"), recorded.to_string(), found.to_string());
     }
-    // As the search says it: a search that was cancelled says only that.
+    // A search that was cancelled records only that.
     let found = if cancelled && exact.completeness == Completeness::Cancelled {
         Completeness::Cancelled
     } else if c.classes == GENERIC_CLASSES {
@@ -166,7 +167,7 @@ fn figures(
     };
     let span = found.linkage.longest_link();
     number("miss", listed.miss, found.error.max, super::ABSOLUTE * span);
-    // Degrees, and near a toggle those of a small difference.
+    // The angle is in degrees, and near a toggle position it follows from a small difference.
     let from_flat = found.transmission_deg.worst.max(1e-5).to_radians().sin();
     let worst = found.transmission_deg.worst;
     number(

@@ -1,4 +1,4 @@
-//! What stands beside the candidates, recomputed: warnings, alternatives, the family, the buildable answer.
+//! Verification of the other parts of a record: warnings, alternatives, the family, the buildable candidate.
 
 use super::{ABSOLUTE, Against, Mismatch, verdict};
 use crate::assess::assess;
@@ -9,7 +9,7 @@ use crate::search::family::family;
 use crate::search::symmetry::mirror_image_serves;
 use crate::search::warnings::{is_serious, warnings};
 
-/// Everything of the record that is no candidate's figure.
+/// Checks everything in the record apart from the candidates' figures.
 pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mismatch>) {
     for candidate in record.candidates.iter().chain(&record.buildable) {
         let mut against = Against { rank: candidate.rank, mismatches };
@@ -53,7 +53,7 @@ pub(super) fn extras(problem: &Problem, record: &Record, mismatches: &mut Vec<Mi
 }
 
 impl Against<'_> {
-    /// The warnings are those of the recorded figures, all of them.
+    /// Checks that the warnings are exactly those of the recorded figures.
     fn warnings(&mut self, problem: &Problem, recorded: &Candidate) {
         let found = warnings(problem, recorded);
         if recorded.warnings != found {
@@ -108,7 +108,7 @@ impl Against<'_> {
         if recorded.not_met != not_met {
             self.differ(&what("not_met"), recorded.not_met.join(", "), not_met.join(", "));
         }
-        // The same curve: the same coupler point at every point of the target.
+        // The curve is the same if the coupler point is the same at every point of the target.
         let apart = first_apart(
             problem.task().size(),
             (&candidate.linkage, &candidate.crank_deg, &candidate.t1_at),

@@ -1,4 +1,5 @@
-//! What a record says of its search. Only the search itself could find it again; here it is held to what can be.
+//! Verification of a record's statements about its search. Only the search itself could find them again, so they are
+//! held to limits.
 
 use crate::problem::Problem;
 use crate::problem::spec::Method;
@@ -6,14 +7,14 @@ use crate::record::{Reason, Record};
 use crate::search::RELAXED;
 use crate::search::rank::exact_sum_sq;
 
-/// Entries of `method.used` that no search writes: a linkage that was snapped, or followed by hand.
+/// Entries of `method.used` that no search writes: of a linkage that was snapped, or followed by hand.
 const SNAPPED: &str = "snap ";
 const BY_HAND: &str = "following-the-hand";
 const CONTINUATION: &str = "continuation";
 const REDUCED: &str = "variable-projection";
 const LEAST_SQUARES: &str = "least-squares";
 
-/// Methods, evaluations, the reason of the end and the counts of repeated hits.
+/// Checks the methods, evaluations, the reason of the end and the counts of repeated hits.
 pub(super) fn searched(problem: &Problem, record: &Record, whole: &mut dyn FnMut(&str, String, String)) {
     termination(problem, record, whole);
     let used: Vec<&str> = record.method.used.iter().map(String::as_str).collect();
@@ -27,7 +28,7 @@ pub(super) fn searched(problem: &Problem, record: &Record, whole: &mut dyn FnMut
         whole("repeats: counts that can be", "true".into(), repeats.is_possible().to_string());
     }
     let (listed, asked) = (record.candidates.len(), problem.spec().solve.candidates);
-    // Snapping lists as many as its own request asks for.
+    // Snapping lists as many candidates as its own request asks for.
     let snapped = used.iter().any(|name| name.starts_with(SNAPPED));
     if listed > asked && !snapped {
         whole("candidates", format!("{listed} of them"), format!("at most the {asked} that were asked for"));
@@ -51,7 +52,7 @@ fn termination(problem: &Problem, record: &Record, whole: &mut dyn FnMut(&str, S
     }
 }
 
-/// Whether a method can have run these, in this order.
+/// Returns whether a method can have run these, in this order.
 fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
     if let [only] = used
         && (only.starts_with(SNAPPED) || *only == BY_HAND)
@@ -73,7 +74,7 @@ fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
         (Method::DifferentialEvolution, local) => local == [evolution],
         (method, local) => {
             let combines = method != Method::LeastSquares;
-            // Differential evolution and searches without a requirement, each once, follow in either order.
+            // Differential evolution and searches without a requirement follow in either order, each at most once.
             let mut local = local;
             let mut later = Vec::new();
             while let [rest @ .., last] = local
@@ -90,7 +91,7 @@ fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
     }
 }
 
-/// The budget holds, and each evaluation computes a position at least.
+/// Checks that the budget holds, and that each evaluation computes at least one position.
 fn evaluations(record: &Record, used: &[&str], whole: &mut dyn FnMut(&str, String, String)) {
     let spent = record.evaluations;
     if used.iter().any(|name| name.starts_with(SNAPPED)) {

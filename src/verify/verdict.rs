@@ -1,27 +1,27 @@
-//! Verdicts: each requirement strictly, but for those that lie within rounding of where they turn.
+//! Verdicts on requirements, compared exactly except for those whose figure lies within rounding of the limit.
 
 use crate::assess::MET_TOLERANCE;
 use crate::problem::Problem;
 use crate::record::{Candidate, Figure, Requirement};
 
-/// What the rounding of a requirement's figure is measured against: the margin is [`super::ABSOLUTE`] of it.
+/// Returns the scale of the rounding of a requirement's figure: the margin is [`super::ABSOLUTE`] of it.
 pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
     match (&requirement.value, requirement.name.as_str()) {
-        // Extremes of a motion are found by search, to the root of rounding.
+        // Extremes of a motion are found by search, to the square root of the rounding.
         (Figure::Numbers(_), _) => 1e4 * size,
         (_, "link_ratio_max") => 1.0,
         (Figure::Number(value), "transmission_deg_min") => {
             180.0 / value.min(180.0 - value).max(1e-5).to_radians().sin()
         }
         (_, "design.ground_angle_deg") => 180.0,
-        // d, e and the coupler's offset come from each other by roots of small differences.
+        // d, e and the coupler's offset follow from each other by square roots of small differences.
         (_, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,
         _ => size,
     }
 }
 
-/// Whether a requirement's figure lies so near to where the verdict turns that this is rounding's: a figure may miss its
-/// limit by [`MET_TOLERANCE`] of max(1, |limit|), on either side.
+/// Returns whether a requirement's figure lies so near to the limit that rounding decides the verdict: a figure may
+/// miss its limit by [`MET_TOLERANCE`] of max(1, |limit|), on either side.
 pub(super) fn is_doubtful(requirement: &Requirement, size: f64) -> bool {
     let absolute = super::ABSOLUTE * scale(requirement, size);
     let near = |value: f64, limit: f64| {
@@ -39,8 +39,8 @@ pub(super) fn is_doubtful(requirement: &Requirement, size: f64) -> bool {
     }
 }
 
-/// The requirements that are not met, and whether the linkage is accepted. Of a doubtful requirement the recorded verdict
-/// stands: `not_met` says whether a name is recorded as not met.
+/// Returns the requirements that are not met, and whether the linkage is accepted. For a doubtful requirement the
+/// recorded verdict counts: `not_met` returns whether a name is recorded as not met.
 pub(super) fn verdict(
     problem: &Problem,
     found: &Candidate,

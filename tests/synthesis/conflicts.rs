@@ -97,7 +97,7 @@ fn proposals_that_hold(problems: Vec<(PathBuf, Set<'static>, &'static str)>) -> 
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn every_proposal_that_is_typed_in_ends_with_an_accepted_candidate() {
     let proposed = proposals_that_hold(impossible());
     assert!(proposed >= 12, "{proposed} proposals");
@@ -171,6 +171,7 @@ fn a_tolerance_that_is_set_by_hand_takes_the_place_of_a_column() {
 /// A limit that is typed a little back towards what was asked is no longer enough, as far as the same search sees:
 /// the proposal is near the least.
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn a_proposal_is_not_much_more_than_is_needed() {
     let set = [("require.link_ratio_max", "1.5"), ("require.transmission_deg_min", "50")];
     let record = run_on(2, with(&literature_path("k18"), &set));

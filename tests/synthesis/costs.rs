@@ -81,7 +81,7 @@ fn rates_of_published_problems_agree_with_solving_again_at_moved_limits() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn rates_of_the_examples_agree_with_solving_again_at_moved_limits() {
     let example = |name: &str, set: &[(&str, &str)]| {
         rates_agree(load(&root().join(format!("problems/examples/{name}.toml")), set))

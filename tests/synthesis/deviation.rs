@@ -46,7 +46,7 @@ fn egg(tables: &str) -> String {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn the_largest_error_is_attained_at_many_points_and_by_every_seed() {
     let least_squares = true_record(literature("k18", &[]));
     let mut known: Option<f64> = None;
@@ -198,7 +198,7 @@ fn a_tolerance_that_least_squares_breaks_is_met_where_a_linkage_meets_it() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn a_tolerance_that_no_linkage_meets_is_said_to_be_missed_where_and_by_how_much() {
     // The least largest error that is known is 0.0300417.
     let record = true_record(literature("k18", &[("task.path.tolerance", "0.03")]));
@@ -210,7 +210,7 @@ fn a_tolerance_that_no_linkage_meets_is_said_to_be_missed_where_and_by_how_much(
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn records_repeat_on_any_number_of_threads_and_keep_their_budgets() {
     for set in [LARGEST, ("task.path.tolerance", "0.0302")] {
         let [one, two] = [1, 2].map(|threads| bytes(&run_on(threads, literature("k18", &[set]))));
@@ -248,6 +248,7 @@ fn population_searches_lessen_the_largest_deviation_too() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn a_candidate_starts_where_it_stands() {
     let texts = [
         egg("[solve]\nseed = 2\n"),
@@ -273,7 +274,7 @@ fn a_candidate_starts_where_it_stands() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn convex_programs_and_the_augmented_lagrangian_end_at_the_same_optimum() {
     let (mut fewer, mut cases) = (0, 0);
     for line in [
@@ -308,6 +309,7 @@ fn convex_programs_and_the_augmented_lagrangian_end_at_the_same_optimum() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn thousands_of_points_have_a_least_largest_error_too() {
     let points = |n: usize| -> String {
         let list: Vec<String> = (0..n)

@@ -122,7 +122,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, rng_seed: proptest::test_runner::RngSeed::Fixed(7), ..ProptestConfig::default() })]
 
     #[test]
-    #[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+    #[ignore = "slow: .ci/run runs it"]
     fn whatever_is_called_accepted_verifies(
         transmission in prop::option::of(0.0..50.0f64),
         ratio in prop::option::of(1.5..30.0f64),

@@ -105,7 +105,7 @@ fn prescribed_timing() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn free_timing_of_few_points_and_of_many() {
     resumed_is_unbroken(literature("k18f", &[("solve.candidates", "2")]), 3);
     resumed_is_unbroken(literature("shape-heart", &[("solve.candidates", "1")]), 3);
@@ -129,7 +129,7 @@ evaluations = 20000
 "#;
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn auto_through_all_its_stages() {
     let file = parse(HOPELESS);
     let job = job(file.clone());
@@ -141,6 +141,7 @@ fn auto_through_all_its_stages() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn a_raised_budget_ends_as_if_it_had_been_given_from_the_beginning() {
     let folder = Folder::new();
     let with = |method: &str, evaluations: &str| {

@@ -50,6 +50,22 @@ fn the_answer_to_eighteen_points_is_a_crank_rocker_without_defects() {
     }
 }
 
+/// Targets of so many points are compared with the curve on all threads within one evaluation.
+#[test]
+fn thousands_of_points_give_the_same_bytes_on_any_number_of_threads() {
+    let points: Vec<[f64; 2]> = (0..4200)
+        .map(|j| {
+            let t = std::f64::consts::TAU * f64::from(j) / 4200.0;
+            [3.0 * t.cos() + 0.3 * (2.0 * t).sin(), 1.5 * t.sin()]
+        })
+        .collect();
+    let text = format!(
+        "format = 1\n[task.path]\npoints = {points:?}\nclosed = true\n[solve]\nmethod = \"genetic\"\n\
+         evaluations = 40\ncandidates = 1\nadvice = false\n[solve.genetic]\npopulation = 20\n"
+    );
+    assert_eq!(bytes(&run_on(1, parse(&text))), bytes(&run_on(2, parse(&text))));
+}
+
 #[test]
 fn one_and_two_threads_write_the_same_bytes() {
     let cases = [
@@ -162,7 +178,7 @@ fn candidates_are_distinct_curves() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn impossible_requirements_end_with_the_nearest_and_why() {
     let set = [("task.path.tolerance", "0.001"), ("solve.evaluations", "30000")];
     let record = run_on(2, literature("k18", &set));

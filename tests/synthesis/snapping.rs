@@ -73,7 +73,7 @@ fn snapped_lengths_are_stock_to_the_digit_and_the_record_is_true() {
 }
 
 #[test]
-#[ignore = "slow without optimisation: .ci/run runs it in a release build"]
+#[ignore = "slow: .ci/run runs it"]
 fn no_combination_of_three_lengths_around_it_is_better_than_what_is_found() {
     for (from, step) in [(timed(), 0.2), (free(), 0.25)] {
         for lengths in [[Length::A, Length::B, Length::C], [Length::Ground, Length::A, Length::D]] {

@@ -4,20 +4,20 @@ use super::interval::Interval;
 
 pub(super) type Complex = [Interval; 2];
 
-/// Some of the points, in one direction of the crank.
+/// The frame of some of the points, in one direction of the crank.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Which points of the whole target these are.
+    /// Indices of these points in the whole target.
     pub points: Vec<usize>,
     /// 1/sqrt n, e' and tau = T'/|T'|: orthonormal, rounded.
     pub basis: [Vec<[f64; 2]>; 3],
-    /// At least the distance of a rounded direction from the exact one.
+    /// An upper bound of the distance of a rounded direction from the exact one.
     pub error: f64,
-    /// |T'|^2.
+    /// The squared length |T'|^2.
     pub size_sq: Interval,
     /// <e'/|e'|, T>: the target's part along e'.
     pub(super) along: Complex,
-    /// |e'|.
+    /// The length |e'|.
     pub crank: Interval,
 }
 
@@ -33,7 +33,7 @@ fn norm_sq(v: &[Complex]) -> Interval {
     v.iter().fold(Interval::exact(0.0), |sum, x| sum + x[0].square() + x[1].square())
 }
 
-/// <b, v>.
+/// Computes the inner product <b, v>.
 fn product(b: &[Complex], v: &[Complex]) -> Complex {
     b.iter().zip(v).fold([Interval::exact(0.0); 2], |sum, (b, v)| {
         let product = times(conjugate(*b), *v);
@@ -41,7 +41,7 @@ fn product(b: &[Complex], v: &[Complex]) -> Complex {
     })
 }
 
-/// v less its part along the unit vector b.
+/// Computes v less its part along the unit vector b.
 fn off(v: &[Complex], b: &[Complex]) -> Vec<Complex> {
     let along = product(b, v);
     b.iter()
@@ -58,7 +58,7 @@ fn unit(v: &[Complex]) -> Vec<Complex> {
     v.iter().map(|x| x.map(|x| x.over(length))).collect()
 }
 
-/// e^{i direction delta} for an increment in degrees.
+/// Encloses e^{i direction delta} for an increment in degrees.
 pub fn turn(delta_deg: f64, direction: f64) -> Complex {
     // The remainder is exact, and so is taking off a whole turn.
     let rest = delta_deg % 360.0;
@@ -69,8 +69,8 @@ pub fn turn(delta_deg: f64, direction: f64) -> Complex {
 }
 
 impl Frame {
-    /// Of the points `which`, whose crank turns are given, with A free or (`at_origin`) 0; `None` where they are too much
-    /// alike.
+    /// Creates the frame of the points `which`, whose crank turns are given, with A free or (`at_origin`) 0; `None`
+    /// if they are too much alike.
     pub fn new(all: &[Complex], turns: &[Complex], which: Vec<usize>, at_origin: bool) -> Option<Self> {
         let zero = Interval::exact(0.0);
         let ones = vec![[Interval::exact(1.0), zero]; which.len()];

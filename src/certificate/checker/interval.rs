@@ -1,8 +1,8 @@
-//! Intervals with outward rounding: every end is moved to the next number outwards.
+//! Interval arithmetic with outward rounding: every end is moved to the next number outwards.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// All x with low <= x <= high.
+/// The interval of all x with low <= x <= high.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The lower end.
@@ -11,7 +11,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// pi lies between these neighbours.
+/// The enclosure of pi, which lies between these neighbouring doubles.
 const PI: Interval = Interval { low: std::f64::consts::PI, high: 3.141_592_653_589_793_6 };
 
 fn outward(low: f64, high: f64) -> Interval {
@@ -19,42 +19,42 @@ fn outward(low: f64, high: f64) -> Interval {
 }
 
 impl Interval {
-    /// No knowledge.
+    /// The interval of all numbers: no knowledge.
     pub const EVERYTHING: Interval = Interval { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
-    /// The number itself.
+    /// Returns the interval of an exact number.
     pub const fn exact(x: f64) -> Self {
         Interval { low: x, high: x }
     }
 
-    /// pi.
+    /// Returns the enclosure of pi.
     pub const fn pi() -> Self {
         PI
     }
 
-    /// A number in the middle.
+    /// Returns a number in the middle.
     pub fn middle(self) -> f64 {
         0.5 * (self.low + self.high)
     }
 
-    /// At least the distance of every x from [`Interval::middle`].
+    /// Returns an upper bound of the distance of every x from [`Interval::middle`].
     pub fn radius(self) -> f64 {
         let middle = self.middle();
         (self.high - middle).max(middle - self.low).next_up()
     }
 
-    /// At least every |x|.
+    /// Returns an upper bound of every |x|.
     pub fn size(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// x^2.
+    /// Returns x^2.
     pub fn square(self) -> Self {
         let product = self * self;
         Interval { low: product.low.max(0.0), high: product.high }
     }
 
-    /// x / y; everything where y may be 0.
+    /// Returns x / y; everything if y may be 0.
     pub fn over(self, y: Interval) -> Self {
         if y.low > 0.0 || y.high < 0.0 {
             let ends = [self.low / y.low, self.low / y.high, self.high / y.low, self.high / y.high];
@@ -64,17 +64,17 @@ impl Interval {
         }
     }
 
-    /// The root of max(x, 0).
+    /// Returns the root of max(x, 0).
     pub fn root(self) -> Self {
-        // What is not a number stays that, and becomes everything.
+        // NaN stays NaN, of which `outward` makes everything.
         let [low, high] = [self.low, self.high].map(|end| if end < 0.0 { 0.0 } else { end.sqrt() });
         let root = outward(low, high);
         Interval { low: root.low.max(0.0), high: root.high }
     }
 
-    /// cos x and sin x for |x| <= 4, within [-1, 1]; all of [-1, 1] beyond.
+    /// Returns cos x and sin x for |x| <= 4, within [-1, 1]; all of [-1, 1] beyond.
     ///
-    /// The Taylor series to x^33 at the middle, by Horner; what is left out is below 4^34/34! < 1.1e-18. Both functions
+    /// The Taylor series to x^33 at the middle, by Horner; the remainder is below 4^34/34! < 1.1e-18. Both functions
     /// move by no more than their argument.
     pub fn cos_sin(self) -> [Self; 2] {
         let (x, off) = (self.middle(), self.radius());
@@ -97,7 +97,7 @@ impl Interval {
     }
 }
 
-/// NaN where there is one: [`outward`] makes everything of it.
+/// Returns the largest end, or NaN if there is one: [`outward`] makes everything of it.
 fn largest(ends: &[f64]) -> f64 {
     ends.iter().fold(f64::NEG_INFINITY, |a, b| if b.is_nan() || *b > a { *b } else { a })
 }

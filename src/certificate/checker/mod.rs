@@ -1,10 +1,11 @@
-//! The leaves of a certificate, checked in arithmetic of their own.
+//! The check of a certificate's leaves, in arithmetic of its own.
 //!
-//! What is shared with the search is the file of the leaves, the record's figures ([`Subject`]) and the chart's extent and
-//! classes ([`super::leaves::root`], [`Class`](super::chart::Class)): no bound and no arithmetic. The tree is replayed: its
-//! halves cover the chart. On each leaf the least sum of squares is enclosed from below: intervals with outward rounding
-//! ([`interval`]), functions over a box as polynomials of second degree with an enclosed rest ([`model`]), the target's
-//! directions in intervals ([`frame`]). A leaf that is too large for that is halved here until it is shown ([`region`]).
+//! The check shares with the search the file of the leaves, the record's figures ([`Subject`]) and the chart's extent
+//! and classes ([`super::leaves::root`], [`Class`](super::chart::Class)): no bound and no arithmetic. The tree is
+//! replayed: its halves cover the chart. On each leaf the least sum of squares is enclosed from below: intervals with
+//! outward rounding ([`interval`]), functions over a box as polynomials of second degree with an enclosed rest
+//! ([`model`]), the target's directions in intervals ([`frame`]). A leaf that is too large for that is halved here
+//! until it is proved ([`region`]).
 
 pub mod frame;
 pub mod interval;
@@ -20,36 +21,36 @@ use rayon::prelude::*;
 use region::{Claim, Region, Shown};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Leaves that are checked between two looks at the clock and at Ctrl-C.
+/// The number of leaves checked between two reports of progress and checks for cancellation.
 const BLOCK: usize = 1 << 15;
-/// The most boxes that a leaf is halved into.
+/// The largest number of boxes into which a leaf is halved.
 const MOST_BOXES: u64 = 20_000;
 
-/// Why a certificate's leaves do not prove it.
+/// The reason for which a certificate's leaves do not prove it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CheckError {
-    /// The file.
+    /// The file of leaves is faulty.
     #[error(transparent)]
     Leaves(#[from] LeavesError),
-    /// The record's problem.
+    /// The record's problem has no certificate.
     #[error(transparent)]
     NoCertificate(#[from] NoCertificate),
-    /// They belong together as little as their digests.
+    /// The leaves are not those of the certificate.
     #[error(
         "the leaves are not those of this certificate: {what} is {found} by the leaves, {recorded} in the record"
     )]
     Other {
         /// The first key that differs.
         what: String,
-        /// By the leaves.
+        /// The value by the leaves.
         found: String,
-        /// In the record.
+        /// The value in the record.
         recorded: String,
     },
-    /// A part is missing, or stands twice.
+    /// A part is missing, or occurs twice.
     #[error("the leaves have other classes or directions of the crank than the record's problem")]
     Parts,
-    /// A leaf could not be shown.
+    /// A leaf could not be proved.
     #[error(
         "leaf {leaf} of part {part} is not shown within {MOST_BOXES} boxes: p {p:?}, phi {phi:?}, g {g:?}, d {d:?} as \
          \"{rule}\"; verify --certificate works it out by the rules of the search"
@@ -59,45 +60,46 @@ pub enum CheckError {
         part: usize,
         /// The leaf, from 1, in the order of the file.
         leaf: u64,
-        /// Its sides.
+        /// The range of p.
         p: [f64; 2],
-        /// Its sides.
+        /// The range of phi.
         phi: [f64; 2],
-        /// Its sides.
+        /// The range of g.
         g: [f64; 2],
-        /// Its sides.
+        /// The range of d.
         d: [f64; 2],
-        /// What the file says about it.
+        /// The rule that the file gives for it.
         rule: &'static str,
     },
-    /// It was stopped.
+    /// The check was stopped.
     #[error("the check was stopped: nothing is said about the certificate")]
     Stopped,
 }
 
 impl CheckError {
-    /// Whether the leaves are not what the record says of them. A leaf that is not shown may be true all the same.
+    /// Returns whether the leaves are not as the record describes them. A leaf that could not be proved may be true
+    /// all the same.
     pub fn is_refuted(&self) -> bool {
         !matches!(self, CheckError::Leaf { .. } | CheckError::Stopped)
     }
 }
 
-/// What was checked.
+/// The counts of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Checked {
-    /// Leaves of the file.
+    /// The number of leaves of the file checked.
     pub leaves: u64,
-    /// Boxes that they were halved into.
+    /// The number of boxes into which they were halved.
     pub boxes: u64,
 }
 
-/// A leaf: its box and what the file says about it.
+/// A leaf: its box and its rule in the file.
 type Leaf = (Region, u8);
 
 /// Checks that the leaves in `bytes` prove the certificate of a record.
 ///
 /// # Errors
-/// [`CheckError`]: the first thing that is wrong.
+/// [`CheckError`]: the first fault.
 pub fn check(
     record: &Record,
     recorded: &Certificate,
@@ -178,7 +180,7 @@ fn check_part(
     }
 }
 
-/// How many boxes it took to show a leaf; `None` where it could not be shown.
+/// Proves a leaf; returns the number of boxes that it took, or `None` if it could not be proved.
 fn shows(claim: &Claim, (region, rule): &Leaf) -> Option<u64> {
     match rule {
         1 => return claim.is_outside(region).then_some(1),
@@ -200,7 +202,7 @@ fn shows(claim: &Claim, (region, rule): &Leaf) -> Option<u64> {
     Some(boxes)
 }
 
-/// The leaves of a part in order, with their boxes.
+/// An iterator over the leaves of a part in order, with their boxes.
 struct Replay<'a> {
     codes: Box<dyn Iterator<Item = u8> + 'a>,
     waiting: Vec<Region>,

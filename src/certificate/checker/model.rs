@@ -1,24 +1,25 @@
-//! Functions over a box, enclosed: a polynomial of second degree and an interval for the rest.
+//! Taylor models of second degree: functions over a box, enclosed by a polynomial and an interval for the remainder
+//! (the rest).
 //!
-//! A [`Model`] stands for every function of e in [-1, 1]^4 that differs from
-//! `c[0] + sum c[k] e_k + sum c[kl] e_k e_l` by no more than `rest`. What an operation leaves out (terms of third
-//! degree and above, the ends of series, rounding) goes into the rest; its sums are of non-negative numbers, at most
-//! 64 of them, and are enlarged by [`UP`].
+//! A [`Model`] represents every function of e in [-1, 1]^4 that differs from
+//! `c[0] + sum c[k] e_k + sum c[kl] e_k e_l` by no more than `rest`. The parts that an operation leaves out (terms of
+//! third degree and above, the ends of series, rounding) go into the rest; its sums are of non-negative numbers, at
+//! most 64 of them, and are enlarged by [`UP`].
 
 use super::interval::Interval;
 
-/// 1, four linear terms, ten of second degree: 00 01 02 03 11 12 13 22 23 33.
+/// The number of terms: 1, four linear ones, ten of second degree: 00 01 02 03 11 12 13 22 23 33.
 const TERMS: usize = 15;
-/// The places of the terms of second degree.
+/// Indices of the terms of second degree.
 const PLACE: [[usize; 4]; 4] = [[5, 6, 7, 8], [6, 9, 10, 11], [7, 10, 12, 13], [8, 11, 13, 14]];
-/// Above the rounding of a sum of 64 non-negative numbers.
+/// A factor above the rounding of a sum of 64 non-negative numbers.
 pub const UP: f64 = 1.0 + 1e-13;
 /// Twice the unit roundoff.
 const EPS: f64 = f64::EPSILON;
-/// Above everything that underflow can do.
+/// A bound above everything that underflow can do.
 const TINY: f64 = 1e-290;
 
-/// A polynomial and a rest.
+/// A polynomial of second degree with a bound of the remainder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     c: [f64; TERMS],
@@ -30,24 +31,24 @@ pub struct Model {
 struct Sizes {
     linear: f64,
     second: f64,
-    /// Of the polynomial.
+    /// The size of the whole polynomial.
     all: f64,
 }
 
 impl Model {
-    /// A number.
+    /// Returns the model of a constant.
     pub fn constant(x: Interval) -> Self {
         let mut c = [0.0; TERMS];
         c[0] = x.middle();
         Model { c, rest: x.radius() }
     }
 
-    /// Anything within `rest` of 0.
+    /// Returns the model of anything within `rest` of 0.
     pub fn within(rest: f64) -> Self {
         Model { c: [0.0; TERMS], rest }
     }
 
-    /// centre + half * e_k, with what rounding may leave.
+    /// Returns the model of centre + half * e_k, with an allowance for rounding.
     pub fn variable(centre: f64, half: f64, k: usize) -> Self {
         let mut c = [0.0; TERMS];
         c[0] = centre;
@@ -55,7 +56,8 @@ impl Model {
         Model { c, rest: TINY }
     }
 
-    /// cos and sin of centre + half * e_k: cos(x + y) = cos x - y sin x - y^2/2 cos x + .., the rest below |y|^3/6.
+    /// Returns the models of cos and sin of centre + half * e_k: cos(x + y) = cos x - y sin x - y^2/2 cos x + .., the
+    /// rest below |y|^3/6.
     pub fn cos_sin(centre: f64, half: f64, k: usize) -> [Self; 2] {
         let [cos, sin] = Interval::exact(centre).cos_sin();
         let curve = 0.5 * half * half;
@@ -77,38 +79,38 @@ impl Model {
         Sizes { linear, second, all: (self.c[0].abs() + linear + second) * UP }
     }
 
-    /// At least every absolute value.
+    /// Returns an upper bound of every absolute value.
     pub fn size(&self) -> f64 {
         (self.sizes().all + self.rest) * UP
     }
 
-    /// The value in the middle, but for the rest.
+    /// Returns the value in the middle, up to the rest.
     pub fn middle(&self) -> f64 {
         self.c[0]
     }
 
-    /// How far it is from the polynomial.
+    /// Returns the bound of the distance from the polynomial.
     pub fn rest(&self) -> f64 {
         self.rest
     }
 
-    /// Whether it says anything.
+    /// Returns whether the rest is small enough for the model to be of use.
     pub fn is_known(&self) -> bool {
         self.rest < 1e3
     }
 
-    /// How much of its change is along axis `k`.
+    /// Returns the size of its change along axis `k`.
     pub fn change(&self, k: usize) -> f64 {
         let second: f64 = PLACE[k].iter().map(|place| self.c[*place].abs()).sum();
         self.c[1 + k].abs() + second
     }
 
-    /// How much of its terms of second degree is along axis `k`.
+    /// Returns the size of its terms of second degree along axis `k`.
     pub fn curve(&self, k: usize) -> f64 {
         PLACE[k].iter().map(|place| self.c[*place].abs()).sum()
     }
 
-    /// x + y.
+    /// Returns x + y.
     pub fn plus(&self, y: &Model) -> Self {
         let mut c = self.c;
         let mut size = 0.0;
@@ -119,17 +121,17 @@ impl Model {
         Model { c, rest: (self.rest + y.rest + EPS * size + TINY) * UP }
     }
 
-    /// x - y.
+    /// Returns x - y.
     pub fn minus(&self, y: &Model) -> Self {
         self.plus(&Model { c: y.c.map(|c| -c), rest: y.rest })
     }
 
-    /// 1 - x.
+    /// Returns 1 - x.
     pub fn from_one(&self) -> Self {
         Model::constant(Interval::exact(1.0)).minus(self)
     }
 
-    /// x times a number.
+    /// Returns x times a number.
     pub fn times(&self, factor: Interval) -> Self {
         let by = factor.middle();
         let c = self.c.map(|c| c * by);
@@ -139,7 +141,7 @@ impl Model {
         Model { c, rest: rest * UP }
     }
 
-    /// x y.
+    /// Returns x y.
     pub fn by(&self, y: &Model) -> Self {
         let (a, b) = (&self.c, &y.c);
         let mut c = [0.0; TERMS];
@@ -160,12 +162,12 @@ impl Model {
         Model { c, rest: (left_out + known + rounding + TINY) * UP }
     }
 
-    /// x^2.
+    /// Returns x^2.
     pub fn square(&self) -> Self {
         self.by(self)
     }
 
-    /// x / c_0 - 1 with its size, where c_0 > 0.
+    /// Returns x / c_0 - 1 with its size; `None` unless c_0 is positive (above 1e-12).
     fn relative(&self) -> Option<(Model, f64)> {
         let centre = self.c[0];
         if centre.is_nan() || centre <= 1e-12 {
@@ -178,7 +180,8 @@ impl Model {
         Some((x, size))
     }
 
-    /// 1/sqrt x: the series of (1 + y)^(-1/2) to y^2, the rest below 5/16 |y|^3/(1 - |y|), its coefficients decreasing.
+    /// Returns 1/sqrt x: the series of (1 + y)^(-1/2) to y^2, the rest below 5/16 |y|^3/(1 - |y|), its coefficients
+    /// decreasing.
     pub fn inverse_root(&self) -> Option<Self> {
         let (y, size) = self.relative()?;
         if size.is_nan() || size > 0.8 {
@@ -193,10 +196,10 @@ impl Model {
         Some(series.plus(&Model::within(rest * UP)).times(Interval::exact(1.0).over(root)))
     }
 
-    /// sqrt x of a number that is known to lie in [0, 1].
+    /// Returns sqrt x of a number that is known to lie in [0, 1].
     ///
-    /// The series of (1 + y)^(1/2) to y^2, the rest below |y|^3/16/(1 - |y|); or, where y is large, the line that is best
-    /// over [A^2, B^2]: s/(A + B) + (A + B)/8 + A B/(2 (A + B)), within (B - A)^2/(8 (A + B)).
+    /// The series of (1 + y)^(1/2) to y^2, the rest below |y|^3/16/(1 - |y|); or, if y is large, the line that is
+    /// best over [A^2, B^2]: s/(A + B) + (A + B)/8 + A B/(2 (A + B)), within (B - A)^2/(8 (A + B)).
     pub fn root(&self) -> Self {
         if let Some((y, size)) = self.relative()
             && size < 0.5
@@ -224,7 +227,7 @@ impl Model {
         Model { c: line.c, rest: (line.rest + off.high) * UP }
     }
 
-    /// At most every value: each axis alone exactly, mixed terms by their sizes.
+    /// Returns a lower bound of every value: each axis alone exactly, mixed terms by their sizes.
     pub fn lowest(&self) -> f64 {
         let mut low = self.c[0];
         let mut size = self.c[0].abs();
@@ -241,7 +244,7 @@ impl Model {
         low - self.rest * UP - 32.0 * EPS * size - TINY
     }
 
-    /// At least every value.
+    /// Returns an upper bound of every value.
     pub fn highest(&self) -> f64 {
         -Model { c: self.c.map(|c| -c), rest: self.rest }.lowest()
     }
@@ -257,7 +260,7 @@ pub struct Sum {
 }
 
 impl Sum {
-    /// Nothing yet.
+    /// The empty sum.
     pub const EMPTY: Sum = Sum { c: [0.0; TERMS], rest: 0.0, size: 0.0, terms: 0.0 };
 
     /// Adds `factor` x, where |x| <= `size`.
@@ -270,13 +273,13 @@ impl Sum {
         self.terms += 1.0;
     }
 
-    /// Adds something whose size is at most `rest`.
+    /// Adds an unknown function whose size is at most `rest`.
     pub fn add_unknown(&mut self, rest: f64) {
         self.rest += rest;
         self.terms += 1.0;
     }
 
-    /// The sum, moved by no more than `slack`.
+    /// Returns the model of the sum, moved by no more than `slack`.
     pub fn model(&self, slack: f64) -> Model {
         // A sum of m products is within (m + 1) half-units of the sum of their sizes, a sum of m sizes likewise.
         let up = 1.0 + (self.terms + 8.0) * EPS;
@@ -290,7 +293,7 @@ mod tests {
     use super::{Model, PLACE, Sum};
     use crate::certificate::checker::interval::Interval;
 
-    /// The polynomial at e, and whether `value` is within the rest of it.
+    /// Returns whether `value` is within the rest of the polynomial at e, and within the bounds.
     fn holds(model: &Model, e: [f64; 4], value: f64) -> bool {
         let mut sum = model.c[0];
         for k in 0..4 {

@@ -1,4 +1,4 @@
-//! A box where K is a real length: crank angles from the x axis.
+//! The check of a box if K is a real length: crank angles from the x axis.
 //!
 //! In the frame of T, e and u of docs/certificate.md the sum of squares is at least L exactly where
 //! X^2 + Y^2 >= L W^2; X cos a + Y sin a >= L^(1/2) W is enough, at any angle a. The functions are [`Model`]s.
@@ -10,7 +10,7 @@ use super::interval::Interval;
 use super::model::{Model, UP};
 use super::region::{Claim, Direction, functional, witness, witness_slack};
 
-/// At most the least and at least the greatest length of a crank, over a range of p.
+/// Returns a lower bound of the least and an upper bound of the greatest length of a crank, over a range of p.
 pub(super) fn crank_lengths(axis: &Axis, class: Class, p: Interval) -> [f64; 2] {
     let p = Interval { low: p.low.max(0.0), high: p.high.min(1.0) };
     let [low, high] = axis.lengths.ground.map(|length| Interval {
@@ -21,24 +21,24 @@ pub(super) fn crank_lengths(axis: &Axis, class: Class, p: Interval) -> [f64; 2] 
         Class::CrankRocker => ((low * Interval::exact(p.low)).low, (high * Interval::exact(p.high)).high),
         Class::DoubleCrank => (low.over(Interval::exact(p.high)).low, high.over(Interval::exact(p.low)).high),
     };
-    // What is not known says nothing.
+    // A limit that is not known excludes nothing.
     let least = if least.is_finite() { least } else { 0.0 };
     let greatest = if greatest.is_nan() { f64::INFINITY } else { greatest };
     [axis.lengths.crank[0].max(least), axis.lengths.crank[1].min(greatest)]
 }
 
-/// The square root of a model of a number in [0, `most`].
+/// Returns the square root of a model of a number in [0, `most`].
 fn root(x: &Model, most: Interval) -> Model {
     x.times(Interval::exact(1.0).over(most)).root().times(most.root())
 }
 
-/// The functions of a box, but for the length of the crank.
+/// The functions of a box that do not depend on the length of the crank.
 struct Parts {
     /// Re <y, u>.
     beta: Model,
     v: [Model; 2],
     alpha: [Model; 2],
-    /// |u'|^2 and what of it is across e'.
+    /// |u'|^2; `across_sq` is the part of it across e'.
     length_sq: Model,
     across_sq: Model,
     along: [Model; 2],
@@ -65,13 +65,13 @@ impl Parts {
         Parts { beta, v, alpha, length_sq, across_sq, along, s: frame.size_sq.root(), n }
     }
 
-    /// conj(alpha) v.
+    /// Returns conj(alpha) v.
     fn across_and_along(&self) -> [Model; 2] {
         let (a, v) = (&self.alpha, &self.v);
         [v[0].by(&a[0]).plus(&v[1].by(&a[1])), v[1].by(&a[0]).minus(&v[0].by(&a[1]))]
     }
 
-    /// The sum over all lengths of the crank.
+    /// Returns whether the claim is shown to hold over all lengths of the crank.
     fn any_length(&self, claim: f64, cost: &mut [f64; 4]) -> bool {
         let [_, aside] = self.across_and_along();
         let x = self.beta.by(&root(&self.length_sq, self.n)).times(self.s);
@@ -79,12 +79,12 @@ impl Parts {
         holds(&x, &y, &self.across_sq.by(&self.length_sq), claim, cost)
     }
 
-    /// w = <e'/|e'|, T> - kappa |e'|.
+    /// Returns w = <e'/|e'|, T> - kappa |e'|.
     fn left(&self, kappa: &Model, crank: Interval) -> [Model; 2] {
         [self.along[0].minus(&kappa.times(crank)), self.along[1]]
     }
 
-    /// The sum with the crank of this length.
+    /// Returns whether the claim is shown to hold with the crank of this length.
     fn one_length(&self, w: &[Model; 2], claim: f64, cost: &mut [f64; 4]) -> bool {
         let size_sq = w[0].square().plus(&w[1].square()).plus(&Model::constant(self.s.square()));
         let most = Interval::exact((size_sq.highest() * UP).max(1e-300));
@@ -99,7 +99,7 @@ impl Parts {
         holds(&x, &y, &self.length_sq, claim, cost)
     }
 
-    /// Whether the best crank is longer (`side` 1) or shorter (-1) than this length everywhere.
+    /// Returns whether the best crank is certainly longer (`side` 1) or shorter (-1) than this length everywhere.
     fn beyond(&self, w: &[Model; 2], side: f64) -> bool {
         let [together, _] = self.across_and_along();
         let slope = w[0].by(&self.across_sq).minus(&together.times(self.s));
@@ -107,7 +107,7 @@ impl Parts {
     }
 }
 
-/// Whether X cos a + Y sin a >= L^(1/2) W on the box, for the angle of its middle.
+/// Returns whether X cos a + Y sin a >= L^(1/2) W on the box, for the angle of its middle.
 fn holds(x: &Model, y: &Model, w_sq: &Model, claim: f64, cost: &mut [f64; 4]) -> bool {
     let (cos, sin) = (x.middle().max(0.0), y.middle());
     let size = cos.hypot(sin);
@@ -127,7 +127,8 @@ fn holds(x: &Model, y: &Model, w_sq: &Model, claim: f64, cost: &mut [f64; 4]) ->
 }
 
 impl Claim {
-    /// Whether the points of a frame show the claim for crank angles from the x axis; else what each axis costs.
+    /// Returns whether the points of a frame show the claim for crank angles from the x axis; else adds the cost of
+    /// each axis to `cost`.
     pub(super) fn holds_on_axis(
         &self,
         frame: &Frame,
@@ -172,7 +173,7 @@ impl Claim {
         })
     }
 
-    /// The crank's length that gives the ground this length, over a range of p.
+    /// Returns the crank's length that gives the ground this length, over a range of p.
     fn by_ground(&self, length: f64, p: Interval) -> Option<Model> {
         let centre = 0.5 * (p.low + p.high);
         let half = (p.high - centre).max(centre - p.low).next_up();

@@ -1,4 +1,4 @@
-//! One box: whether every linkage in it has a sum of squares of at least the claimed one.
+//! The check of one box: a proof that every linkage in it has a sum of squares of at least the claimed one.
 
 use super::super::absolute::{Axis, Line};
 use super::super::chart::Class;
@@ -10,14 +10,14 @@ use super::real::crank_lengths;
 /// A box of the chart: p, phi_0, g, d.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// The lower ends.
+    /// The lower ends of the sides.
     pub low: [f64; 4],
-    /// The upper ends.
+    /// The upper ends of the sides.
     pub high: [f64; 4],
 }
 
 impl Region {
-    /// Both parts along an axis, which meet at `middle`.
+    /// Returns both parts along an axis, which meet at `middle`.
     pub fn parts(&self, axis: usize, middle: f64) -> [Region; 2] {
         let (mut lower, mut upper) = (*self, *self);
         lower.high[axis] = middle;
@@ -29,14 +29,15 @@ impl Region {
         Interval { low: self.low[axis], high: self.high[axis] }
     }
 
-    /// No linkage is in it: |d| > min(g, pi - g) everywhere.
+    /// Returns whether no linkage is in it: |d| > min(g, pi - g) everywhere.
     pub fn is_outside(&self) -> bool {
         let (g, d) = (self.side(2), self.side(3));
         let least = d.low.max(-d.high).max(0.0);
         least > g.high || least > (Interval::pi() - g).high
     }
 
-    /// |sin g sin d| < p cos d |cos g| everywhere: the other half of the chart has the cognates of all its linkages.
+    /// Returns whether |sin g sin d| < p cos d |cos g| everywhere: then the other half of the chart has the cognates
+    /// of all its linkages.
     pub fn has_cognates(&self) -> bool {
         let ([cos_g, sin_g], [cos_d, sin_d]) = (self.side(2).cos_sin(), self.side(3).cos_sin());
         let least = |x: Interval| x.low.max(-x.high).max(0.0);
@@ -46,12 +47,12 @@ impl Region {
     }
 }
 
-/// What came of a box.
+/// The result for a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shown {
     /// The claim holds on all of it.
     Yes,
-    /// It may be shown on its halves: across this axis.
+    /// The claim is not shown; it may be on the halves across this axis.
     Not(usize),
 }
 
@@ -61,22 +62,22 @@ pub struct Claim {
     pub(super) class: Class,
     turns: Vec<[Interval; 2]>,
     whole: Frame,
-    /// All points but one; `None` where the others are too much alike.
+    /// The frames of all points but one; `None` if the others are too much alike.
     fewer: Vec<Option<Frame>>,
     pub(super) cap: f64,
     pub(super) claim: f64,
-    /// What is known where crank angles are from the x axis.
+    /// The known pivots, directions and limits if crank angles are from the x axis.
     axis: Option<Axis>,
 }
 
-/// u at a point, with the sizes of its parts.
+/// The direction u at a point, with bounds of the sizes of its parts.
 pub(super) struct Direction {
     u: [Model; 2],
     size: [f64; 2],
 }
 
 impl Claim {
-    /// The claim; `None` where the target's figures are too much alike to bound anything.
+    /// Creates the claim; `None` if the target's figures are too much alike to bound anything.
     pub fn new(
         class: Class,
         direction: f64,
@@ -90,7 +91,7 @@ impl Claim {
         Claim::of(class, points, turns, cap, claim, None)
     }
 
-    /// The claim for crank angles from the x axis.
+    /// Creates the claim for crank angles from the x axis; `None` as in [`Claim::new`].
     pub fn on_axis(
         class: Class,
         points: &[[f64; 2]],
@@ -131,7 +132,7 @@ impl Claim {
         Some(Claim { class, turns, whole, fewer, cap, claim, axis })
     }
 
-    /// No linkage is in a box: of no length of the crank, or |d| > min(g, pi - g) everywhere.
+    /// Returns whether no linkage is in a box: no length of the crank fits, or |d| > min(g, pi - g) everywhere.
     pub fn is_outside(&self, region: &Region) -> bool {
         let excluded = |axis: &Axis| {
             let [least, greatest] = crank_lengths(axis, self.class, region.side(0));
@@ -140,13 +141,14 @@ impl Claim {
         region.is_outside() || self.axis.as_ref().is_some_and(excluded)
     }
 
-    /// All linkages of a box have cognates in the other half of the chart, with the same crank angles. These have another
-    /// A, and a K that is not real where that of the linkage is.
+    /// Returns whether all linkages of a box have cognates in the other half of the chart, with the same crank
+    /// angles. These have another A, and a K that is not real if that of the linkage is, so it is false for crank
+    /// angles from the x axis.
     pub fn has_cognates(&self, region: &Region) -> bool {
         self.axis.is_none() && region.has_cognates()
     }
 
-    /// Whether the claim can be seen to hold on a box.
+    /// Tries to show that the claim holds on a box.
     pub fn look(&self, region: &Region) -> Shown {
         if self.claim <= 0.0 || self.is_outside(region) || self.has_cognates(region) {
             return Shown::Yes;
@@ -166,13 +168,14 @@ impl Claim {
             }
         }
         for (k, cost) in cost.iter_mut().enumerate() {
-            // Widths decide where nothing is known.
+            // The widths decide if nothing is known.
             *cost += 1e-6 * (region.high[k] - region.low[k]);
         }
         Shown::Not((0..4).max_by(|&i, &j| cost[i].total_cmp(&cost[j])).unwrap_or(0))
     }
 
-    /// u at every point (`None`: nothing is known of it), and the point whose crank pin is nearest to B with f^2 there.
+    /// Encloses u at every point (`None`: nothing is known of it); returns with them the point whose crank pin is
+    /// nearest to B, and f^2 there.
     fn directions(&self, region: &Region) -> (Vec<Option<Direction>>, Option<(usize, f64)>) {
         let mut centre = [0.0; 4];
         let mut half = [0.0; 4];
@@ -220,7 +223,7 @@ impl Claim {
         (all, nearest)
     }
 
-    /// Whether the points of a frame show the claim; else what each axis costs.
+    /// Returns whether the points of a frame show the claim; else adds the cost of each axis to `cost`.
     fn shown(&self, frame: &Frame, region: &Region, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
         match &self.axis {
             None => self.holds(frame, us, cost),
@@ -231,7 +234,8 @@ impl Claim {
         }
     }
 
-    /// The same where A and K are any.
+    /// Returns whether the points of a frame show the claim for any A and K; else adds the cost of each axis to
+    /// `cost`.
     fn holds(&self, frame: &Frame, us: &[Option<Direction>], cost: &mut [f64; 4]) -> bool {
         let size_sq = frame.size_sq.low;
         if self.claim >= size_sq {
@@ -274,14 +278,14 @@ impl Claim {
     }
 }
 
-/// <b, v> = sum conj(b) v.
+/// Computes the inner product <b, v> = sum conj(b) v.
 fn product(b: &[[f64; 2]], v: &[[f64; 2]]) -> [f64; 2] {
     b.iter()
         .zip(v)
         .fold([0.0; 2], |[re, im], (b, v)| [re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0]])
 }
 
-/// What <y, u> may owe to the parts of y along the frame's exact directions.
+/// Returns a bound of the share of <y, u> that is due to the parts of y along the frame's exact directions.
 pub(super) fn witness_slack(frame: &Frame, y: &[[f64; 2]]) -> f64 {
     let n = y.len() as f64;
     // <b, y> with its rounding and that of b; |<b, u>| <= sqrt n.
@@ -293,7 +297,8 @@ pub(super) fn witness_slack(frame: &Frame, y: &[[f64; 2]]) -> f64 {
     frame.basis.iter().map(along).sum::<f64>() * n.sqrt() * UP * UP
 }
 
-/// u in the middle of the box, off the frame's directions and of length 1: any vector would do.
+/// Returns the witness y: u in the middle of the box, projected off the frame's directions and scaled to length 1.
+/// Any vector would be valid.
 pub(super) fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]> {
     let mut y: Vec<[f64; 2]> =
         at.iter().map(|d| d.as_ref().map_or([0.0; 2], |d| [d.u[0].middle(), d.u[1].middle()])).collect();
@@ -313,7 +318,7 @@ pub(super) fn witness(frame: &Frame, at: &[&Option<Direction>]) -> Vec<[f64; 2]>
     y
 }
 
-/// Both parts of <v, u> over the box.
+/// Encloses the real and the imaginary part of <v, u> over the box.
 pub(super) fn functional(v: &[[f64; 2]], at: &[&Option<Direction>], slack: f64) -> [Model; 2] {
     let (mut re, mut im) = (Sum::EMPTY, Sum::EMPTY);
     for (v, direction) in v.iter().zip(at) {

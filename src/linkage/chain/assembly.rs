@@ -1,4 +1,4 @@
-//! From names to numbers: every point of a chain resolved once, every part checked.
+//! Assembly of a chain from its named parts: every point's name resolved once, every part checked.
 
 use super::builder::{ChainBuilder, MAX_POINT_NAME};
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
@@ -17,14 +17,14 @@ pub(super) struct Assembly<'a> {
     names: Vec<String>,
     known: HashMap<String, usize>,
     links: Vec<Link>,
-    /// For each point the links that it is on.
+    /// For each point the indices of the links that carry it.
     links_of: Vec<Vec<usize>>,
     /// The largest coordinate or length.
     scale: f64,
     steps: Vec<Step>,
 }
 
-/// Where an error would be.
+/// The part of the chain, and the point that it makes, to which an error is attributed.
 struct Site<'a> {
     place: ChainPlace,
     joint: &'a str,
@@ -42,7 +42,7 @@ impl Site<'_> {
     }
 }
 
-/// Finite and not too large; false for NaN.
+/// Returns whether a number is finite and not too large; false for NaN.
 fn is_usable(value: f64) -> bool {
     value.abs() <= MAX_MAGNITUDE
 }
@@ -62,7 +62,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The chain but for its source.
+    /// Assembles the chain, without its source.
     pub(super) fn finish(mut self) -> Result<Chain, Box<ChainError>> {
         let source = self.source;
         for (name, at) in &source.pivots {
@@ -185,7 +185,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// A new point.
+    /// Adds a new point and returns its index.
     fn name(&mut self, site: &Site<'_>, key: &'static str, name: &str) -> Result<usize, Box<ChainError>> {
         let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         if name.is_empty() || name.chars().count() > MAX_POINT_NAME || !name.chars().all(allowed) {
@@ -200,7 +200,7 @@ impl<'a> Assembly<'a> {
         Ok(id)
     }
 
-    /// A point that is known already.
+    /// Returns the index of a point that is known already.
     fn find(
         &self,
         site: &Site<'_>,
@@ -224,7 +224,7 @@ impl<'a> Assembly<'a> {
         ))
     }
 
-    /// Two different points that are known already.
+    /// Returns the indices of two different points that are known already.
     fn two(
         &self,
         site: &Site<'_>,
@@ -239,7 +239,7 @@ impl<'a> Assembly<'a> {
         Ok([p, q])
     }
 
-    /// A link that carries two points, and where they are on it.
+    /// Returns a link that carries two points, and their positions on it.
     fn common_link(
         &self,
         site: &Site<'_>,
@@ -266,7 +266,7 @@ impl<'a> Assembly<'a> {
         self.links_of[id].push(link);
     }
 
-    /// A new link from one point to another, which lies at `at` in its frame.
+    /// Adds a new link from one point to another, which lies at `at` in its frame.
     fn link(&mut self, from: usize, to: usize, at: Complex) {
         self.links.push(Link(Vec::new()));
         let link = self.links.len() - 1;
@@ -313,7 +313,7 @@ impl<'a> Assembly<'a> {
     }
 }
 
-/// l2 + i h2 of seed equations 16 and 17: the coupler of a four-bar is such a triangle.
+/// Computes l2 + i h2 (Romero, equations 16 and 17): the coupler of a four-bar is such a triangle.
 fn offset_from_distances(
     site: &Site<'_>,
     [first, second]: &[String; 2],

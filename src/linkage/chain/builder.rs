@@ -1,74 +1,73 @@
-//! What a chain is made of, by name.
+//! Builder of a chain from its parts, which are referred to by name.
 
 use super::assembly::Assembly;
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, SliderLine, Stage};
 use crate::linkage::{AssemblyMode, CouplerSide};
 
-/// The most stages of a chain.
+/// Maximum number of stages of a chain.
 pub const MAX_STAGES: usize = 1000;
 
-/// The most characters of a point's name.
+/// Maximum number of characters of a point's name.
 pub const MAX_POINT_NAME: usize = 16;
 
-/// The parts of a chain in the order in which they are assembled; nothing is judged before
-/// [`ChainBuilder::build`].
+/// The parts of a chain in the order in which they are assembled; nothing is checked before [`ChainBuilder::build`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ChainBuilder {
     /// Fixed points with their names.
     pub pivots: Vec<(String, [f64; 2])>,
-    /// The crank's pivot.
+    /// Name of the crank's fixed pivot.
     pub crank_pivot: String,
-    /// The crank's joint.
+    /// Name of the crank's moving joint.
     pub crank_joint: String,
-    /// |AC|.
+    /// |AC|, the length of the crank.
     pub crank: f64,
-    /// What is hung on it.
+    /// The stages that follow the crank.
     pub stages: Vec<Stage>,
-    /// The point whose path is wanted; none: the last that is made.
+    /// Name of the traced point; `None` for the last point that is made.
     pub trace: Option<String>,
 }
 
 impl ChainBuilder {
-    /// No part yet.
+    /// Returns a builder without parts.
     pub fn new() -> Self {
         ChainBuilder::default()
     }
 
-    /// A fixed pivot.
+    /// Adds a fixed pivot.
     #[must_use]
     pub fn pivot(mut self, name: &str, at: [f64; 2]) -> Self {
         self.pivots.push((name.into(), at));
         self
     }
 
-    /// The driven crank: it turns about a fixed pivot and carries `joint` at the distance `length`.
+    /// Sets the driven crank: it turns about a fixed pivot and carries `joint` at the distance `length`.
     #[must_use]
     pub fn crank(mut self, pivot: &str, joint: &str, length: f64) -> Self {
         (self.crank_pivot, self.crank_joint, self.crank) = (pivot.into(), joint.into(), length);
         self
     }
 
-    /// Any stage.
+    /// Adds a stage of any kind.
     #[must_use]
     pub fn stage(mut self, stage: Stage) -> Self {
         self.stages.push(stage);
         self
     }
 
-    /// Two links of the given lengths from two points to a new joint: [`Stage::Dyad`].
+    /// Adds a dyad, two links of the given lengths from two points to a new joint: [`Stage::Dyad`].
     #[must_use]
     pub fn dyad(self, joint: &str, from: [&str; 2], lengths: [f64; 2], side: AssemblyMode) -> Self {
         self.stage(Stage::Dyad { joint: joint.into(), from: from.map(Into::into), lengths, side })
     }
 
-    /// A point on a link, along and across the line between two of its points: [`Stage::Point`].
+    /// Adds a point on a link, along and across the line between two of its points: [`Stage::Point`].
     #[must_use]
     pub fn point(self, name: &str, on: [&str; 2], offset: [f64; 2]) -> Self {
         let at = Attachment::Offset(offset);
         self.stage(Stage::Point { name: name.into(), on: on.map(Into::into), at })
     }
 
-    /// A point on a link by its distances from two of its points: [`Stage::Point`].
+    /// Adds a point on a link by its distances from two of the link's points: [`Stage::Point`].
     #[must_use]
     pub fn point_at_distances(
         self,
@@ -81,7 +80,7 @@ impl ChainBuilder {
         self.stage(Stage::Point { name: name.into(), on: on.map(Into::into), at })
     }
 
-    /// A link whose end slides along the fixed line through `through` at `angle` (radians from the x axis):
+    /// Adds a link whose end slides along the fixed line through `through` at `angle` (radians from the x axis):
     /// [`Stage::Slider`].
     #[must_use]
     pub fn slider(
@@ -97,8 +96,8 @@ impl ChainBuilder {
         self.stage(Stage::Slider { joint: joint.into(), from: from.into(), length, line, side })
     }
 
-    /// A link that turns about `pivot` while the block `block` slides along it, carrying a joint at `at`
-    /// along and across it: [`Stage::Guide`], the block ahead of the pivot and on the line through it.
+    /// Adds a link that turns about `pivot` while the block `block` slides along it, carrying a joint at `at` along and
+    /// across it: [`Stage::Guide`], the block ahead of the pivot and on the line through it.
     #[must_use]
     pub fn guide(self, joint: &str, pivot: &str, block: &str, at: [f64; 2]) -> Self {
         self.stage(Stage::Guide {
@@ -111,14 +110,14 @@ impl ChainBuilder {
         })
     }
 
-    /// The point whose path is wanted.
+    /// Sets the traced point, the one whose path is shown.
     #[must_use]
     pub fn trace(mut self, name: &str) -> Self {
         self.trace = Some(name.into());
         self
     }
 
-    /// The chain, every name resolved.
+    /// Builds the chain, with every name resolved.
     ///
     /// # Errors
     /// [`ChainError`], the first in the order of assembly, with the part, the key and the fault.
@@ -135,7 +134,7 @@ impl ChainBuilder {
         Assembly::new(&self).finish().map(|parts| Chain { source: self, ..parts })
     }
 
-    /// The name of every point in the order of assembly.
+    /// Returns the name of every point in the order of assembly.
     pub(super) fn all_names(&self) -> Vec<String> {
         let pivots = self.pivots.iter().map(|(name, _)| name.as_str());
         let crank = std::iter::once(self.crank_joint.as_str());

@@ -1,18 +1,18 @@
-//! Whole cycles of a chain: where its input can go, and the path of a point.
+//! Whole cycles of a chain: the range of its input, and the path of a point.
 
 use super::{Chain, Outcome, PointId, Pose};
 use crate::linkage::Complex;
 use std::f64::consts::TAU;
 
-/// How many samples a full turn gets when nothing else is asked: 0.5 degrees apart.
+/// Default number of samples of a full turn: 0.5 degrees apart.
 pub const DEFAULT_SAMPLES: usize = 720;
 
-/// A stretch of crank angles at which every stage closes, between two angles where one opens.
+/// An interval of crank angles at which every stage closes, between two angles at which one opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainArc {
     /// The first crank angle, radians in [0, 2 pi).
     pub from: f64,
-    /// The last one, radians, above `from` and less than a turn from it.
+    /// The last crank angle, radians, above `from` and less than a turn from it.
     pub to: f64,
     /// The stage that has no position just before `from`.
     pub limited_before: usize,
@@ -20,27 +20,27 @@ pub struct ChainArc {
     pub limited_after: usize,
 }
 
-/// How far the input of a chain can turn with the assembly signs that it has.
+/// The range of a chain's input with the assembly signs that it has.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ChainInput {
-    /// Every sample closes.
+    /// The full turn: every sample closes.
     Full,
-    /// The arcs between, in the order of their first angle.
+    /// The arcs on which the chain closes, in the order of their first angle.
     Arcs(Vec<ChainArc>),
-    /// No sample closes.
+    /// No position: no sample closes.
     Never,
 }
 
 impl ChainInput {
-    /// Whether a motor on the crank can turn through.
+    /// Returns whether the crank turns fully, so that a motor can drive it.
     pub fn is_full(&self) -> bool {
         *self == ChainInput::Full
     }
 }
 
 impl Chain {
-    /// The crank angles at which the chain closes: `samples` (at least 8) evenly over a turn, each end then
-    /// halved down to the rounding of an angle.
+    /// Finds the crank angles at which the chain closes from `samples` (at least 8) evenly over a turn; each end of an
+    /// arc is then bisected down to the rounding of an angle.
     ///
     /// A gap or an arc that lies between two samples is missed: it is a search, not a proof. A stage that is
     /// singular counts as open.
@@ -72,7 +72,7 @@ impl Chain {
         if arcs.is_empty() { ChainInput::Never } else { ChainInput::Arcs(arcs) }
     }
 
-    /// The stage that has no position at a crank angle.
+    /// Returns the stage that has no position at a crank angle.
     fn stuck_at(&self, angle: f64, pose: &mut Pose) -> Option<usize> {
         match self.position(angle, pose) {
             Outcome::Closed => None,
@@ -80,9 +80,9 @@ impl Chain {
         }
     }
 
-    /// The last closed angle on the way from a closed to an open one, and the stage that opens there.
+    /// Finds the last closed angle on the way from a closed to an open one, and the stage that opens there.
     fn edge(&self, [mut closed, mut open]: [f64; 2], pose: &mut Pose) -> (f64, usize) {
-        /// Halvings of a step of at most 45 degrees until nothing is left of it.
+        /// Number of halvings, which reduce a step of at most 45 degrees to below rounding.
         const HALVINGS: usize = 60;
         let mut stage = self.stuck_at(open, pose).unwrap_or(0);
         for _ in 0..HALVINGS {
@@ -95,7 +95,7 @@ impl Chain {
         (closed, stage)
     }
 
-    /// The path of a point over a full turn: N at phi = 2 pi i / samples; `None` where it is not known.
+    /// Computes the path of a point over a full turn: N at phi = 2 pi i / samples; `None` if it is not known.
     pub fn path(&self, point: PointId, samples: usize) -> Vec<Option<Complex>> {
         let mut pose = self.pose();
         (0..samples)

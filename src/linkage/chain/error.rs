@@ -1,4 +1,4 @@
-//! What can be wrong with the parts of a chain, told by part, key and point.
+//! Errors in the parts of a chain, each with its part, key and point.
 
 use super::builder::MAX_STAGES;
 
@@ -15,120 +15,120 @@ pub enum ChainPlace {
     Chain,
 }
 
-/// What makes parts no chain.
+/// An error in the parts of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChainError {
-    /// The part.
+    /// The part with the error.
     pub place: ChainPlace,
     /// The point that the part makes; empty for the chain as a whole.
     pub joint: String,
     /// The key in that part, as in files.
     pub key: &'static str,
-    /// Which of the key's values, counted from 0, where it has several.
+    /// Index of the key's value, counted from 0, if the key has several.
     pub index: Option<usize>,
-    /// What is wrong with it.
+    /// The kind of fault.
     pub fault: ChainFault,
 }
 
-/// What is wrong with a value.
+/// The kind of fault in a part or value of a chain.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ChainFault {
-    /// No stage and no pivot makes this point.
+    /// A point that no stage and no pivot makes.
     #[error("there is no point \"{name}\"")]
     UnknownPoint {
-        /// The point.
+        /// Name of the point.
         name: String,
-        /// Every point of the chain.
+        /// Names of all points of the chain.
         known: Vec<String>,
     },
-    /// The point is made further down, or here.
+    /// A point that is made by a later stage, or by this one.
     #[error("\"{name}\" is not known yet: it is made {}", if *.itself { "here" } else { "further down" })]
     ForwardReference {
-        /// The point.
+        /// Name of the point.
         name: String,
         /// Whether this very stage makes it.
         itself: bool,
     },
-    /// Two parts make a point of the same name.
+    /// A name of two points.
     #[error("there are two points \"{name}\"")]
     DuplicateName {
-        /// The point.
+        /// Name of the point.
         name: String,
     },
-    /// Not 1 to [`MAX_POINT_NAME`](super::MAX_POINT_NAME) letters, digits, `_` and `-`.
+    /// A name that is not 1 to [`MAX_POINT_NAME`](super::MAX_POINT_NAME) letters, digits, `_` and `-`.
     #[error("\"{name}\" is no name of a point")]
     BadName {
-        /// The text.
+        /// The text given as a name.
         name: String,
     },
-    /// The crank's pivot moves, or is no point.
+    /// A crank pivot that moves, or is no point.
     #[error("\"{name}\" is not a fixed pivot")]
     NotAPivot {
-        /// The point.
+        /// Name of the point.
         name: String,
-        /// Every pivot.
+        /// Names of all pivots.
         known: Vec<String>,
     },
     /// A number that is NaN, infinite or beyond 1e12.
     #[error("{value} is not a finite number below 1e12 in magnitude")]
     NotFinite {
-        /// The number.
+        /// The number given.
         value: f64,
     },
     /// A link of zero or negative length.
     #[error("{value}: a link's length must be positive")]
     LengthNotPositive {
-        /// The length.
+        /// The length given.
         value: f64,
     },
     /// A negative distance.
     #[error("{value}: a distance cannot be negative")]
     DistanceNegative {
-        /// The distance.
+        /// The distance given.
         value: f64,
     },
     /// A stage that names one point twice.
     #[error("\"{name}\" stands twice: a stage hangs on two different points")]
     SamePoint {
-        /// The point.
+        /// Name of the point.
         name: String,
     },
     /// Two points of no common link.
     #[error("\"{first}\" and \"{second}\" are not on one link: their distance changes")]
     NotOnOneLink {
-        /// A point.
+        /// Name of the first point.
         first: String,
-        /// Another.
+        /// Name of the second point.
         second: String,
     },
     /// Two points of a link at the same place.
     #[error("\"{first}\" and \"{second}\" coincide: they give no direction on their link")]
     Coincident {
-        /// A point.
+        /// Name of the first point.
         first: String,
-        /// Another.
+        /// Name of the second point.
         second: String,
     },
-    /// The point of a guide lies on its pivot.
+    /// A guide whose point lies on its pivot.
     #[error("the joint lies on the guide's pivot: a link needs a length")]
     NoLength,
-    /// No triangle has these sides.
+    /// Sides of no triangle.
     #[error(
         "impossible triangle: \"{first}\" and \"{second}\" are {base} apart, the distances are {d} and {e}"
     )]
     NoTriangle {
-        /// A point.
+        /// Name of the first point.
         first: String,
-        /// Another.
+        /// Name of the second point.
         second: String,
         /// Their distance on the link.
         base: f64,
-        /// From the first.
+        /// Distance from the first point.
         d: f64,
-        /// From the second.
+        /// Distance from the second point.
         e: f64,
     },
-    /// More than [`MAX_STAGES`].
+    /// More stages than [`MAX_STAGES`].
     #[error("{0} stages; at most {MAX_STAGES} are read")]
     TooManyStages(usize),
 }

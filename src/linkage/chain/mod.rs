@@ -1,9 +1,9 @@
-//! Compound mechanisms: a driven crank and stages hung on what is already known, position in closed form.
+//! Chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the
+//! position in closed form.
 //!
-//! Seed equation 19 gives C from the crank angle, then D as a meeting of two circles, then P on the link C-D
-//! (N. N. Romero Nunez 2016). A compound mechanism repeats the last two steps, stage by stage: Watt's and
-//! Stephenson's six-bars, Jansen's leg, slider-cranks, quick-returns. Each stage makes one point N from
-//! points that are known:
+//! Equation 19 of N. N. Romero Nunez (2016) gives C from the crank angle, then D as an intersection of two circles,
+//! then P on the link C-D. A compound mechanism repeats the last two steps, stage by stage: Watt's and Stephenson's
+//! six-bars, Jansen's leg, slider-cranks, quick-returns. Each stage makes one point N from points that are known:
 //!
 //! ```text
 //! crank    C = A + a e^{i phi}                                                 (equation 10)
@@ -16,7 +16,7 @@
 //! A guide is a link that turns about p while a block hinged at q slides along it, at the distance f to the
 //! left of the line through p: the rocker of a quick-return. The line of a slider is fixed or lies on a link.
 //! t = +1 or -1 is the assembly of a stage. Every point that a stage makes may carry further stages; so may
-//! any point rigidly attached to a link. What cannot be built in this order (an Assur group of a higher
+//! any point rigidly attached to a link. A mechanism that cannot be built in this order (an Assur group of a higher
 //! class, such as Stephenson's six-bar driven at its floating dyad) is no chain.
 //!
 //! Velocities and accelerations are in [`motion`], whole cycles in [`cycle`].
@@ -35,30 +35,30 @@ pub use motion::Motion;
 use super::position::{Meeting, meeting};
 use super::{AssemblyMode, Complex, FLAT_TOLERANCE, cross, dot, point, turned};
 
-/// Two points are one where they are nearer than this many roundings of the largest coordinate or length.
+/// Distance within which two points coincide, in roundings of the largest coordinate or length.
 const COINCIDENT_ROUNDINGS: f64 = 16.0;
 
-/// A point of a chain, from [`Chain::point_id`].
+/// Identifier of a point of a chain, from [`Chain::point_id`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct PointId(pub(super) usize);
 
 impl PointId {
-    /// Its place in [`Chain::names`]: pivots, the crank's joint, then one point a stage.
+    /// Returns the index of the point in [`Chain::names`]: pivots, the crank's joint, then one point a stage.
     pub fn index(self) -> usize {
         self.0
     }
 }
 
-/// How a stage makes its point; lengths in the unit of the file, angles in radians.
+/// A stage of a chain, which makes one point; lengths in the unit of the file, angles in radians.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stage {
     /// Two links that meet in a new joint.
     Dyad {
         /// The new joint N.
         joint: String,
-        /// The points p and q that it hangs on.
+        /// The points p and q to which the links are attached.
         from: [String; 2],
-        /// |pN| and |qN|.
+        /// The link lengths |pN| and |qN|.
         lengths: [f64; 2],
         /// Plus: N lies left of the line from p to q.
         side: AssemblyMode,
@@ -69,16 +69,16 @@ pub enum Stage {
         name: String,
         /// Two points p and q of that link.
         on: [String; 2],
-        /// Where N is.
+        /// The position of N on the link.
         at: Attachment,
     },
     /// A link whose end slides along a line.
     Slider {
         /// The new joint N.
         joint: String,
-        /// The point p that the link hangs on.
+        /// The point p to which the link is attached.
         from: String,
-        /// r = |pN|.
+        /// The link length r = |pN|.
         length: f64,
         /// The line that N keeps to.
         line: SliderLine,
@@ -93,9 +93,9 @@ pub enum Stage {
         pivot: String,
         /// The point q of the block.
         block: String,
-        /// w: N along and across the guide, from p.
+        /// w, the position of N along and across the guide, from p.
         at: [f64; 2],
-        /// f: how far to the left of the line through p the block slides.
+        /// f, the distance of the block to the left of the line through p.
         offset: f64,
         /// Plus: the block is ahead of p along the guide.
         side: AssemblyMode,
@@ -103,7 +103,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// The name of the point that the stage makes.
+    /// Returns the name of the point that the stage makes.
     pub fn joint(&self) -> &str {
         match self {
             Stage::Dyad { joint, .. } | Stage::Slider { joint, .. } | Stage::Guide { joint, .. } => joint,
@@ -112,12 +112,12 @@ impl Stage {
     }
 }
 
-/// Where a point is on its link.
+/// Position of a point on its link.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Attachment {
-    /// Along the line from p to q and across it (left is positive), from p, as lengths.
+    /// Lengths from p along the line from p to q and across it (left is positive).
     Offset([f64; 2]),
-    /// |pN|, |qN| and the side of the line from p to q: seed equations 16 and 17.
+    /// Distances |pN|, |qN| and the side of the line from p to q (Romero, equations 16 and 17).
     Distances([f64; 2], super::CouplerSide),
 }
 
@@ -135,7 +135,7 @@ pub enum SliderLine {
     OnLink {
         /// p and q, two points of that link.
         along: [String; 2],
-        /// How far to the left.
+        /// Distance of the slider's line to the left of the line from p to q.
         offset: f64,
     },
 }
@@ -164,12 +164,12 @@ pub struct Chain {
     pub(super) steps: Vec<Step>,
     pub(super) trace: usize,
     pub(super) links: Vec<Vec<PointId>>,
-    /// |V|^2 at and below which two points are one.
+    /// |V|^2 at and below which two points coincide.
     pub(super) coincident_sq: f64,
     pub(super) source: ChainBuilder,
 }
 
-/// A stage as the numbers that are multiplied; p, q and so on are places in the list of points.
+/// A stage as the coefficients of its equations; p, q and so on are indices into the list of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Step {
     Dyad { p: usize, q: usize, radius_sq: f64, half_difference: f64, sine_per_cross: f64, t: f64 },
@@ -178,26 +178,26 @@ pub(super) enum Step {
     Guide { p: usize, q: usize, w: Complex, offset: f64, t: f64 },
 }
 
-/// O + x u, fixed or on the link through p and q.
+/// The line O + x u of a slider, fixed or on the link through p and q.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Line {
     Fixed { origin: Complex, direction: Complex },
     OnLink { p: usize, q: usize, per_length: f64, offset: f64 },
 }
 
-/// What became of a position or of a motion.
+/// Result of a position or motion analysis of a chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Every point is known.
     Closed,
     /// The stage (counted from 0) cannot be assembled at this crank angle.
     Open {
-        /// The stage.
+        /// Index of the stage, counted from 0.
         stage: usize,
     },
-    /// The stage has no definite answer: a position where its two points coincide, a velocity at a toggle.
+    /// The stage has no definite answer: no position if its two points coincide, no velocity at a toggle.
     Singular {
-        /// The stage.
+        /// Index of the stage, counted from 0.
         stage: usize,
     },
     /// The crank angle, its speed or its acceleration is NaN, infinite or beyond
@@ -206,12 +206,12 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Whether every point is known.
+    /// Returns whether every point is known.
     pub fn is_closed(self) -> bool {
         self == Outcome::Closed
     }
 
-    /// The stage that has no answer.
+    /// Returns the stage that has no answer, if there is one.
     pub fn stage(self) -> Option<usize> {
         match self {
             Outcome::Open { stage } | Outcome::Singular { stage } => Some(stage),
@@ -220,76 +220,76 @@ impl Outcome {
     }
 }
 
-/// Room for the points of one position, from [`Chain::pose`].
+/// Buffer for the points of one position, from [`Chain::pose`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pose {
     pub(super) points: Vec<Complex>,
-    /// How many of them are known.
+    /// Number of known points.
     pub(super) known: usize,
 }
 
 impl Pose {
-    /// Where a point is; `None` for points of and after a stage that has no position.
+    /// Returns the position of a point; `None` for points of and after a stage that has none.
     pub fn point(&self, id: PointId) -> Option<Complex> {
         self.known().get(id.0).copied()
     }
 
-    /// The points that are known, in the order of [`Chain::names`].
+    /// Returns the points that are known, in the order of [`Chain::names`].
     pub fn known(&self) -> &[Complex] {
         &self.points[..self.known]
     }
 }
 
 impl Chain {
-    /// Room for a position.
+    /// Allocates a buffer for a position.
     pub fn pose(&self) -> Pose {
         let mut points = vec![Complex::new(0.0, 0.0); self.names.len()];
         points[..self.pivots.len()].copy_from_slice(&self.pivots);
         Pose { points, known: self.pivots.len() }
     }
 
-    /// The names of the points: pivots, the crank's joint, then one a stage.
+    /// Returns the names of the points: pivots, the crank's joint, then one a stage.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The point of a name.
+    /// Returns the point with the given name.
     pub fn point_id(&self, name: &str) -> Option<PointId> {
         self.names.iter().position(|n| n == name).map(PointId)
     }
 
-    /// The point whose path is wanted: the one that was named, or the last that was made.
+    /// Returns the traced point: the one that was named, or the last that was made.
     pub fn trace(&self) -> PointId {
         PointId(self.trace)
     }
 
-    /// The point that a stage makes; `None` beyond the last stage.
+    /// Returns the point that a stage makes; `None` beyond the last stage.
     pub fn joint_of(&self, stage: usize) -> Option<PointId> {
         (stage < self.steps.len()).then_some(PointId(self.pivots.len() + 1 + stage))
     }
 
-    /// How many stages follow the crank.
+    /// Returns the number of stages that follow the crank.
     pub fn stages(&self) -> usize {
         self.steps.len()
     }
 
-    /// The links as the points that are rigidly attached to each; the first is the ground, the second the
+    /// Returns the links, each as the points that are rigidly attached to it; the first is the ground, the second the
     /// crank.
     pub fn links(&self) -> &[Vec<PointId>] {
         &self.links
     }
 
-    /// What the chain was made from.
+    /// Returns the builder from which the chain was made.
     pub fn source(&self) -> &ChainBuilder {
         &self.source
     }
 
-    /// The position at the crank angle `crank_angle` (radians from the x axis, counter-clockwise), in closed
+    /// Computes the position at the crank angle `crank_angle` (radians from the x axis, counter-clockwise), in closed
     /// form, stage by stage as in the [module's](self) equations. Allocates nothing.
     ///
-    /// Open where k (dyad), r^2 - h^2 (slider) or |V|^2 - f^2 (guide) is negative beyond [`FLAT_TOLERANCE`];
-    /// singular where the two points of a dyad with equal lengths, or pivot and block of a guide without
-    /// offset, coincide within rounding: every direction closes there. A toggle is a position like others.
+    /// Open if k (dyad), r^2 - h^2 (slider) or |V|^2 - f^2 (guide) is negative beyond [`FLAT_TOLERANCE`]; singular if
+    /// the two points of a dyad with equal lengths, or pivot and block of a guide without offset, coincide within
+    /// rounding: every direction closes there. A toggle is a position like others.
     ///
     /// # Panics
     /// When `pose` is of a chain with another number of points.
@@ -299,7 +299,7 @@ impl Chain {
         self.position_toward(Complex::new(cos, sin), pose)
     }
 
-    /// As [`Chain::position`] from e^{i phi}, for cosines and sines that are tabulated.
+    /// Computes the position as [`Chain::position`] does from e^{i phi}, for tabulated cosines and sines.
     ///
     /// # Panics
     /// When `pose` is of a chain with another number of points.
@@ -330,7 +330,7 @@ impl Chain {
         Outcome::Closed
     }
 
-    /// The point of one stage.
+    /// Computes the point of one stage.
     #[inline(always)]
     fn place(&self, step: &Step, points: &[Complex]) -> Result<Complex, Stuck> {
         match *step {
@@ -361,20 +361,20 @@ impl Chain {
     }
 }
 
-/// Why a stage has no position.
+/// The reason why a stage has no position.
 #[derive(Clone, Copy)]
 pub(super) enum Stuck {
     Open,
     Singular,
 }
 
-/// Whether a stage closes: its gap is at least zero. NaN is open.
+/// Returns `Ok` if a stage closes, that is, if its gap is at least zero. NaN is open.
 #[inline(always)]
 fn closes(gap: f64) -> Result<(), Stuck> {
     if gap >= 0.0 { Ok(()) } else { Err(Stuck::Open) }
 }
 
-/// x and u with V = u (x + i f): how far the block is along its guide, and the guide's direction.
+/// Computes x and u with V = u (x + i f): the distance of the block along its guide, and the guide's direction.
 #[inline(always)]
 pub(super) fn guide(v: Complex, offset: f64, t: f64, coincident_sq: f64) -> Result<(f64, Complex), Stuck> {
     let distance_sq = dot(v, v);
@@ -389,7 +389,7 @@ pub(super) fn guide(v: Complex, offset: f64, t: f64, coincident_sq: f64) -> Resu
 }
 
 impl Line {
-    /// O and u.
+    /// Returns O and u.
     #[inline(always)]
     pub(super) fn place(&self, points: &[Complex]) -> (Complex, Complex) {
         match *self {
@@ -402,13 +402,13 @@ impl Line {
     }
 }
 
-/// The |V|^2 below which two points of a mechanism of this scale are one.
+/// Returns the |V|^2 at and below which two points of a mechanism of this scale coincide.
 pub(super) fn coincident_sq(scale: f64) -> f64 {
     let nearest = COINCIDENT_ROUNDINGS * f64::EPSILON * scale;
     nearest * nearest
 }
 
-/// The direction of a fixed line: e^{i angle}.
+/// Returns the fixed line through a point with the direction e^{i angle}.
 pub(super) fn fixed_line(through: [f64; 2], angle: f64) -> Line {
     Line::Fixed { origin: point(through), direction: Complex::from_polar(1.0, angle) }
 }

@@ -1,6 +1,6 @@
 //! Velocity and acceleration of every point of a chain, by differentiating each stage once and twice.
 //!
-//! With N' for dN/dt, n the normal i u of a line and p, q the points that a stage hangs on:
+//! With N' for dN/dt, n the normal i u of a line and p, q the points to which a stage is attached:
 //!
 //! ```text
 //! crank    C' = i omega (C - A)                     C'' = (i alpha - omega^2)(C - A)
@@ -14,7 +14,7 @@
 //!
 //! (De Castro's equations 8 to 24 in natural coordinates, stage by stage; x' = <u, V'> + f theta'.) Dyad and
 //! slider are 2x2 systems whose determinant is the sine of the stage's transmission angle times its lengths.
-//! Where that sine is zero the stage is at a toggle and has no velocity: the answer is singular.
+//! If that sine is zero, the stage is at a toggle and has no velocity: the answer is singular.
 
 use super::{Chain, Line, Outcome, PointId, Pose, Step, guide};
 use crate::linkage::{Complex, FLAT_TOLERANCE, MAX_MAGNITUDE, cross, dot, turned};
@@ -23,7 +23,7 @@ use crate::linkage::{Complex, FLAT_TOLERANCE, MAX_MAGNITUDE, cross, dot, turned}
 /// solver takes the stage as flat ([`FLAT_TOLERANCE`]), and a root of rounding errors is no derivative.
 pub const TOGGLE_SINE_SQ: f64 = FLAT_TOLERANCE;
 
-/// Room for the positions, velocities and accelerations of one instant, from [`Chain::motion`].
+/// Buffer for the positions, velocities and accelerations of one instant, from [`Chain::motion`].
 ///
 /// Units: length, length/s and length/s^2 for an input in rad/s and rad/s^2.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,33 +31,33 @@ pub struct Motion {
     pose: Pose,
     velocities: Vec<Complex>,
     accelerations: Vec<Complex>,
-    /// How many velocities and accelerations are known.
+    /// Number of points with a known velocity and acceleration.
     known: usize,
 }
 
 impl Motion {
-    /// The positions; at a toggle they are known where the velocities are not.
+    /// Returns the positions; at a toggle they are known although the velocities are not.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// Where a point is.
+    /// Returns the position of a point; `None` for points of and after a stage that has none.
     pub fn point(&self, id: PointId) -> Option<Complex> {
         self.pose.point(id)
     }
 
-    /// The velocity of a point; `None` of and after a stage that has none.
+    /// Returns the velocity of a point; `None` for points of and after a stage that has none.
     pub fn velocity(&self, id: PointId) -> Option<Complex> {
         self.velocities[..self.known].get(id.0).copied()
     }
 
-    /// The acceleration of a point; `None` of and after a stage that has none.
+    /// Returns the acceleration of a point; `None` for points of and after a stage that has none.
     pub fn acceleration(&self, id: PointId) -> Option<Complex> {
         self.accelerations[..self.known].get(id.0).copied()
     }
 }
 
-/// `Some` where sine^2 = `part` / `whole` is above [`TOGGLE_SINE_SQ`]; NaN is a toggle.
+/// Returns `Some` if sine^2 = `part` / `whole` is above [`TOGGLE_SINE_SQ`]; NaN counts as a toggle.
 #[inline(always)]
 fn away_from_toggle(part: f64, whole: f64) -> Option<()> {
     (part > TOGGLE_SINE_SQ * whole).then_some(())
@@ -66,13 +66,13 @@ fn away_from_toggle(part: f64, whole: f64) -> Option<()> {
 /// N' and N'' of a stage.
 type Derivatives = (Complex, Complex);
 
-/// The x with <a, x> = alpha and <b, x> = beta; `cross` is a x b.
+/// Returns the x with <a, x> = alpha and <b, x> = beta; `per_cross` is 1/(a x b).
 #[inline(always)]
 fn solve(a: Complex, b: Complex, per_cross: f64, alpha: f64, beta: f64) -> Complex {
     Complex::new((alpha * b.im - beta * a.im) * per_cross, (beta * a.re - alpha * b.re) * per_cross)
 }
 
-/// The points of a stage with their derivatives.
+/// The points that are known so far, with their velocities and accelerations.
 #[derive(Clone, Copy)]
 struct Known<'a> {
     points: &'a [Complex],
@@ -88,15 +88,15 @@ impl Known<'_> {
 }
 
 impl Chain {
-    /// Room for a motion.
+    /// Allocates a buffer for a motion.
     pub fn motion(&self) -> Motion {
         let zero = vec![Complex::new(0.0, 0.0); self.names.len()];
         let known = self.pivots.len();
         Motion { pose: self.pose(), velocities: zero.clone(), accelerations: zero, known }
     }
 
-    /// Positions, velocities and accelerations at the crank angle (radians) with the input speed
-    /// `omega` = phi' (rad/s) and acceleration `alpha` = phi'' (rad/s^2). Allocates nothing.
+    /// Computes positions, velocities and accelerations at the crank angle (radians) with the input speed `omega` =
+    /// phi' (rad/s) and acceleration `alpha` = phi'' (rad/s^2). Allocates nothing.
     ///
     /// Open and singular as [`Chain::position`]; singular as well at a stage's toggle (squared sine of its
     /// transmission angle at most [`TOGGLE_SINE_SQ`]): all positions are known there, and the velocities of
@@ -145,7 +145,7 @@ impl Chain {
         position
     }
 
-    /// N' and N'' of one stage; `None` at its toggle.
+    /// Computes N' and N'' of one stage; `None` at its toggle.
     #[inline(always)]
     fn differentiate(&self, step: &Step, n: Complex, known: Known<'_>) -> Option<Derivatives> {
         match *step {
@@ -201,7 +201,7 @@ impl Chain {
     }
 }
 
-/// O, O', O'' and u, u', u'' of a line.
+/// A line O + x u in motion: O, O', O'' and u, u', u''.
 struct MovingLine {
     origin: [Complex; 3],
     direction: [Complex; 3],

@@ -1,18 +1,18 @@
-//! The reduced form on one assembly as least squares in a few unknowns, with Kaufman's Jacobian.
+//! The reduced form on one assembly as a least-squares problem in a few unknowns, with Kaufman's Jacobian.
 //!
-//! The residual is r = T' - K a' with the columns orthonormalised in the order 1 (where A is free), u, a: u' is
-//! u centred, a' is a centred and off u', T' alike. The model's derivative at fixed A, K, Z is
+//! The residual is r = T' - K a' with the columns orthogonalised in the order 1 (if A is free), u, a: u' is u centred,
+//! a' is a centred and off u', T' alike. The model's derivative at fixed A, K, Z is
 //!
 //! ```text
-//! m_x = i Z u dtheta3/dx + (what moves K or a)       J_x = -(m_x off 1, u', a')         (Kaufman 1975)
+//! m_x = i Z u dtheta3/dx + (terms that move K or a)       J_x = -(m_x off 1, u', a')         (Kaufman 1975)
 //! dtheta3/dphi = k <V, i p e>;  d/dln p = k <V, p e>;  d/dln q = k q <V, u>;  d/dln r = -k r^2
 //! k = -t/H,   V = p e + q u - 1
 //! ```
 //!
-//! A real column (K of known direction) takes off the real part along it only; a known K nothing. Where a limit
-//! binds, |K| = rho(p, q, r) is a product of powers, K moves with it, and of a complex K the turn alone is left:
-//! the real column i K. J^T r is half the exact gradient of the reduced cost: what Kaufman leaves out is
-//! orthogonal to r.
+//! For a real column (K of known direction) only the real part along it is projected off; for a known K nothing. If a
+//! limit is active, |K| = rho(p, q, r) is a product of powers and K moves with it; of a complex K only the turn
+//! remains: the real column i K. J^T r is half the exact gradient of the reduced cost: the term that Kaufman leaves out
+//! is orthogonal to r.
 
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::linkage::dispatch::vectorised;
@@ -64,7 +64,7 @@ fn mul(x: Pair, y: Pair) -> Pair {
 fn scale(x: Pair, by: F64x8) -> Pair {
     [x[0] * by, x[1] * by]
 }
-/// conj(x) y.
+/// Returns conj(x) y.
 #[inline(always)]
 fn dot(x: Pair, y: Pair) -> Pair {
     [x[0] * y[0] + x[1] * y[1], x[0] * y[1] - x[1] * y[0]]
@@ -78,67 +78,67 @@ fn total(x: Pair) -> Complex {
     Complex::new(x[0].sum(), x[1].sum())
 }
 
-/// What a point of the reduced form stands for.
+/// The physical solution at a point of the reduced form.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution {
     /// Pivots, links and coupler point.
     pub shape: Shape,
-    /// The crank angle from the x axis at the prescribed angle 0, where the offset is free; else 0.
+    /// The crank angle from the x axis at the prescribed angle 0, if the offset is free; else 0.
     pub offset: f64,
     /// The weighted sum of squares.
     pub cost: f64,
 }
 
-/// What of K is solved for: which column is projected off.
+/// The part of K that is solved for, which determines the column that is projected off.
 #[derive(Clone, Copy, Debug)]
 enum KColumn {
-    /// Length and direction.
+    /// Length and direction are solved for.
     Complex,
-    /// One real number along a direction of unit length.
+    /// One real number along a direction of unit length is solved for.
     Real(Complex),
-    /// Nothing.
+    /// K is known; nothing is solved for.
     Known,
 }
 
-/// The linear unknowns and what they were solved from.
+/// The linear unknowns and the quantities from which they were solved.
 #[derive(Clone, Copy, Debug)]
 struct Linear {
     ratio: [f64; 3],
     turn: Complex,
     column: KColumn,
-    /// d ln|K| / d(ln p, ln q, ln r) where |K| is not solved for.
+    /// The slope d ln|K| / d(ln p, ln q, ln r) if |K| is not solved for.
     slope: [f64; 3],
-    /// sum w e, sum w u.
+    /// The sums of w e and w u.
     e_sum: Complex,
     u_sum: Complex,
-    /// |u'|^2, |a'|^2.
+    /// The squared norms |u'|^2 and |a'|^2.
     u_sq: f64,
     a_sq: f64,
     k: Complex,
     z: Complex,
 }
 
-/// The reduced form on one assembly, with room for its columns: nothing is allocated after it is made.
+/// The reduced form on one assembly, with workspace for its columns: nothing is allocated after it is made.
 #[derive(Clone, Debug)]
 pub struct ProjectedFit<'a> {
     form: &'a Projection,
     assembly: AssemblyMode,
     e: Column,
-    /// u, unit.
+    /// The unit vectors u.
     u: Column,
-    /// t/H.
+    /// The values t/H.
     by_height: Vec<f64>,
-    /// sqrt(w) times: u', a', T', r.
+    /// The columns u' and a', and T', later the residual r, all times sqrt(w).
     u_off: Column,
     a_off: Column,
     rest: Column,
-    /// sqrt(w) m_x.
+    /// The columns sqrt(w) m_x.
     moved: [Column; UNKNOWNS],
     linear: Option<Linear>,
 }
 
 impl<'a> ProjectedFit<'a> {
-    /// The form on an assembly.
+    /// Creates the fit on an assembly.
     pub fn new(form: &'a Projection, assembly: AssemblyMode) -> Self {
         let n = form.columns.weight.len();
         let column = || Column::new(n);
@@ -156,13 +156,13 @@ impl<'a> ProjectedFit<'a> {
         }
     }
 
-    /// Turns to another assembly.
+    /// Switches to another assembly.
     pub fn set_assembly(&mut self, assembly: AssemblyMode) {
         self.assembly = assembly;
         self.linear = None;
     }
 
-    /// Pivots, links and coupler point at `x`; `None` where the cost does not exist or the ground has no length.
+    /// Returns pivots, links and coupler point at `x`; `None` if the cost does not exist or the ground has no length.
     pub fn solution(&mut self, x: &Reduced) -> Option<Solution> {
         let cost = self.cost(x)?;
         let Linear { ratio: [p, q, r], turn, e_sum, u_sum, k, z, .. } = self.linear?;
@@ -188,8 +188,8 @@ impl<'a> ProjectedFit<'a> {
         Some(Solution { shape, offset, cost })
     }
 
-    /// Positions of the linkage: e, u and t/H at every point; the sums of w e and w u. `None` where the loop is
-    /// open at a point.
+    /// Computes the positions of the linkage: e, u and t/H at every point; returns the sums of w e and w u. `None` if
+    /// the loop is open at a point.
     #[inline(always)]
     fn place(&mut self, [p, q, r]: [f64; 3], turn: Complex) -> Option<[Complex; 2]> {
         let c = &self.form.columns;
@@ -222,7 +222,8 @@ impl<'a> ProjectedFit<'a> {
         (!open && sums.iter().all(|z| z.re.is_finite() && z.im.is_finite())).then_some(sums)
     }
 
-    /// Orthonormalises, solves for K and Z and leaves the residual in `rest`; the cost over the weights' sum.
+    /// Orthogonalises the columns, solves for K and Z and leaves the residual in `rest`; returns the cost over the
+    /// weights' sum.
     #[inline(always)]
     fn project(&mut self, ratio: [f64; 3], turn: Complex, direction: Complex) -> Option<f64> {
         let [e_sum, u_sum] = self.place(ratio, turn)?;
@@ -305,7 +306,7 @@ impl<'a> ProjectedFit<'a> {
         cost.is_finite().then_some(cost)
     }
 
-    /// sqrt(w) m_x for all unknowns, then J^T J and J^T r.
+    /// Computes sqrt(w) m_x for all unknowns, then J^T J and J^T r.
     #[inline(always)]
     fn linearised(&mut self, at: &Linear) -> Normal<UNKNOWNS> {
         let form = self.form;
@@ -318,7 +319,7 @@ impl<'a> ProjectedFit<'a> {
         let (k, i_k) = (at.k, turned(at.k));
         let from_b = form.measured_from_b();
         let nothing = Complex::new(0.0, 0.0);
-        // d(K a)/dln x = slope K a, and K/p besides for x = p where the column is e - 1/p.
+        // d(K a)/dln x = slope K a, plus K/p for x = p if the column is e - 1/p.
         let by_ratio = at.slope.map(|slope| k * slope);
         let to_b = if from_b { k / p } else { nothing };
         let ratio_constant =
@@ -411,7 +412,7 @@ impl<'a> ProjectedFit<'a> {
 }
 
 impl Projection {
-    /// The crank's length at a limit that binds, with d ln / d(ln p, ln q, ln r); `None` where `length` is inside.
+    /// Returns the crank's length at an active limit, with d ln / d(ln p, ln q, ln r); `None` if `length` is inside.
     #[inline]
     fn limited_length(&self, [p, q, r]: [f64; 3], length: f64) -> Option<(f64, [f64; 3])> {
         const SLOPES: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, -1.0]];

@@ -1,16 +1,16 @@
-//! The reduced cost of many draws, eight side by side.
+//! Screening of starts: the reduced cost of many draws, eight at a time in vector lanes.
 //!
-//! Only sums over the points are needed: with <x, y> = sum w conj(x) y (centred where A is free),
-//! M_aa = <a, a>, M_au = <a, u>, M_uu = <u, u>, r_a = <a, T>, r_u = <u, T>, the column u is eliminated first,
+//! Only sums over the points are needed: with <x, y> = sum w conj(x) y (centred if A is free), M_aa = <a, a>, M_au =
+//! <a, u>, M_uu = <u, u>, r_a = <a, T>, r_u = <u, T>, the column u is eliminated first,
 //!
 //! ```text
 //! N = M_aa - |M_au|^2/M_uu,   s = r_a - M_au r_u/M_uu,   S = <T, T> - |r_u|^2/M_uu
-//! cost = S - 2 |K| h + |K|^2 N     h = |s|, or Re(e^{-i theta} s) where K has a known direction
+//! cost = S - 2 |K| h + |K|^2 N     h = |s|, or Re(e^{-i theta} s) if K has a known direction
 //! |K| = h/N brought into its limits, or known
 //! ```
 //!
-//! The column of u is q u, which needs no division; both assemblies come from one root. Differences of sums
-//! leave a cost that is good to 1e-15 <T, T>: enough to choose starts from, not to end a fit on.
+//! The column of u is q u, which needs no division; both assemblies come from one root. Through differences of sums the
+//! cost is accurate to 1e-15 <T, T>: enough to choose starts, not to end a fit.
 
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::linkage::dispatch::vectorised;
@@ -27,7 +27,7 @@ pub struct Batch {
 }
 
 impl Batch {
-    /// Draws as they are to be screened.
+    /// Prepares draws for screening.
     pub fn new(draws: Vec<Reduced>) -> Self {
         let padded = draws.len().next_multiple_of(LANES);
         let column = |of: &dyn Fn(&Reduced) -> f64| -> Vec<f64> {
@@ -40,23 +40,23 @@ impl Batch {
         }
     }
 
-    /// The draws.
+    /// Returns the draws.
     pub fn draws(&self) -> &[Reduced] {
         &self.draws
     }
 
-    /// How many draws.
+    /// Returns the number of draws.
     pub fn len(&self) -> usize {
         self.draws.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no draws.
     pub fn is_empty(&self) -> bool {
         self.draws.is_empty()
     }
 }
 
-/// A complex number a lane.
+/// A complex number per lane.
 #[derive(Clone, Copy)]
 struct Pair<L> {
     re: L,
@@ -80,7 +80,7 @@ impl<L: Lane> Pair<L> {
     fn times(self, other: Self) -> Self {
         Pair { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
     }
-    /// conj(self) other.
+    /// Returns conj(self) other.
     #[inline(always)]
     fn dot(self, other: Self) -> Self {
         Pair { re: self.re * other.re + self.im * other.im, im: self.re * other.im - self.im * other.re }
@@ -98,11 +98,11 @@ impl<L: Lane> Pair<L> {
 /// The sums of one assembly.
 #[derive(Clone, Copy)]
 struct Sums<L> {
-    /// sum w u.
+    /// The sum of w u.
     u: Pair<L>,
-    /// sum w conj(phase) u.
+    /// The sum of w conj(phase) u.
     phase_u: Pair<L>,
-    /// sum w conj(u) T.
+    /// The sum of w conj(u) T.
     u_target: Pair<L>,
 }
 
@@ -124,20 +124,20 @@ impl<L: Lane> Sums<L> {
 /// A draw in lanes.
 struct Drawn<L> {
     ratio: [L; 3],
-    /// e^{i turn}: the crank from the ground line against the prescribed angle.
+    /// The turn e^{i turn}: the crank from the ground line against the prescribed angle.
     turn: Pair<L>,
-    /// e^{i theta}.
+    /// The ground's direction e^{i theta}.
     direction: Pair<L>,
 }
 
 impl Projection {
-    /// The costs of a batch on both assemblies, t1 = +1 first: infinite where the loop does not close at a
-    /// point, the linear system is singular or the ground comes out reversed. Two evaluations a draw.
+    /// Returns the costs of a batch on both assemblies, t1 = +1 first: infinite if the loop does not close at a point,
+    /// the linear system is singular or the ground comes out reversed. Two evaluations per draw.
     pub fn screen(&self, batch: &Batch) -> [Vec<f64>; 2] {
         self.screen_unless(batch, &|| false).unwrap_or_default()
     }
 
-    /// As [`Projection::screen`]; `None` where `stop` says so, which is asked before every `LANES` draws.
+    /// As [`Projection::screen`]; `None` if `stop` returns true; it is called before every `LANES` draws.
     pub fn screen_unless(&self, batch: &Batch, stop: &dyn Fn() -> bool) -> Option<[Vec<f64>; 2]> {
         let padded = batch.ratio[0].len();
         let mut costs = [vec![0.0; padded], vec![0.0; padded]];
@@ -169,7 +169,7 @@ impl Projection {
         Some(costs)
     }
 
-    /// What [`Projection::screen`] gives for a single draw, in scalar arithmetic: the same bits.
+    /// Returns the cost of [`Projection::screen`] for a single draw, in scalar arithmetic: the same bits.
     pub fn screen_one(&self, x: &Reduced, assembly: AssemblyMode) -> f64 {
         let ratio = [0, 1, 2].map(|k: usize| x[k].exp());
         let angle = Pair { re: x[3].cos(), im: x[3].sin() };
@@ -273,7 +273,7 @@ impl Projection {
         length.at_least(least, cost, never)
     }
 
-    /// A length of the crank brought into its limits.
+    /// Clamps a length of the crank to its limits.
     #[inline(always)]
     fn limited<L: Lane>(&self, [p, q, r]: [L; 3], length: L) -> L {
         let s = L::splat;

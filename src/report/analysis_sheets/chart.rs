@@ -4,11 +4,11 @@ use super::super::canvas::{Anchor, Area, Canvas, Spot, palette, px, text_width};
 use super::super::scene::round_length;
 use super::super::text::{brief, xml};
 
-/// Values at crank angles, in their order.
+/// A series: values at crank angles, in the order of the angles.
 pub(super) struct Series {
     pub(super) name: &'static str,
     pub(super) colour: &'static str,
-    /// Stretches without a gap, (crank angle in degrees, value).
+    /// The stretches without a gap, (crank angle in degrees, value).
     pub(super) strands: Vec<Vec<(f64, f64)>>,
 }
 
@@ -18,23 +18,23 @@ impl Series {
     }
 }
 
-/// What the vertical axis shows.
+/// The range of the vertical axis.
 #[derive(Clone, Copy)]
 pub(super) enum Range {
-    /// These bounds, ticks this far apart.
+    /// Fixed bounds, with ticks this far apart.
     Fixed { low: f64, high: f64, tick: f64 },
-    /// What the values need, at least around `natural` wide where they are constant; angles get ticks at parts
-    /// of a turn. Where values may grow without bound, the few that do are cut off.
+    /// The range of the values, or about `natural` wide if they are constant; angles have ticks at parts of a turn. If
+    /// values may grow without bound, the few that do are cut off.
     Fitted { natural: f64, angle: bool, unbounded: bool },
 }
 
-/// What all charts of a sheet share.
+/// The horizontal axis that all charts of a sheet share.
 pub(super) struct Abscissa {
     pub(super) low: f64,
     pub(super) high: f64,
-    /// Crank angles out of reach, within [low, high].
+    /// The ranges of crank angles out of reach, within [low, high].
     pub(super) unreachable: Vec<(f64, f64)>,
-    /// Within [low, high].
+    /// The crank angles of toggles, within [low, high].
     pub(super) toggles: Vec<f64>,
 }
 
@@ -43,19 +43,19 @@ pub(super) struct Chart {
     pub(super) unit: String,
     pub(super) series: Vec<Series>,
     pub(super) range: Range,
-    /// Shaded as a warning.
+    /// The ranges of values that are shaded as a warning.
     pub(super) warning: Vec<(f64, f64)>,
 }
 
-/// Room for the numbers left of and below the plot, and for the title above.
+/// The space for the numbers left of and below the plot, and for the title above.
 const LEFT: f64 = 58.0;
 const BELOW: f64 = 22.0;
 const ABOVE: f64 = 26.0;
 
-/// Peaks are cut off where the rest would be flattened by more than this.
+/// The factor of flattening above which peaks are cut off.
 const WORTH_CUTTING: f64 = 3.0;
 
-/// The steps of an axis of degrees.
+/// The possible steps of an axis in degrees.
 const DEGREE_STEPS: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0, 180.0];
 
 impl Chart {
@@ -71,7 +71,7 @@ impl Chart {
         let y_of = |y: f64| plot.height * (1.0 - (y - low) / (high - low));
         self.heading(canvas, &area, &plot, cut);
 
-        // What could run out of the plot is drawn inside of it.
+        // Curves that could run out of the plot are clipped to it.
         canvas.raw(&format!(
             r#"<svg x="{}" y="{}" width="{}" height="{}" overflow="hidden">"#,
             px(plot.x),
@@ -112,7 +112,7 @@ impl Chart {
                 dashes(i)
             );
             for strand in &series.strands {
-                // Far outside is as good as a little outside, and viewers can read it.
+                // Values far outside are moved nearer, to coordinates that viewers can read.
                 let far = 4.0 * plot.height;
                 let spots: Vec<Spot> =
                     strand.iter().map(|(x, y)| Spot::new(x_of(*x), y_of(*y).clamp(-far, far))).collect();
@@ -128,7 +128,7 @@ impl Chart {
         crank_angles(canvas, &plot, abscissa, x_of);
     }
 
-    /// Title and unit at the left, the names of the series at the right.
+    /// Draws title and unit at the left, and the names of the series at the right.
     fn heading(&self, canvas: &mut Canvas, area: &Area, plot: &Area, cut: bool) {
         let y = area.y + 17.0;
         let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
@@ -155,7 +155,7 @@ impl Chart {
         }
     }
 
-    /// Lower and upper bound, distance of ticks, and whether values lie outside.
+    /// Returns the lower and upper bound, the distance of ticks, and whether values lie outside.
     fn vertical(&self) -> (f64, f64, f64, bool) {
         let (natural, angle, unbounded) = match self.range {
             Range::Fixed { low, high, tick } => return (low, high, tick, false),
@@ -169,7 +169,7 @@ impl Chart {
         let natural = if natural > 0.0 && natural.is_finite() { natural } else { 1.0 };
         let (mut low, mut high) = (least, greatest);
         if unbounded {
-            // Nine values in ten, and as much again on both sides.
+            // The range of nine values in ten, and as much again on both sides.
             let part = |t: f64| values[(t * (values.len() - 1) as f64).round() as usize];
             let (from, to) = (part(0.05), part(0.95));
             let spread = (to - from).max(1e-3 * natural);
@@ -181,7 +181,7 @@ impl Chart {
         let cut = least < low || greatest > high;
         if high - low < 1e-6 * natural.max(low.abs()).max(high.abs()) {
             let middle = 0.5 * (low + high);
-            // Rounding noise about zero is zero.
+            // Rounding noise about zero is set to zero.
             let middle = if middle.abs() < 1e-6 * natural { 0.0 } else { middle };
             let half = 0.5 * natural.max(middle.abs());
             (low, high) = (middle - half, middle + half);
@@ -194,7 +194,7 @@ impl Chart {
     }
 }
 
-/// The second series is dashed: two that coincide are both seen.
+/// Returns the dashes of a series: the second one is dashed, so that two that coincide are both seen.
 fn dashes(index: usize) -> &'static str {
     if index == 0 { "" } else { r#" stroke-dasharray="7 3""# }
 }
@@ -203,13 +203,13 @@ fn muted(size: u8) -> String {
     format!(r#"font-size="{size}" fill="{}""#, palette::MUTED)
 }
 
-/// The smallest step of degrees that is at least `least`.
+/// Returns the smallest step of degrees that is at least `least`.
 fn degree_step(least: f64) -> f64 {
     let found = DEGREE_STEPS.into_iter().find(|step| *step >= least);
     found.unwrap_or_else(|| 360.0 * round_length(2.0 * least / 360.0).max(1.0))
 }
 
-/// The multiples of the step in [low, high], and whether each is zero. At most 60 of them.
+/// Returns the multiples of the step in [low, high], and whether each is zero. At most 60 of them.
 fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64, bool)> {
     let slack = 1e-6;
     let first = (low / step - slack).ceil();
@@ -219,7 +219,7 @@ fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64, bool)> {
     })
 }
 
-/// A tick's number with as many digits as its neighbours need to differ.
+/// Returns a tick's number with as many digits as are needed to distinguish it from its neighbours.
 fn label(value: f64, step: f64) -> String {
     let digits = ((value.abs() / step).max(1.0).log10().floor() + 2.0).clamp(2.0, 15.0) as usize;
     brief(value, digits).replace('-', "−")

@@ -8,13 +8,13 @@ use super::super::sheet::{FULL, HEAD, INSET, Sheet, scale_bar};
 use super::{as_joints, closed, degrees, pivots, positions_of, sign};
 use crate::analysis::{Analysis, Configuration};
 
-/// Samples of a circuit: a degree of the crank, in a small drawing.
+/// The number of samples of a circuit: a degree of the crank, in a small drawing.
 const SAMPLES: usize = 360;
 const GAP: f64 = 26.0;
 const CELL: f64 = (FULL - 2.0 * INSET - 3.0 * GAP) / 4.0;
-/// The line above each drawing.
+/// The height of the line above each drawing.
 const CELL_HEAD: f64 = 24.0;
-/// A drawing's height follows the common shape between these.
+/// The allowed heights of a drawing, which follows the common shape.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 150.0..=330.0;
 
 pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
@@ -60,7 +60,7 @@ pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
     })
 }
 
-/// The first position that closes, and its crank angle; else the curve alone.
+/// Returns the scene of the first position that closes, with its crank angle; otherwise only the curve.
 fn scene(configuration: &Configuration) -> (Scene, Option<f64>) {
     let linkage = &configuration.linkage;
     let all = closed(configuration);

@@ -1,5 +1,5 @@
-//! The position found with ruler and compasses: C from the crank angle, D where the circle of radius b about C
-//! meets the circle of radius c about B, in two points.
+//! The construction of a position with ruler and compasses: C from the crank angle, D as an intersection of the circle
+//! of radius b about C with the circle of radius c about B.
 
 use super::super::canvas::{Anchor, Canvas, Spot, palette};
 use super::super::labels::Labels;
@@ -12,11 +12,11 @@ use super::{between, closed, degrees, sign};
 use crate::analysis::{Analysis, Configuration};
 use crate::linkage::{Complex, cross};
 
-/// The part of the crank's circle that is drawn on both sides of C, radians.
+/// The part of the crank's circle that is drawn on both sides of C, in radians.
 const CRANK_ARC: f64 = 0.35;
-/// How far an arc runs beyond an intersection, radians.
+/// The angle by which an arc continues beyond an intersection, in radians.
 const BEYOND: f64 = 0.2;
-/// Intersections farther than this from the line C-B, radians, get an arc each instead of one for both.
+/// The angle from the line C-B, in radians, above which intersections get an arc each instead of one for both.
 const APART: f64 = 1.2;
 
 pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64) -> Option<Sheet> {
@@ -118,7 +118,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     })
 }
 
-/// The arcs about `centre` through the two intersections, which lie on both sides of the line to `towards`.
+/// Returns the arcs about `centre` through the two intersections, which lie on both sides of the line to `towards`.
 fn arcs(
     centre: Complex,
     radius: f64,
@@ -141,7 +141,7 @@ fn arcs(
     }
 }
 
-/// Whether crank and follower, or coupler and ground, cross.
+/// Returns whether crank and follower, or coupler and ground, cross.
 fn crosses_itself([a, b, c, d]: [Complex; 4]) -> bool {
     let apart = |p: Complex, q: Complex, x: Complex, y: Complex| {
         let (dx, dy) = (cross(q - p, x - p), cross(q - p, y - p));
@@ -151,7 +151,7 @@ fn crosses_itself([a, b, c, d]: [Complex; 4]) -> bool {
     meet(a, c, b, d) || meet(c, d, a, b)
 }
 
-/// The crank angle between the x axis and the crank.
+/// Draws the crank angle between the x axis and the crank.
 fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2], phi: f64, text: &str) {
     let radius = (0.4 * pivot.distance(pin)).clamp(8.0, 40.0);
     let thin = format!(r#"stroke="{}" stroke-width="1""#, palette::MUTED);
@@ -159,7 +159,7 @@ fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2]
     canvas.line(pivot, end, &format!(r#"{thin} stroke-dasharray="2 3""#));
     labels.mark_line(pivot, end);
     let turn = phi.rem_euclid(std::f64::consts::TAU);
-    // Counter-clockwise on paper is clockwise with y down.
+    // Counter-clockwise in the plane is clockwise with y down.
     let spots: Vec<Spot> = arc(Complex::new(0.0, 0.0), radius, 0.0, turn)
         .map(|p| Spot::new(pivot.x + p.re, pivot.y - p.im))
         .collect();
@@ -177,7 +177,7 @@ fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2]
     }
 }
 
-/// The letter of a link beside its middle.
+/// Draws the letter of a link beside its middle.
 fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, to: Spot, colour: &str) {
     let length = from.distance(to).max(f64::MIN_POSITIVE);
     let normal = Spot::new((to.y - from.y) / length, (from.x - to.x) / length);

@@ -1,4 +1,4 @@
-//! Transmission angle, angles, velocities and accelerations against the crank angle.
+//! Charts of the transmission angle, angles, velocities and accelerations against the crank angle.
 
 use super::super::canvas::{Area, Canvas, palette};
 use super::super::sheet::{FULL, HEAD, INSET, Sheet};
@@ -10,9 +10,9 @@ use crate::linkage::transmission::POOR_DEG;
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;
-/// Transmission angles nearer than this to 0 or 180 degrees are hard to drive.
+/// The distance from 0 or 180 degrees below which a transmission angle is poor.
 const POOR_TRANSMISSION_DEG: f64 = POOR_DEG;
-/// More turns than this have no toggles and open stretches marked: there would be nothing else to see.
+/// The number of turns above which toggles and open stretches are not marked: they would cover everything else.
 const MOST_TURNS: f64 = 10.0;
 
 pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Option<Sheet> {
@@ -52,25 +52,25 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Optio
     })
 }
 
-/// The rows by crank angle.
+/// Returns the rows sorted by crank angle.
 fn sorted(configuration: &Configuration) -> Vec<&Row> {
     let mut rows: Vec<&Row> = configuration.rows.iter().filter(|row| row.crank_deg.is_finite()).collect();
     rows.sort_by(|x, y| x.crank_deg.total_cmp(&y.crank_deg));
     rows
 }
 
-/// The crank angles of the rows, degrees.
+/// The range of the rows' crank angles, in degrees.
 struct Span {
     low: f64,
     high: f64,
-    /// Rows farther apart than this have a gap between them.
+    /// The distance of two rows above which there is a gap between them.
     gap: f64,
-    /// The rows make a full turn but for their last step, which leads back to the first.
+    /// Whether the rows make a full turn apart from their last step, which leads back to the first.
     closes: bool,
 }
 
 impl Span {
-    /// `None` where the angles don't differ.
+    /// Returns the range; `None` if all angles are equal.
     fn of(rows: &[&Row]) -> Option<Span> {
         let (low, high) = (rows.first()?.crank_deg, rows.last()?.crank_deg);
         let mut steps: Vec<f64> = rows
@@ -86,7 +86,7 @@ impl Span {
     }
 }
 
-/// What can be reached and where the toggles are, turned into the span.
+/// Returns the unreachable ranges and the toggles, moved by turns into the range.
 fn abscissa(mobility: &MobilityRecord, span: &Span) -> Abscissa {
     let (low, high) = (span.low, span.high);
     let mut abscissa = Abscissa { low, high, unreachable: Vec::new(), toggles: Vec::new() };
@@ -121,7 +121,7 @@ fn abscissa(mobility: &MobilityRecord, span: &Span) -> Abscissa {
     abscissa
 }
 
-/// A series of what rows have, with gaps where they have it not.
+/// Returns a series of the rows' values, with gaps at rows without one.
 fn series(
     name: &'static str,
     colour: &'static str,

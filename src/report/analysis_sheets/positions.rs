@@ -10,7 +10,7 @@ use super::{as_joints, closed, degrees, pivots, positions_of};
 use crate::analysis::{Analysis, Configuration, Row};
 use crate::linkage::Complex;
 
-/// The most positions that are drawn.
+/// The largest number of positions that are drawn.
 const MOST: usize = 8;
 
 pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64) -> Option<Sheet> {
@@ -59,7 +59,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     Some(Sheet { title: "Positions".to_owned(), note, body, foot: Vec::new(), width, bottom })
 }
 
-/// All of a few, else [`MOST`] evenly chosen, the first among them.
+/// Returns all positions if they are few, otherwise [`MOST`] evenly chosen, including the first.
 fn thinned<'a>(all: &[(&'a Row, [Complex; 5])]) -> Vec<(&'a Row, [Complex; 5])> {
     let n = all.len();
     if n <= MOST { all.to_vec() } else { (0..MOST).map(|i| all[i * n / MOST]).collect() }
@@ -81,7 +81,7 @@ fn ghost(canvas: &mut Canvas, labels: &mut Labels, joints: [Spot; 5]) {
     mark_joints(labels, joints);
 }
 
-/// The crank angle at each P.
+/// Draws the crank angle at each P.
 fn angles(canvas: &mut Canvas, labels: &mut Labels, view: &View, shown: &[(&Row, [Complex; 5])]) {
     let attributes = format!(
         concat!(

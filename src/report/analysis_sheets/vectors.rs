@@ -11,24 +11,24 @@ use crate::analysis::{Analysis, Configuration, Rates};
 use crate::linkage::{Complex, point};
 use crate::record::Unit;
 
-/// The longest arrow as a part of the drawing's extent without arrows.
+/// The length of the longest arrow, as a fraction of the drawing's extent without arrows.
 const LONGEST: f64 = 0.5;
 
-/// What is drawn as arrows.
+/// The kind of vectors that are drawn as arrows.
 struct Kind {
     title: &'static str,
-    /// Of C, D, P.
+    /// The names of the vectors of C, D, P.
     names: [&'static str; 3],
     vectors: fn(&Rates) -> [[f64; 2]; 3],
-    /// Of coupler and follower.
+    /// The angular rates of coupler and follower.
     turning: fn(&Rates) -> [f64; 2],
     turning_names: [&'static str; 2],
-    /// What the length is divided by.
+    /// The unit of time by which the length is divided.
     per: &'static str,
     colour: &'static str,
 }
 
-/// The arrows of the velocities; `None` where nothing moves.
+/// Draws the arrows of the velocities; `None` if nothing moves.
 pub(super) fn velocities(analysis: &Analysis, configuration: &Configuration, width: f64) -> Option<Sheet> {
     let kind = Kind {
         title: "Velocities",
@@ -42,7 +42,7 @@ pub(super) fn velocities(analysis: &Analysis, configuration: &Configuration, wid
     sheet(analysis, configuration, width, &kind)
 }
 
-/// The arrows of the accelerations; `None` where there are none.
+/// Draws the arrows of the accelerations; `None` if there are none.
 pub(super) fn accelerations(analysis: &Analysis, configuration: &Configuration, width: f64) -> Option<Sheet> {
     let kind = Kind {
         title: "Accelerations",
@@ -71,11 +71,11 @@ fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64, kind: &
     let circuits = circuits_through(linkage, [(row.crank_deg.to_radians(), linkage.assembly())], SAMPLES);
     let pose = Some(Pose { target: None, joints: as_joints(joints) });
     let scene = Scene { linkage: Some(*linkage), pose, ..Scene::default() };
-    // Of the path only what is beside the linkage.
+    // Only the part of the path beside the linkage is shown.
     let path = Scene { circuits, ..Scene::default() };
     let mut bounds = Bounds::default();
     joints.iter().for_each(|p| bounds.hold(*p));
-    // Lengths a unit of velocity.
+    // The length of an arrow per unit of velocity.
     let stretch = LONGEST * bounds.extent() / greatest;
     let arrows: Vec<(Complex, Complex)> =
         joints[2..].iter().zip(vectors).map(|(p, v)| (*p, p + v * stretch)).collect();
@@ -124,13 +124,13 @@ fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64, kind: &
     })
 }
 
-/// The direction of a vector in degrees, to a tenth, in [0, 360).
+/// Returns the direction of a vector in degrees, to a tenth, in [0, 360).
 fn direction(v: Complex) -> String {
     let tenths = (v.arg().to_degrees().rem_euclid(360.0) * 10.0).round();
     brief(if tenths >= 3600.0 { 0.0 } else { tenths / 10.0 }, 5)
 }
 
-/// ` mm/s`; ` length/s` without a unit.
+/// Returns a unit such as ` mm/s`; ` length/s` without a unit of length.
 pub(super) fn per_time(unit: Option<Unit>, per: &str) -> String {
     format!(" {}/{per}", unit.map_or("length", |unit| unit.label()))
 }
@@ -150,7 +150,7 @@ fn tip_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, to
     }
 }
 
-/// An arrow of a round value with its label above, its right end at `right`.
+/// Draws an arrow of a round value with its label above, its right end at `right`.
 fn scale_arrow(canvas: &mut Canvas, view: &View, stretch: f64, suffix: &str, colour: &str, right: Spot) {
     let value = round_length(120.0 / (stretch * view.scale));
     let length = value * stretch * view.scale;

@@ -1,4 +1,4 @@
-//! A comparison for spreadsheets and scripts: every number to the last digit.
+//! A comparison as CSV and JSON, for spreadsheets and scripts: every number to the last digit.
 
 use super::{Comparison, Ranked, SortKey};
 use crate::linkage::FourBar;
@@ -8,7 +8,7 @@ use crate::report::words;
 use crate::task::Defect;
 use serde::Serialize;
 
-/// The format of [`Comparison::json`].
+/// The version of the format of [`Comparison::json`].
 pub const JSON_FORMAT: u32 = 1;
 
 /// The first columns of [`Comparison::csv`]. With several keys a column `rank_KEY` for each follows, with a
@@ -45,7 +45,7 @@ pub const COLUMN_NAMES: [&str; 29] = [
     "recorded_differently",
 ];
 
-/// Ax Ay Bx By a b c d e.
+/// Returns Ax Ay Bx By a b c d e.
 pub(super) fn lengths(linkage: &FourBar) -> [f64; 9] {
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
     [
@@ -113,7 +113,7 @@ struct LeftOut<'a> {
     why: &'a str,
 }
 
-/// A value for each of some keys, as an object in their order; what is missing is null.
+/// The values for some keys, as an object in their order; a missing value is null.
 struct Figures<T>(Vec<(SortKey, Option<T>)>);
 
 impl<T: Serialize> Serialize for Figures<T> {
@@ -152,7 +152,7 @@ impl<'a> Row<'a> {
 }
 
 impl Comparison {
-    /// One row an entry, every number to the last digit: [`COLUMN_NAMES`], then ranks and differences.
+    /// Returns one row for each entry, every number to the last digit: [`COLUMN_NAMES`], then ranks and differences.
     pub fn csv(&self) -> String {
         let mut head: Vec<String> = COLUMN_NAMES.map(str::to_owned).to_vec();
         let several = self.keys.len() > 1;
@@ -195,7 +195,7 @@ impl Comparison {
         written(&head.iter().map(String::as_str).collect::<Vec<_>>(), rows)
     }
 
-    /// All of it as JSON. Keys are added in later versions; none is renamed.
+    /// Returns the whole comparison as JSON. Later versions may add keys; none is renamed.
     pub fn json(&self) -> String {
         let unit = self.rows.first().and_then(|row| row.entry.unit).filter(|_| self.same_unit());
         let json = Json {
@@ -211,7 +211,7 @@ impl Comparison {
             left_out: self.left_out.iter().map(|out| LeftOut { label: &out.label, why: &out.why }).collect(),
             notes: self.notes(),
         };
-        // Strings for keys and nothing that fails: it can always be written.
+        // The keys are strings and no value can fail, so that it can always be written.
         serde_json::to_string_pretty(&json).map(|text| text + "\n").unwrap_or_default()
     }
 }

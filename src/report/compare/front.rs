@@ -1,21 +1,21 @@
-//! The Pareto front.
+//! The Pareto front of error, transmission angle and size.
 
 use std::cmp::Ordering;
 
-/// What decides about the front; a figure that is missing keeps off it.
+/// The figures that decide about the front; a point with a missing figure is not on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Whether everything that was asked is met.
+    /// Whether all requirements are met.
     pub accepted: bool,
-    /// Less is better.
+    /// The error; less is better.
     pub error: Option<f64>,
-    /// More is better.
+    /// The worst transmission angle; more is better.
     pub angle: Option<f64>,
-    /// Less is better.
+    /// The size; less is better.
     pub size: Option<f64>,
 }
 
-/// The costs of a point, all the less the better.
+/// Returns the costs of a point; less is better for each.
 fn costs(point: &Point) -> Option<[f64; 4]> {
     let costs = [f64::from(u8::from(!point.accepted)), point.error?, -point.angle?, point.size?];
     costs.iter().all(|cost| cost.is_finite()).then_some(costs)
@@ -25,14 +25,14 @@ fn dominates(x: &[f64; 4], y: &[f64; 4]) -> bool {
     x.iter().zip(y).all(|(x, y)| x <= y) && x.iter().zip(y).any(|(x, y)| x < y)
 }
 
-/// Which points no other dominates: none is at least as good in error, angle and size and better in one of them.
-/// What is not accepted never dominates what is. Equal points stand on the front together.
+/// Returns whether each point is on the front: no other is at least as good in error, angle and size and better in one
+/// of them. A point that is not accepted never dominates one that is. Equal points are on the front together.
 ///
 /// O(n f) for a front of f points.
 pub fn front(points: &[Point]) -> Vec<bool> {
     let mut order: Vec<(usize, [f64; 4])> =
         points.iter().enumerate().filter_map(|(i, point)| Some((i, costs(point)?))).collect();
-    // What dominates a point stands before it.
+    // A point that dominates another comes before it.
     order.sort_by(|x, y| {
         let pairs = x.1.iter().zip(&y.1);
         pairs

@@ -1,9 +1,9 @@
-//! The figures that a comparison ranks by.
+//! The figures by which a comparison can be ranked.
 
 use crate::report::text::clean;
 use std::str::FromStr;
 
-/// What a comparison ranks by.
+/// A figure by which a comparison can be ranked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SortKey {
     /// The sum of squared errors, least first.
@@ -21,8 +21,8 @@ pub enum SortKey {
     LinkRatio,
     /// The diagonal of the box that the joints sweep over the circuit, least first.
     Size,
-    /// What the candidate's problem minimises, least first: the sum of squared errors with its weights, or the largest
-    /// error, where tolerances are given in parts of them.
+    /// The objective of the candidate's problem, least first: the sum of squared errors with its weights, or the
+    /// largest error, in parts of the tolerances if these are given.
     Objective,
 }
 
@@ -39,7 +39,7 @@ impl SortKey {
         SortKey::Objective,
     ];
 
-    /// Its name on the command line: `to_curve`.
+    /// Returns the name on the command line: `to_curve`.
     pub fn name(self) -> &'static str {
         match self {
             SortKey::SumSq => "sum_sq",
@@ -53,12 +53,12 @@ impl SortKey {
         }
     }
 
-    /// Whether more is better.
+    /// Returns whether more is better.
     pub fn greatest_first(self) -> bool {
         self == SortKey::Transmission
     }
 
-    /// What a person reads: `worst transmission angle`.
+    /// Returns the name for readers: `worst transmission angle`.
     pub fn words(self) -> &'static str {
         match self {
             SortKey::SumSq => "sum of squared errors",
@@ -73,7 +73,7 @@ impl SortKey {
     }
 }
 
-/// A key that doesn't exist.
+/// The error that a word is not the name of a key.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no figure is called \"{}\": sort by {}", .0, SortKey::ALL.map(SortKey::name).join(", "))]
 pub struct UnknownKey(pub String);

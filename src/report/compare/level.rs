@@ -1,20 +1,20 @@
-//! Figures that are equal within the margin of limits, brought to one level before they are ordered.
+//! Levels: figures that are equal within the margin of limits get one common value before they are ordered.
 //!
-//! "Within a margin of each other" is no order: x may be near y and y near z without x being near z. So figures are
-//! sorted as they are, better first; the best is the first level, and with it all that lie within [`MET_TOLERANCE`] of
-//! it; the best of the rest is the next level, and so on. What is ranked, put on the front or said to be behind are
-//! levels.
+//! "Within a margin of each other" is not an order: x may be near y and y near z without x being near z. So figures are
+//! sorted as they are, better first; the best is the first level, and all that lie within [`MET_TOLERANCE`] of it
+//! belong to it; the best of the rest is the next level, and so on. Ranks, the front and differences from the best are
+//! computed from levels.
 
 use super::{Entry, SortKey};
 use crate::problem::spec::Measure;
 use crate::record::{EXACT_MEAN_SQ, MET_TOLERANCE};
 
-/// Whether two figures of one kind are equal to a reader; `nothing` is what counts as 0 there.
+/// Returns whether two figures of one kind are equal to a reader; `nothing` is the value below which they count as 0.
 pub(super) fn equal(x: f64, y: f64, nothing: f64) -> bool {
     x == y || (x - y).abs() <= (MET_TOLERANCE * x.abs().max(y.abs())).max(nothing)
 }
 
-/// Below this an error of an entry is nothing but rounding; the other figures have no such floor.
+/// Returns the value below which an error of an entry is only rounding; the other figures have no such floor.
 pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for p in &entry.target {
@@ -36,7 +36,7 @@ pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
     }
 }
 
-/// The level of each figure: the best figure that it is equal to.
+/// Returns the level of each figure: the best figure that it is equal to.
 pub(super) fn levels(figures: &[Option<f64>], greatest_first: bool, nothing: f64) -> Vec<Option<f64>> {
     let mut order: Vec<usize> = (0..figures.len()).filter(|&i| figures[i].is_some()).collect();
     let value = |i: usize| figures[i].unwrap_or(f64::NAN);
@@ -51,7 +51,7 @@ pub(super) fn levels(figures: &[Option<f64>], greatest_first: bool, nothing: f64
         if !equal(level, value(i), nothing) {
             level = value(i);
         }
-        // Adding 0 makes one zero of the two.
+        // Adding 0 turns -0 into 0.
         levels[i] = Some(level + 0.0);
     }
     levels
@@ -66,7 +66,7 @@ mod tests {
         let all = [Some(35.0 + 3e-6), None, Some(35.0), Some(34.9), Some(35.0 + 1e-6), Some(-0.0), Some(0.0)];
         let best = Some(35.0 + 3e-6);
         assert_eq!(levels(&all, true, 0.0), [best, None, best, Some(34.9), best, Some(0.0), Some(0.0)]);
-        // A chain of neighbours is cut where it has left the best.
+        // A chain of neighbours ends at the first that is not equal to the best.
         let chain: Vec<Option<f64>> = (0..4).map(|i| Some(1.0 + 6e-8 * f64::from(i))).collect();
         assert_eq!(levels(&chain, false, 0.0), [chain[0], chain[0], chain[2], chain[2]]);
         assert_eq!(

@@ -1,4 +1,4 @@
-//! The coupler curves of a comparison over the target.
+//! The overlay of a comparison: its coupler curves over the target.
 
 use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::linkage::{Complex, point};
@@ -12,7 +12,7 @@ pub(super) const WIDTH: f64 = 760.0;
 const HEIGHTS: std::ops::RangeInclusive<f64> = 260.0..=560.0;
 const PADDING: f64 = 26.0;
 const MARGIN: f64 = 30.0;
-/// More target points than this are plain dots.
+/// The largest number of target points that are drawn as rings; more are plain dots.
 const MARKED: usize = 150;
 const LINE: f64 = 20.0;
 
@@ -20,29 +20,29 @@ const LINE: f64 = 20.0;
 pub(super) struct Overlay {
     pub(super) canvas: Canvas,
     pub(super) height: f64,
-    /// Whether curves leave the frame.
+    /// Whether some curves leave the frame.
     pub(super) cut: bool,
-    /// How many of the rows are drawn, the best first.
+    /// The number of rows that are drawn, the best first.
     pub(super) drawn: usize,
 }
 
-/// Samples of a curve: a degree of the crank, below a tenth of a pixel of the arc.
+/// The number of samples of a curve: a degree of the crank, below a tenth of a pixel of the arc.
 const OF_A_CURVE: usize = 360;
 
-/// Each row's coupler curves, one for each circuit used.
+/// Returns the coupler curves of a row, one for each circuit used.
 fn curves(row: &Ranked) -> Vec<Vec<Complex>> {
     let circuits = circuits(&row.entry.candidate, OF_A_CURVE);
     circuits.iter().map(|joints| joints.iter().map(|j| j.coupler_point).collect()).collect()
 }
 
 impl Overlay {
-    /// The rows over their target, at the top of a canvas. Each row is a group `curve` with its number as `data-row`,
-    /// from 0.
+    /// Draws the rows over their target, at the top of a canvas. Each row is a group `curve` with its number as
+    /// `data-row`, from 0.
     pub(super) fn new(comparison: &Comparison) -> Self {
         let drawn = comparison.rows.len().min(strokes::MOST);
         let all: Vec<Vec<Vec<Complex>>> = comparison.rows[..drawn].iter().map(curves).collect();
         let target = comparison.bounds();
-        // A curve far larger than the target would leave nothing to see of it.
+        // A curve far larger than the target would make the target too small to see.
         let limit = (target.extent() > 0.0).then(|| target.padded(1.0));
         let (mut frame, mut cut) = (target, false);
         for p in all.iter().flatten().flatten() {
@@ -86,7 +86,7 @@ impl Overlay {
         Overlay { canvas, height: height + 34.0, cut, drawn }
     }
 
-    /// What the drawing does not show, in sentences.
+    /// Returns remarks on the parts that the drawing does not show, in sentences.
     pub(super) fn remarks(&self, comparison: &Comparison) -> Vec<String> {
         let mut remarks = Vec::new();
         if self.cut {
@@ -99,7 +99,7 @@ impl Overlay {
     }
 }
 
-/// The target's points, the first filled; dots where they are many.
+/// Draws the target's points, the first filled; as dots if they are many.
 fn targets(canvas: &mut Canvas, view: &View, points: &[[f64; 2]], colour: &str) {
     let spots: Vec<Spot> =
         points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| view.spot(point(*p))).collect();
@@ -113,7 +113,7 @@ fn targets(canvas: &mut Canvas, view: &View, points: &[[f64; 2]], colour: &str) 
 }
 
 impl Comparison {
-    /// The coupler curves over the target as a self-contained SVG, with a legend.
+    /// Returns the coupler curves over the target as a self-contained SVG, with a legend.
     pub fn svg(&self) -> String {
         let overlay = Overlay::new(self);
         let mut canvas = Canvas::default();
@@ -162,7 +162,7 @@ impl Comparison {
         canvas.document(width, y + 14.0, &title, &self.description())
     }
 
-    /// `4 linkages on k18`.
+    /// Returns a title such as `4 linkages on k18`.
     pub(super) fn title(&self) -> String {
         let n = self.rows.len();
         let counted = if n == 1 { "1 linkage".to_owned() } else { format!("{n} linkages") };
@@ -173,14 +173,14 @@ impl Comparison {
         }
     }
 
-    /// `rms 0.0224 mm`.
+    /// Returns the figures of the legend, such as `rms 0.0224 mm`.
     pub(super) fn legend_figures(&self, row: &Ranked) -> String {
         let rms = significant(row.figure_of(SortKey::Rms).unwrap_or(f64::NAN), 3);
         let accepted = if row.entry.candidate.accepted { "" } else { ", not accepted" };
         format!("rms {rms}{}{accepted}", length_suffix(row.entry.unit))
     }
 
-    /// The drawing in words, for those who do not see it.
+    /// Returns a description of the drawing in words, for those who do not see it.
     pub(super) fn description(&self) -> String {
         const NAMED: usize = 6;
         let one =
@@ -192,7 +192,7 @@ impl Comparison {
         text
     }
 
-    /// The box of all targets.
+    /// Returns the box of all targets.
     fn bounds(&self) -> Bounds {
         let mut target = Bounds::default();
         for p in self.rows.iter().flat_map(|row| &row.entry.target) {

@@ -1,5 +1,5 @@
-//! A comparison as one self-contained page: curves that can be shown and hidden, what is bought with what, tables
-//! that can be sorted. Without its script it is a page to read and to print.
+//! A comparison as one self-contained HTML page: curves that can be shown and hidden, the trade-off chart, tables that
+//! can be sorted. Without its script it can still be read and printed.
 
 use super::overlay::{self, Overlay};
 use super::trade_off::{self, trade_off};
@@ -10,11 +10,11 @@ use crate::report::text::{NO_NUMBER, brief, clean, exact, significant};
 use crate::report::words::{defect_names, length_suffix};
 use std::fmt::Write;
 
-/// A table's head: the text, and what a screen reader says where that is more.
+/// The heading of a column: its text, and a longer text for screen readers if there is one.
 type Head = (String, Option<&'static str>);
 
 impl Comparison {
-    /// The page. Labels and names are text in it, whatever they hold.
+    /// Returns the page. Labels and names are plain text in it, whatever characters they contain.
     pub fn html(&self) -> String {
         let title = self.title();
         let mut body = String::from("<main>\n<header>\n");
@@ -241,7 +241,7 @@ impl Comparison {
 /// A cell of a table.
 struct Cell {
     shown: String,
-    /// What it is sorted by; words by themselves, missing numbers last.
+    /// The value by which it is sorted; words by themselves, missing numbers last.
     value: Option<f64>,
     word: bool,
 }
@@ -260,7 +260,7 @@ fn plain_heads(heads: &[&str]) -> Vec<Head> {
     heads.iter().map(|head| ((*head).to_owned(), None)).collect()
 }
 
-/// Foreign text as markup: cleaned, then escaped.
+/// Returns foreign text as markup: cleaned, then escaped.
 fn text(text: &str) -> String {
     escaped(&clean(text))
 }
@@ -283,7 +283,7 @@ fn drawing(body: &mut String, width: f64, height: f64, description: &str, markup
     );
 }
 
-/// A table whose first columns are rank and label; each head is a button that sorts.
+/// Writes a table whose first columns are rank and label; each heading is a button that sorts.
 fn table<'a>(
     body: &mut String,
     name: &str,

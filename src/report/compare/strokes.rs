@@ -1,18 +1,18 @@
-//! How the curves of a comparison are told apart: by colour and by dashes.
+//! The strokes of a comparison's curves, which differ in colour and dashes.
 
-/// Okabe and Ito's colours for colour-blind eyes, without the one of targets.
+/// Okabe and Ito's colours for colour-blind readers, without the colour of targets.
 const COLOURS: [&str; 6] = ["#0072b2", "#009e73", "#cc79a7", "#b87a00", "#1f2a36", "#3a9bd0"];
 const DASHES: [&str; 4] = ["", "9 4", "2 4", "12 4 2 4"];
 
-/// The most curves that can be told apart.
+/// The largest number of curves that can be distinguished.
 pub(super) const MOST: usize = COLOURS.len() * DASHES.len();
 
-/// The colour of the curve of a row.
+/// Returns the colour of the curve of a row.
 pub(super) fn colour(row: usize) -> &'static str {
     COLOURS[row % COLOURS.len()]
 }
 
-/// The stroke of the curve of a row: colour and dashes differ from row to row.
+/// Returns the stroke of the curve of a row: colour and dashes differ from row to row.
 pub(super) fn stroke(row: usize) -> String {
     let dashes = DASHES[(row + row / COLOURS.len()) % DASHES.len()];
     let dashes = if dashes.is_empty() { String::new() } else { format!(r#" stroke-dasharray="{dashes}""#) };

@@ -1,16 +1,16 @@
-//! A comparison for a terminal.
+//! A comparison as text tables for a terminal.
 
 use super::{Comparison, Ranked, SortKey};
 use crate::report::grid::{Align, Colour, Grid, Ink};
 use crate::report::table::COLUMNS;
 use crate::report::text::{NO_NUMBER, clean, columns_of, shortened_in_front, significant, wrapped};
 
-/// The most columns of a label.
+/// The largest width of a label, in columns.
 const LABEL: usize = 28;
-/// The fewest.
+/// The smallest width of a label, in columns.
 const LEAST_LABEL: usize = 8;
 
-/// `+12.3 %`, `0 %`; what has no number is `-`.
+/// Returns `+12.3 %`, `0 %`, or `-` without a number.
 pub(super) fn signed_percent(percent: Option<f64>) -> String {
     match percent {
         Some(percent) if percent > 0.0 => format!("+{} %", significant(percent, 3)),
@@ -19,7 +19,7 @@ pub(super) fn signed_percent(percent: Option<f64>) -> String {
     }
 }
 
-/// `sum_sq, then transmission`.
+/// Returns the keys in words: `sum_sq, then transmission`.
 pub(super) fn keys_in_words(comparison: &Comparison) -> String {
     comparison.keys.iter().map(|key| key.name()).collect::<Vec<_>>().join(", then ")
 }
@@ -29,7 +29,7 @@ fn plain(text: String) -> (String, Ink) {
 }
 
 impl Comparison {
-    /// Figures, parameters and, with a reference, the differences from it, as tables of text; notes below.
+    /// Returns figures, parameters and, with a reference, the differences from it, as tables of text; notes below.
     pub fn table(&self, colour: Colour) -> String {
         if self.rows.is_empty() {
             return "  Nothing to compare.\n".to_owned();
@@ -57,12 +57,12 @@ impl Comparison {
         out
     }
 
-    /// The figure in the first column: what was minimised, else the sum of squares.
+    /// Returns the figure of the first column: the objective, or the sum of squares.
     pub(super) fn first_figure(&self) -> SortKey {
         if self.minimised().is_some() { SortKey::Objective } else { SortKey::SumSq }
     }
 
-    /// The figures of the tables, in the order of their columns.
+    /// Returns the figures of the tables, in the order of their columns.
     pub(super) fn shown_figures(&self) -> [SortKey; 7] {
         use SortKey::{LinkRatio, Max, Rms, Size, ToCurve, Transmission};
         [self.first_figure(), Rms, Max, ToCurve, Transmission, LinkRatio, Size]
@@ -112,7 +112,7 @@ impl Comparison {
         grid.render(colour)
     }
 
-    /// The rank by each key.
+    /// Returns the table of the ranks by each key.
     fn ranks(&self, colour: Colour) -> String {
         let mut heads = vec![("#", Align::Left), ("linkage", Align::Left)];
         heads.extend(self.keys.iter().map(|key| (key.name(), Align::Right)));
@@ -185,10 +185,10 @@ fn named(row: &Ranked, label: usize) -> String {
     shortened_in_front(&clean(&row.entry.label), label)
 }
 
-/// The table with labels as long as fit.
+/// Returns the table with the longest labels that fit.
 fn within(columns: usize, table: impl Fn(usize) -> String) -> String {
     let wide = |text: &str| text.lines().map(columns_of).max().unwrap_or(0);
-    // Colours take no columns, but they count as some: they cost a label at most a few letters.
+    // Colour codes take no columns on a terminal but are counted: they shorten a label by at most a few letters.
     let mut label = LABEL;
     loop {
         let text = table(label);

@@ -1,4 +1,4 @@
-//! What is bought with what: error across, worst transmission angle up, size as the size of the mark.
+//! The trade-off chart: error across, worst transmission angle up, size as the size of the mark.
 
 use super::{Comparison, Ranked, SortKey, strokes};
 use crate::report::canvas::{Anchor, Canvas, Spot, palette, px};
@@ -11,11 +11,11 @@ const LEFT: f64 = 66.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 22.0;
 const BOTTOM: f64 = 52.0;
-/// Errors whose greatest is more than this times the least stand on a logarithmic scale.
+/// The ratio of the greatest to the least error above which the scale is logarithmic.
 const LOGARITHMIC: f64 = 12.0;
 const RADII: [f64; 2] = [7.0, 17.0];
 
-/// One axis: values to the range from 0 to 1.
+/// One axis, which maps values to the range from 0 to 1.
 struct Axis {
     low: f64,
     high: f64,
@@ -23,7 +23,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// An axis that holds the values, with some room.
+    /// Returns an axis that contains the values, with a margin.
     fn new(values: &[f64], may_be_logarithmic: bool) -> Axis {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -39,7 +39,7 @@ impl Axis {
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Round values on the axis.
+    /// Returns round values on the axis.
     fn ticks(&self) -> Vec<f64> {
         if self.logarithmic {
             let (low, high) = (self.low.exp(), self.high.exp());
@@ -56,7 +56,7 @@ impl Axis {
     }
 }
 
-/// The marks of all rows that have the three figures; `None` where fewer than two have.
+/// Draws the marks of all rows that have the three figures; `None` if fewer than two have.
 pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
     let of = |row: &Ranked| {
         let [x, y, size] = [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(|key| row.figure_of(key));
@@ -78,7 +78,7 @@ pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
     };
     let mut canvas = Canvas::default();
     axes(&mut canvas, comparison, &across, &up);
-    // Small marks above large ones.
+    // Small marks are drawn above large ones.
     let mut order = rows;
     order.sort_by(|x, y| y.2.2.total_cmp(&x.2.2).then(y.0.cmp(&x.0)));
     for (i, row, (x, y, size)) in order {

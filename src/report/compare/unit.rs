@@ -1,4 +1,4 @@
-//! Lengths of several results in one unit.
+//! Conversion of the lengths of several results to one unit.
 
 use super::Entry;
 use crate::linkage::{FourBar, LinkageError};
@@ -15,15 +15,15 @@ fn millimetres(unit: Unit) -> f64 {
     }
 }
 
-/// What a length in `from` is to be multiplied by to be in `to`: exactly 1 where they are the same.
+/// Returns the factor that converts a length in `from` to one in `to`: exactly 1 if they are the same.
 pub fn times(from: Unit, to: Unit) -> f64 {
     millimetres(from) / millimetres(to)
 }
 
-/// The linkage with every length and coordinate times a factor.
+/// Returns the linkage with every length and coordinate multiplied by a factor.
 ///
 /// # Errors
-/// As [`FourBar::new`], where a length leaves the allowed range.
+/// As [`FourBar::new`], if a length leaves the allowed range.
 pub fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, LinkageError> {
     let mut parameters = linkage.natural_coordinates();
     for pivot in [&mut parameters.crank_pivot, &mut parameters.follower_pivot] {
@@ -42,7 +42,7 @@ pub fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, LinkageError> {
 }
 
 impl Entry {
-    /// Its lengths and errors in another unit; as it is where it has no unit.
+    /// Returns the entry with its lengths and errors in another unit; unchanged if it has no unit.
     fn converted(&self, to: Unit) -> Result<Entry, LinkageError> {
         let mut entry = self.clone();
         let Some(from) = self.unit.filter(|from| *from != to) else { return Ok(entry) };
@@ -71,18 +71,20 @@ impl Entry {
     }
 }
 
-/// The entries with all lengths in one unit: those without one are taken to be in it; as they are without a unit.
+/// Returns the entries with all lengths in one unit: lengths without a unit are taken to be in it; unchanged if `unit`
+/// is `None`.
 ///
-/// The requirements and the costs of a candidate stay as its own problem has them.
+/// The requirements and the costs of a candidate keep the values of its own problem.
 ///
 /// # Errors
-/// As [`FourBar::new`], where a length leaves the allowed range.
+/// As [`FourBar::new`], if a length leaves the allowed range.
 pub fn in_one_unit(entries: &[Entry], unit: Option<Unit>) -> Result<Vec<Entry>, LinkageError> {
     let Some(unit) = unit else { return Ok(entries.to_vec()) };
     entries.iter().map(|entry| Ok(Entry { unit: Some(unit), ..entry.converted(unit)? })).collect()
 }
 
-/// A sentence on each unit from which lengths were converted, and on those that had none: labels and their units.
+/// Returns a sentence on each unit from which lengths were converted, and on lengths without a unit; `units` are labels
+/// with their units.
 pub fn unit_remarks(units: &[(String, Option<Unit>)], to: Unit) -> Vec<String> {
     let labels = |has: Option<Unit>| {
         const NAMED: usize = 3;

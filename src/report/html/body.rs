@@ -1,4 +1,4 @@
-//! The page's sections in their order.
+//! The sections of the report page, in their order.
 
 use super::page::escaped;
 use super::{Extent, candidate, data, exact, practicality, proof, table};
@@ -7,7 +7,7 @@ use crate::report::certificate as certificate_words;
 use crate::report::text::{clean, significant};
 use crate::report::{price, table as text_table, words};
 
-/// Everything that is seen. Each section is one line at the end.
+/// Returns everything that is visible on the page. Each section is one line at the end of this function.
 pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent) -> String {
     let mut out = String::new();
     out.push_str(&header(record));
@@ -29,14 +29,14 @@ pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent) -> String
     out
 }
 
-/// A section with a heading, as a card.
+/// Returns a section with a heading, as a card.
 pub(super) fn section(id: &str, title: &str, inside: &str) -> String {
     format!(
         "<section class=\"card\" id=\"{id}\" aria-labelledby=\"{id}-title\">\n<h2 id=\"{id}-title\">{title}</h2>\n{inside}</section>\n"
     )
 }
 
-/// A paragraph of our own words and cleaned foreign ones.
+/// Returns a paragraph of our own words and cleaned foreign ones.
 pub(super) fn paragraph(class: &str, text: &str) -> String {
     match class {
         "" => format!("<p>{}</p>\n", escaped(text)),
@@ -44,14 +44,14 @@ pub(super) fn paragraph(class: &str, text: &str) -> String {
     }
 }
 
-/// Where the script puts the player; hidden without it.
+/// The place in which the script puts the player; hidden without the script.
 const LIVE: &str = r#"<section id="live" hidden aria-label="The linkage in motion">
 <div class="card stage-card"><div class="choices"><fieldset id="choices"><legend>Candidate</legend></fieldset><span class="played" id="played" role="status"></span></div><div id="stage"></div></div>
 <div class="card" id="charts"></div>
 </section>
 "#;
 
-/// Filled by the script.
+/// The table of points, filled by the script.
 const POINTS: &str = r#"<section class="card screen-only" id="points"><details><summary>Every point: desired, generated, error</summary>
 <div class="scroll" tabindex="0" role="region" aria-label="Points"><table><thead><tr><th scope="col" class="n">point</th><th scope="col" class="n">crank °</th><th scope="col" class="n">desired x</th><th scope="col" class="n">desired y</th><th scope="col" class="n">generated x</th><th scope="col" class="n">generated y</th><th scope="col" class="n">error</th></tr></thead><tbody></tbody></table></div></details></section>
 "#;
@@ -103,7 +103,7 @@ fn family(record: &Record) -> Option<String> {
     record.family.as_ref().map(|family| format!("{}.", capital(&clean(&family.text))))
 }
 
-/// What came of it, in a sentence.
+/// Returns the outcome of the run, in a sentence.
 fn verdict(record: &Record) -> String {
     let unit = words::unit_suffix(record);
     let figures = |c: &Candidate| {
@@ -128,13 +128,13 @@ fn verdict(record: &Record) -> String {
     }
 }
 
-/// With a capital letter in front.
+/// Returns the text with a capital first letter.
 pub(super) fn capital(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// How to come to the same digits.
+/// Returns the commands that reproduce the same digits.
 fn reproduction(record: &Record) -> String {
     let name = file_stem(&record.problem.name);
     let method = record.method.asked.name();
@@ -166,7 +166,7 @@ fn reproduction(record: &Record) -> String {
     section("reproduce", "How to reproduce", &inside)
 }
 
-/// The name as it may stand in a command: letters, digits, dots, dashes; never empty.
+/// Returns the name in a form that is safe in a command: letters, digits, dots, dashes; never empty.
 fn file_stem(name: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' };
     let stem: String = clean(name).chars().take(crate::report::text::LONGEST_TEXT).map(plain).collect();

@@ -1,4 +1,4 @@
-//! One candidate in words: figures, mobility and defects, requirements, dimensions, the same curve by others.
+//! One candidate in words: figures, mobility and defects, requirements, dimensions, other linkages with the same curve.
 
 use super::body::paragraph;
 use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
@@ -9,15 +9,15 @@ use crate::record::{Alternative, Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::words;
 
-/// So many candidates get a drawing for readers without a script.
+/// The largest number of candidates with a drawing for readers without a script.
 const MOST_DRAWN: usize = 10;
 
-/// How many candidates are drawn.
+/// Returns the number of candidates that are drawn.
 pub(super) fn drawn(record: &Record) -> usize {
     record.candidates.len().min(MOST_DRAWN)
 }
 
-/// An article for each candidate, and for the buildable answer where it is none of them.
+/// Returns an article for each candidate, and for the buildable candidate if it is not among them.
 pub(super) fn articles(record: &Record, drawings: &[&str]) -> String {
     let mut out: String = record
         .candidates
@@ -31,7 +31,7 @@ pub(super) fn articles(record: &Record, drawings: &[&str]) -> String {
     out
 }
 
-/// The article of one candidate, without a drawing.
+/// Returns the article of one candidate, without a drawing.
 pub(super) fn one(record: &Record, index: usize) -> String {
     record.candidates.get(index).map_or(String::new(), |c| ranked(record, index, c, None))
 }
@@ -65,12 +65,12 @@ fn article(
     )
 }
 
-/// A drawing as it stands inside a page: there the name space is known.
+/// Returns a drawing as it is embedded in a page, which needs no name space.
 pub(super) fn inline(drawing: &str) -> String {
     drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1)
 }
 
-/// The figures that are asked for first.
+/// Returns the most important figures.
 fn figures(record: &Record, c: &Candidate) -> String {
     let unit = words::unit_suffix(record);
     let length = |value: f64| format!("{}<small>{unit}</small>", minus(&significant(value, 4)));
@@ -103,7 +103,7 @@ fn warnings(c: &Candidate) -> String {
     format!("<h3>Look twice</h3>\n<ul class=\"said-list\">\n{items}</ul>\n")
 }
 
-/// The cognates.
+/// Returns the cognates.
 fn alternatives(c: &Candidate, key: &str) -> String {
     if c.alternatives.is_empty() {
         return String::new();

@@ -1,35 +1,36 @@
-//! What the player is given: the target and the mechanisms, each with its motion, as JSON.
+//! The data of the player: the target and the mechanisms, each with its motion, as JSON.
 
 use super::motion::Drive;
 use crate::linkage::{AssemblyMode, FourBar, MAX_MAGNITUDE};
 use crate::record::{Candidate, Record};
 use serde::Serialize;
 
-/// Of more target points than this the page gets so many, evenly chosen, and the worst of each candidate.
+/// The largest number of target points on the page; of more, this many are evenly chosen, and the worst of each
+/// candidate is added.
 const MOST_POINTS: usize = 400;
-/// The most alternatives of a candidate that can be played.
+/// The largest number of alternatives of a candidate that can be played.
 pub(super) const MOST_ALTERNATIVES: usize = 6;
-/// The most linkages through nine points that can be played.
+/// The largest number of linkages through nine points that can be played.
 pub(super) const MOST_EXACT: usize = 100;
 
-/// Everything that the player reads.
+/// The data that the player reads.
 #[derive(Serialize)]
 pub(super) struct Data<'a> {
-    /// The label of lengths.
+    /// The unit of lengths, as a label.
     unit: Option<&'static str>,
     target: Target,
-    /// The least transmission angle asked for, degrees.
+    /// The least transmission angle asked for, in degrees.
     transmission_deg_min: Option<f64>,
     /// The key of the mechanism shown first.
     first: String,
     mechanisms: Vec<Mechanism<'a>>,
 }
 
-/// The target's points, or those chosen of them.
+/// The target's points, or the chosen ones.
 #[derive(Serialize)]
 struct Target {
     points: Vec<[f64; 2]>,
-    /// Their numbers in the problem; absent where all are here.
+    /// The numbers of the points in the problem; absent if all are here.
     #[serde(skip_serializing_if = "Option::is_none")]
     numbers: Option<Vec<usize>>,
     closed: bool,
@@ -40,15 +41,16 @@ struct Target {
 /// A linkage that can be played.
 #[derive(Serialize)]
 struct Mechanism<'a> {
-    /// `c1`: candidate 1; `b`: the buildable one; `c1a2`: its second alternative; `x7`: the seventh exact linkage.
+    /// The key: `c1`: candidate 1; `b`: the buildable one; `c1a2`: its second alternative; `x7`: the seventh exact
+    /// linkage.
     key: String,
-    /// What a person reads.
+    /// The name for readers.
     name: String,
     linkage: &'a FourBar,
     drive: Drive,
-    /// The crank angle at each point, degrees.
+    /// The crank angle at each point, in degrees.
     crank_deg: Vec<f64>,
-    /// The assembly at each point; absent where all are the drive's.
+    /// The assembly at each point; absent if all are equal to that of the drive.
     #[serde(skip_serializing_if = "Option::is_none")]
     t1_at: Option<Vec<AssemblyMode>>,
     /// The number of the worst point.
@@ -56,16 +58,16 @@ struct Mechanism<'a> {
     worst: Option<usize>,
 }
 
-/// The key of a candidate's mechanism; `index` counts from 0.
+/// Returns the key of a candidate's mechanism; `index` counts from 0.
 pub(super) fn candidate_key(index: usize) -> String {
     format!("c{}", index + 1)
 }
 
-/// The key of the buildable answer where it is none of the candidates.
+/// The key of the buildable candidate if it is not among the candidates.
 pub(super) const BUILDABLE_KEY: &str = "b";
 
 impl<'a> Data<'a> {
-    /// The data of a record; the candidate `first` (from 0) is shown first.
+    /// Returns the data of a record; the candidate `first` (from 0) is shown first.
     pub(super) fn new(record: &'a Record, first: usize) -> Self {
         let path = &record.problem.resolved.task.path;
         let chosen = chosen(record);
@@ -127,7 +129,7 @@ impl<'a> Mechanism<'a> {
         chosen: &[usize],
     ) -> Self {
         let drive = Drive::new(linkage, crank_deg, t1_at);
-        // Lists may be shorter than the target in a record from elsewhere: what is there is shown.
+        // Lists may be shorter than the target in a record from elsewhere: the existing entries are shown.
         let there: Vec<usize> =
             chosen.iter().copied().take_while(|i| *i < crank_deg.len() && *i < t1_at.len()).collect();
         let t1: Vec<AssemblyMode> = there.iter().map(|i| t1_at[*i]).collect();
@@ -144,7 +146,7 @@ impl<'a> Mechanism<'a> {
     }
 }
 
-/// The numbers of the points that the page gets.
+/// Returns the numbers of the points that the page contains.
 fn chosen(record: &Record) -> Vec<usize> {
     let points = &record.problem.resolved.task.path.points;
     let usable = |i: &usize| points[*i].iter().all(|x| x.abs() <= MAX_MAGNITUDE);
@@ -164,7 +166,7 @@ fn worst_of(candidate: &Candidate) -> usize {
     candidate.error.max_at
 }
 
-/// How many of how many points the page has, where those are not all.
+/// Returns the number of points on the page and of all points, if these differ.
 pub(super) fn thinned(record: &Record) -> Option<(usize, usize)> {
     let all = record.problem.resolved.task.path.points.len();
     (all > MOST_POINTS).then(|| (chosen(record).len(), all))

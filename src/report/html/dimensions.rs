@@ -1,4 +1,4 @@
-//! The exact dimensions, as they stand in a linkage file.
+//! The exact dimensions, as they are written in a linkage file.
 
 use super::page::escaped;
 use crate::linkage::FourBar;
@@ -7,10 +7,11 @@ use crate::record::{Candidate, Record, Unit};
 use crate::report::text::{clean, significant};
 use crate::report::words;
 
-/// The most characters of a name in a linkage file.
+/// The largest number of characters of a name in a linkage file.
 const MOST_NAME: usize = 50;
 
-/// A linkage file to copy, and what is not in it: the ground and where P lies along and across the coupler.
+/// Returns a linkage file to copy, and the dimensions that it does not contain: the ground and the place of P along and
+/// across the coupler.
 pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> String {
     let unit = words::unit_suffix(record);
     let offset = c.linkage.coupler_offset();
@@ -25,7 +26,7 @@ pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> String 
     )
 }
 
-/// The dimensions of the alternatives, folded away.
+/// Returns the dimensions of the alternatives, folded away.
 pub(super) fn of_alternatives(c: &Candidate) -> String {
     let list: String = c
         .alternatives
@@ -44,12 +45,12 @@ fn block(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
     format!("<pre class=\"dimensions\">{}</pre>\n", escaped(&without_comments(&to_toml(name, unit, linkage))))
 }
 
-/// The letters are explained once on the page, by the drawing.
+/// Returns the file without its comments: the drawing on the page explains the letters.
 fn without_comments(toml: &str) -> String {
     toml.lines().filter(|line| !line.starts_with('#')).map(|line| format!("{line}\n")).collect()
 }
 
-/// A name that a linkage file may have.
+/// Returns a name that is legal in a linkage file.
 fn named(record: &Record, short: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || " -_.".contains(c) { c } else { '-' };
     let name: String = clean(&record.problem.name).chars().take(MOST_NAME).map(plain).collect();

@@ -1,4 +1,4 @@
-//! Every linkage through nine points: the census in words, the linkages in a table.
+//! The linkages through nine points: the census in words, the linkages in a table.
 
 use super::body::{paragraph, section};
 use super::data::MOST_EXACT;
@@ -9,7 +9,7 @@ use crate::report::text::{clean, grouped, significant};
 use crate::report::words;
 use crate::task::Defect;
 
-/// The section; empty for a record without exact answers.
+/// Returns the section; empty for a record without exact linkages.
 pub(super) fn exact(record: &Record) -> String {
     let Some(exact) = &record.exact else { return String::new() };
     let said = none_through(record).map_or_else(|| sentences(exact).to_vec(), |one| vec![one]);

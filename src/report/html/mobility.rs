@@ -8,7 +8,7 @@ use crate::record::{Candidate, Record};
 use crate::report::text::{brief, significant};
 use crate::report::{table, words};
 
-/// What the linkage can do and what it does along the points, as a list.
+/// Returns the linkage's mobility and its motion along the points, as a list.
 pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
     let mut said = vec![of_type(c), range(c)];
     said.extend(table::motion(c).map(|motion| format!("Along the points: {motion}.")));
@@ -63,7 +63,7 @@ fn of_type(c: &Candidate) -> String {
     }
 }
 
-/// How far the input can turn.
+/// Returns the range of the input.
 fn range(c: &Candidate) -> String {
     let mobility = c.linkage.mobility();
     let of = |arc: &crate::linkage::InputArc| {

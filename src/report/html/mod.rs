@@ -1,20 +1,20 @@
-//! A run as a page in one file: the linkage moving over its target, every figure and verdict beside it.
+//! A run as an HTML page in one file: the linkage moving over its target, with every figure and verdict.
 //!
 //! ```text
-//! page.rs         the file: policy, style, script, data; what makes foreign text harmless
-//! data.rs         what the player reads, as JSON; motion.rs: how each mechanism is driven
+//! page.rs         the file: policy, style, script, data; escaping of foreign text
+//! data.rs         the data of the player, as JSON; motion.rs: the drive of each mechanism
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
-//! practicality.rs layers, clearances and sensitivities of what one would build
+//! practicality.rs layers, clearances and sensitivities of the linkages that one would build
 //! exact.rs        every linkage through nine points
-//! proof.rs        what is proved, and how often the best answer came back
-//! player/*.mjs    position solver, drawing, charts, transport: they know nothing of this page
+//! proof.rs        the certificate, and the number of times the best answer was found
+//! player/*.mjs    position solver, drawing, charts, transport: independent of this page
 //! report.mjs, report.css    the page around the player
 //! ```
 //!
-//! All words are written here, for every candidate, so that the page reads without its script too. The script draws,
-//! plays, sorts and shows one candidate at a time. Nothing in the page names a place on a network.
+//! All words are written here, for every candidate, so that the page can be read without its script too. The script
+//! draws, plays, sorts and shows one candidate at a time. Nothing in the page refers to a place on a network.
 
 use crate::record::Record;
 
@@ -43,14 +43,14 @@ pub(super) const PLAYER: [&str; 7] = [
     include_str!("player/chart.mjs"),
     include_str!("player/player.mjs"),
 ];
-/// Colours and the player's look.
+/// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 
-/// The report of a record, with its candidate `first` (counted from 0) shown first: a whole HTML file.
+/// Returns the report of a record, with its candidate `first` (counted from 0) shown first: a whole HTML file.
 ///
-/// A pure function of the record. It is made for records that [`verify`](crate::verify::verify) accepts and shows any
-/// other without harm. Of more than 400 target points the player gets 400; drawings for readers without a script are
-/// there for the first ten candidates.
+/// It is a pure function of the record. It is made for records that [`verify`](crate::verify::verify) accepts and shows
+/// any other without harm. Of more than 400 target points the player gets 400; there are drawings for readers without a
+/// script for the first ten candidates.
 pub fn report_html(record: &Record, first: usize) -> String {
     let drawn: Vec<String> =
         (0..candidate::drawn(record)).map(|i| super::svg::candidate_svg(record, i)).collect();
@@ -58,16 +58,16 @@ pub fn report_html(record: &Record, first: usize) -> String {
     report_with_drawings(record, first, &drawn, Extent::Full)
 }
 
-/// What a page holds.
+/// The extent of a page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// Everything.
+    /// The whole page.
     Full,
-    /// Not what takes milliseconds to work out (layers, clearances): for one job of many.
+    /// The page without the parts that take milliseconds to compute (layers, clearances): for one job of many.
     Brief,
 }
 
-/// As [`report_html`] for a caller who has the candidates' drawings already:
+/// Returns the report as [`report_html`] does, for a caller who has the candidates' drawings already:
 /// [`candidate_svg`](super::svg::candidate_svg) of each, in their order, is most of the work.
 pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], extent: Extent) -> String {
     let mut modules = PLAYER.to_vec();
@@ -82,12 +82,13 @@ pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], ex
     .render()
 }
 
-/// What the report says of the whole run, as markup: what came of it, what stands in the way, what would help.
+/// Returns the report's header on the whole run, as markup: the outcome, the obstacles, and the changes that would
+/// help.
 pub fn summary_markup(record: &Record) -> String {
     body::header(record)
 }
 
-/// What the report says of one candidate, as markup: figures, mobility, warnings, requirements with what they cost,
+/// Returns the report on one candidate, as markup: figures, mobility, warnings, requirements with their costs,
 /// dimensions, cognates. `index` counts from 0.
 pub fn candidate_markup(record: &Record, index: usize) -> Option<String> {
     record.candidates.get(index).map(|_| candidate::one(record, index))
@@ -102,7 +103,7 @@ mod tests {
         PLAYER.into_iter().chain([include_str!("report.mjs")]).collect()
     }
 
-    /// Joined into one scope, two of a name would shadow each other without a word.
+    /// The modules are joined into one scope, in which two declarations of one name would silently shadow each other.
     #[test]
     fn no_name_is_declared_twice_at_the_top_of_the_modules() {
         let script = page::joined(&all_modules());
@@ -126,7 +127,7 @@ mod tests {
                 assert!(!text.contains(end), "{end}");
             }
         }
-        // What the joining relies on.
+        // The conditions on which the joining relies.
         for line in all_modules().into_iter().flat_map(str::lines) {
             let trimmed = line.trim_start();
             assert!(!trimmed.starts_with("import ") || (line == trimmed && line.ends_with(';')), "{line}");

@@ -1,4 +1,4 @@
-//! How a mechanism is driven on the page: which input moves it, over which range, and where the points lie on it.
+//! The drive of a mechanism on the page: the input that moves it, its range, and the places of the points in it.
 
 use crate::linkage::{AssemblyMode, FourBar, InputRange};
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// The drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
+    /// Returns the drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
     pub fn new(linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
         let mobility = linkage.mobility();
         let positions: Vec<(f64, AssemblyMode)> = crank_deg

@@ -1,22 +1,22 @@
-//! A page in one file: no network, one style and one script, both named by their hashes in its security policy.
+//! An HTML page in one file: no network, one style and one script, both named by their hashes in its security policy.
 //!
-//! Whatever comes from a record reaches the page through [`escaped`] or as JSON in a script element that is no
-//! script. The policy lets the browser run nothing but the style and the script that were put in here.
+//! Data from a record reaches the page only through [`escaped`] or as JSON in a script element that is not executed.
+//! The policy lets the browser use only the style and the script that were put in here.
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-/// What a page is made of.
+/// The contents of a page.
 pub(in crate::report) struct Page<'a> {
     /// The title, as text.
     pub(in crate::report) title: &'a str,
-    /// Style sheets, one after the other.
+    /// The style sheets, one after the other.
     pub(in crate::report) styles: &'a [&'a str],
     /// The body, as markup: foreign text in it is [`escaped`].
     pub(in crate::report) body: &'a str,
-    /// What the script reads: JSON from [`embedded`].
+    /// The data that the script reads: JSON from [`embedded`].
     pub(in crate::report) data: &'a str,
-    /// ES modules, each after those that it imports: see [`joined`].
+    /// The ES modules, each after those that it imports: see [`joined`].
     pub(in crate::report) modules: &'a [&'a str],
 }
 
@@ -25,7 +25,7 @@ const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta char
                                                <meta name=\"generator\" content=\"linkwright ";
 
 impl Page<'_> {
-    /// The page's bytes.
+    /// Returns the whole page as text.
     pub(in crate::report) fn render(&self) -> String {
         let style = self.styles.join("\n");
         let script = joined(self.modules);
@@ -58,7 +58,7 @@ impl Page<'_> {
     }
 }
 
-/// Text as markup, fit for content and for attributes in double quotes. Control characters become spaces.
+/// Returns text as markup, fit for content and for attributes in double quotes. Control characters become spaces.
 pub(in crate::report) fn escaped(text: &str) -> String {
     let mut markup = String::with_capacity(text.len());
     for c in text.chars() {
@@ -76,14 +76,14 @@ pub(in crate::report) fn escaped(text: &str) -> String {
     markup
 }
 
-/// Data as JSON that no text inside can break out of: every `<` stands as `\u003c`.
+/// Returns data as JSON that no text inside can break out of: every `<` is written as `\u003c`.
 pub(in crate::report) fn embedded(data: &impl Serialize) -> String {
-    // What is given here has string keys and no maps, so that it can always be written.
+    // The data has string keys and no maps, so that it can always be written.
     serde_json::to_string(data).unwrap_or_default().replace('<', "\\u003c")
 }
 
-/// ES modules as one script in a scope of its own. Each stands after those that it imports; `import` stands on one
-/// line, `export` in front of a declaration.
+/// Returns ES modules as one script in a scope of its own. Each has to follow those that it imports; `import` has to be
+/// on one line, `export` in front of a declaration.
 pub(in crate::report) fn joined(modules: &[&str]) -> String {
     let mut script = String::from("(() => {\n\"use strict\";\n");
     for line in modules.iter().flat_map(|module| module.lines()) {
@@ -96,12 +96,12 @@ pub(in crate::report) fn joined(modules: &[&str]) -> String {
     script
 }
 
-/// `sha256-..` of an inline style or script, as a security policy names it.
+/// Returns the hash `sha256-..` of an inline style or script, as a security policy names it.
 fn source_hash(text: &str) -> String {
     format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
 }
 
-/// RFC 4648, with padding.
+/// Returns bytes in base64 (RFC 4648), with padding.
 fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! What stands between a linkage and a workshop: of the best candidate, and of the buildable one where that is another.
+//! The practicality of a linkage on the page: of the best candidate, and of the buildable one if that is another.
 
 use super::Extent;
 use super::body::{paragraph, section};
@@ -13,10 +13,10 @@ use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
 use crate::report::text::significant;
 
-/// Significant digits of distances and of rates.
+/// The number of significant digits of distances and of rates.
 const DIGITS: usize = 4;
 
-/// The section; empty where there is nothing to build.
+/// Returns the section; empty if there is no linkage to build.
 pub(super) fn practicality(record: &Record, extent: Extent) -> String {
     let buildable = record.buildable.as_ref().filter(|c| c.rank != 1);
     let subjects = record.candidates.first().into_iter().chain(buildable);
@@ -68,7 +68,7 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<String> 
     Some(out + &paragraph("notes", NOTES))
 }
 
-/// How near the joints come to each other.
+/// Returns the table of the least distances between joints.
 fn joints(distances: &[PivotDistance], hole: f64) -> String {
     let row = |d: &PivotDistance| {
         let note = objection(d, hole);
@@ -86,7 +86,7 @@ fn joints(distances: &[PivotDistance], hole: f64) -> String {
     scrolling("Least distances of joints", "tight", &table) + &paragraph("notes", &held(distances))
 }
 
-/// How much each dimension moves the path.
+/// Returns the table of each dimension's effect on the path.
 fn sensitivities(felt: &Sensitivity) -> String {
     let row = |d: &Dimension| {
         let rates = [significant(d.rms, 3), significant(d.worst, 3)]

@@ -1,4 +1,4 @@
-//! How good an answer can be: the certificate, and how often the best answer came back.
+//! The limits of the best answer: the certificate, and the number of times the best answer was found.
 
 use super::body::{paragraph, section};
 use super::page::escaped;
@@ -8,7 +8,7 @@ use crate::report::certificate::{
 };
 use crate::report::text::{at_most, grouped, percent_up};
 
-/// The section; empty for a record that says nothing of it.
+/// Returns the section; empty for a record without either.
 pub(super) fn proof(record: &Record) -> String {
     let mut inside = String::new();
     match (&record.certificate, &record.no_certificate) {

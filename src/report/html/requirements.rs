@@ -1,4 +1,4 @@
-//! Each requirement: what was asked, what the candidate has, whether it is met and what it costs.
+//! The requirements: the limit, the candidate's value, the verdict and the cost of each.
 
 use super::page::escaped;
 use super::table::{head, minus, scrolling};
@@ -6,8 +6,8 @@ use crate::record::{Candidate, Figure, Record, Requirement};
 use crate::report::text::{brief, clean, exact};
 use crate::report::{price, words};
 
-/// The requirements as a table: those of `[require]` and the tolerance at once, the bounds of `[design]` folded away
-/// unless the candidate stands on one or misses it.
+/// Returns the requirements as tables: those of `[require]` and the tolerance at once, the bounds of `[design]` folded
+/// away unless the candidate is at a bound or misses it.
 pub(super) fn requirements(record: &Record, c: &Candidate) -> String {
     let matters = |r: &Requirement| {
         !r.name.starts_with("design.") || !r.met || c.costs.iter().any(|cost| cost.name == r.name)
@@ -27,7 +27,7 @@ pub(super) fn requirements(record: &Record, c: &Candidate) -> String {
             table("Bounds of the design", record, c, &folded)
         ));
     }
-    // Limits that stand beside the requirements, such as the Grashof margin of a type.
+    // Limits that are not among the requirements, such as the Grashof margin of a type.
     let mut told: Vec<&str> = c.requirements.iter().map(|r| r.name.as_str()).collect();
     for cost in &c.costs {
         if !told.contains(&cost.name.as_str()) {
@@ -39,7 +39,7 @@ pub(super) fn requirements(record: &Record, c: &Candidate) -> String {
     out
 }
 
-/// Why it isn't accepted.
+/// Returns the reason why the candidate is not accepted.
 fn refusal(record: &Record, c: &Candidate) -> Option<String> {
     let objections = words::objections(record, c);
     let list: Vec<String> = objections.into_iter().map(|o| o.sentence).collect();
@@ -52,7 +52,7 @@ fn table(name: &str, record: &Record, c: &Candidate, list: &[&Requirement]) -> S
     scrolling(name, "wide requirements", &format!("{}<tbody>\n{rows}</tbody>\n", head(&columns)))
 }
 
-/// A row for the requirement, and where the candidate stands on it one for what that costs.
+/// Returns a row for the requirement, and if the candidate is at its limit one for the cost of that.
 fn row(record: &Record, c: &Candidate, r: &Requirement) -> String {
     let (mut asked, mut has) = (words::figure(&r.limit, short), words::figure(&r.value, short));
     if asked == has && !r.met {
@@ -87,7 +87,7 @@ fn signed(text: &str, figure: &Figure) -> String {
     }
 }
 
-/// Which way the limit binds.
+/// Returns the relation between value and limit.
 fn relation(r: &Requirement) -> &'static str {
     match (r.name.as_str(), &r.limit) {
         ("transmission_deg_min", _) => "at least ",
@@ -98,7 +98,7 @@ fn relation(r: &Requirement) -> &'static str {
     }
 }
 
-/// What a person calls it; the problem file's key where there is no word for it.
+/// Returns the name for readers; the problem file's key if there is no word for it.
 fn label(name: &str) -> String {
     match name {
         "type" => "type".to_owned(),

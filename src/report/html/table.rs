@@ -1,4 +1,4 @@
-//! Candidates side by side, each figure in a column of its own.
+//! The table of the candidates side by side, each figure in a column of its own.
 
 use super::body::section;
 use super::data::{BUILDABLE_KEY, candidate_key};
@@ -8,7 +8,7 @@ use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
 
-/// A cell: what is read, and the number that it is sorted by.
+/// A cell: its text, and the number by which it is sorted.
 pub(super) struct Cell {
     text: String,
     value: Option<f64>,
@@ -16,27 +16,27 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// A number, right-aligned.
+    /// Returns a cell with a number, right-aligned.
     pub(super) fn number(value: f64, text: String) -> Self {
         Cell { text, value: Some(value).filter(|v| v.is_finite()), class: "n" }
     }
 
-    /// A number with so many significant digits.
+    /// Returns a cell with a number with this many significant digits.
     pub(super) fn figure(value: f64, digits: usize) -> Self {
         Cell::number(value, minus(&significant(value, digits)))
     }
 
-    /// Words.
+    /// Returns a cell with words.
     pub(super) fn words(text: &str) -> Self {
         Cell { text: text.to_owned(), value: None, class: "" }
     }
 
-    /// Words that say yes or no.
+    /// Returns a cell with a verdict in words.
     pub(super) fn verdict(text: &str, good: bool) -> Self {
         Cell { text: text.to_owned(), value: None, class: if good { "verdict good" } else { "verdict bad" } }
     }
 
-    /// The cell as markup.
+    /// Returns the cell as markup.
     pub(super) fn markup(&self) -> String {
         let class = if self.class.is_empty() { String::new() } else { format!(" class=\"{}\"", self.class) };
         let value = self.value.map_or(String::new(), |value| format!(" data-v=\"{value:?}\""));
@@ -44,12 +44,12 @@ impl Cell {
     }
 }
 
-/// With a true minus sign.
+/// Returns the text with a true minus sign.
 pub(super) fn minus(text: &str) -> String {
     if text == NO_NUMBER { text.to_owned() } else { text.replacen('-', "\u{2212}", 2) }
 }
 
-/// A head of columns; those of numbers are right-aligned.
+/// Returns a header row; headings of numbers are right-aligned.
 pub(super) fn head(columns: &[(&str, bool)]) -> String {
     let cells: String = columns
         .iter()
@@ -61,7 +61,7 @@ pub(super) fn head(columns: &[(&str, bool)]) -> String {
     format!("<thead><tr>{cells}</tr></thead>\n")
 }
 
-/// A table that may be wider than the page, in a region that scrolls.
+/// Returns a table that may be wider than the page, in a region that scrolls.
 pub(super) fn scrolling(name: &str, class: &str, inside: &str) -> String {
     format!(
         "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table class=\"{class}\">\n{inside}</table></div>\n",
@@ -69,7 +69,7 @@ pub(super) fn scrolling(name: &str, class: &str, inside: &str) -> String {
     )
 }
 
-/// The section with the table.
+/// Returns the section with the table.
 pub(super) fn candidates(record: &Record) -> String {
     if record.candidates.is_empty() {
         let drawing = crate::report::svg::candidate_svg(record, 0);

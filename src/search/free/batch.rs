@@ -1,4 +1,4 @@
-//! A batch of rounds: side by side, read in their order, and after them the ends that they share.
+//! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
 
 use super::super::Budget;
 use super::super::keeper::spared;
@@ -11,28 +11,28 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
 
-/// What a batch brought.
+/// The results of a batch.
 pub(super) struct Batch {
     pub(super) draws: u64,
     pub(super) cost: Cost,
     /// The least merit on all points of each independent round.
     pub(super) best_merits: Vec<f64>,
     pub(super) ends: Vec<End>,
-    /// No part of it came near to what it was allowed.
+    /// Whether every part of it stayed well below its allowance of evaluations.
     pub(super) ample: bool,
-    /// What its stage knows after it.
+    /// The memory of its stage after it.
     pub(super) memory: Memory,
 }
 
-/// A share of what is left: evenly, so that the budget is never exceeded whatever the parts need.
+/// Returns an even share of the evaluations left, so that the budget is never exceeded.
 fn share(left: u64, parts: u64, index: u64) -> u64 {
     left / parts + u64::from(index < left % parts)
 }
 
-/// What all rounds of a batch have in common.
+/// The data that all rounds of a batch share.
 struct Common<'a> {
     setup: &'a Setup<'a>,
-    /// The stream of its first round.
+    /// Index of the random stream of its first round.
     first: u64,
     near_ends: Vec<Start>,
     budget: &'a Budget<'a>,
@@ -40,7 +40,7 @@ struct Common<'a> {
 
 impl Batch {
     /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
-    /// `memory` is what its stage knows before it.
+    /// `memory` is the memory of its stage before it.
     pub(super) fn run(
         setup: &Setup<'_>,
         memory: &Memory,
@@ -58,11 +58,12 @@ impl Batch {
         };
         let near_ends = memory.leading.iter().map(|(_, start)| start.clone()).collect();
         let common = Common { setup, first, near_ends, budget };
-        // Where ends are finished apart and an exact one would end it all, one round goes before the others.
+        // If ends are finished after the rounds and an exact one would end the search, one round runs before the
+        // others.
         let split = setup.finishes_apart() && setup.single && first == 0;
         let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
         while begin < BATCH {
-            // Evenly among all rounds of the batch, each with what it leads to.
+            // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let left = left.saturating_sub(batch.cost.evaluations);
             let (parts, of) = (end - begin, BATCH - begin);
             let exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
@@ -76,7 +77,8 @@ impl Batch {
         batch
     }
 
-    /// Some of the rounds side by side, and after them the ends that they share. Whether an exact answer is among them.
+    /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
+    /// among them.
     fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
         let &Common { setup, first, ref near_ends, budget } = common;
         let (parts, index) = (wave.end - wave.start, self.memory.index);
@@ -98,7 +100,7 @@ impl Batch {
             done = self.finish(common, &rounds, left.saturating_sub(used));
             self.memory.finished.extend(done.iter().map(|done| (done.explored, done.end.merit)));
         } else if let Some(exact) = rounds.iter().position(Round::is_exact) {
-            // What comes after it may have been cut short.
+            // Rounds after it may have been cut short.
             rounds.truncate(exact + 1);
         }
         for round in &mut rounds {
@@ -120,7 +122,7 @@ impl Batch {
         exact
     }
 
-    /// The ends of rounds fitted to all points, each once, up to the first exact one.
+    /// Fits the ends of rounds to all points, each once, up to the first exact one.
     fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
         let &Common { setup, budget, .. } = common;
         let ends = unfinished(setup, rounds, self.memory.bar, &self.memory.finished);
@@ -143,7 +145,7 @@ impl Batch {
         done
     }
 
-    /// The least merit on all points of what a round came to, whether it was finished in it or after a batch.
+    /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch.
     fn least_on_all(&self, round: &Round) -> f64 {
         let own = round.finished.iter().map(|done| done.end.merit);
         let shared = self.memory.finished.iter().filter_map(|(explored, whole)| {

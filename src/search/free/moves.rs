@@ -1,4 +1,4 @@
-//! Starts made from ends that are known: near one, or along the difference of two.
+//! Starts made from known ends: near one, or along the difference of two.
 
 use super::super::starts::Start;
 use crate::linkage::Complex;
@@ -6,13 +6,13 @@ use crate::problem::Problem;
 use crate::problem::torus::TorusFit;
 use crate::solve::streams::{Stream, normal, uniform};
 
-/// Random steps away from a known end, in parts of a length or of the target's size.
+/// Range of random steps away from a known end, in parts of a length or of the target's size.
 const JITTER: (f64, f64) = (0.01, 0.5);
-/// The part of a difference that is added.
+/// Range of the factor of the difference that is added.
 const DIFFERENCE: (f64, f64) = (-1.0, 1.0);
 
-/// A start near a known end: every free number of the design moved by a random part of its size, the positions
-/// brought back to the curves.
+/// Returns a start near a known end: every free number of the design is moved by a random part of its size, and the
+/// positions are brought back to the curves.
 pub(super) fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Option<Start> {
     let scale = uniform(stream, JITTER.0.ln(), JITTER.1.ln()).exp();
     let fit = TorusFit::new(problem, end.setting);
@@ -26,8 +26,8 @@ pub(super) fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Optio
     fit.settle(&start.design, &mut start.positions).then_some(start)
 }
 
-/// A start near a known end in the direction in which two others differ, in design and positions: what the ends of
-/// one family have in common is kept, as in differential evolution (Storn and Price 1997).
+/// Returns a start near a known end, moved along the difference of two others in design and positions, as in
+/// differential evolution (Storn and Price 1997): this keeps the common features of the ends of one family.
 pub(super) fn along_a_difference(
     problem: &Problem,
     [end, one, other]: [&Start; 3],

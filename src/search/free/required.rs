@@ -1,9 +1,9 @@
-//! Ends whose points have strayed to where the referee will refuse them, and starts that lead back.
+//! Ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back.
 //!
-//! A joint fit leaves the type of a linkage open where the problem does. By way of a change point positions then come
-//! to lie on two circuits, or on both branches of a rocking motion, and such an end may well have the least
-//! error of all. What is asked for is best met near it by a linkage that cannot stray: with one circuit where
-//! branches are free, with an input that turns fully where one branch is required.
+//! A joint fit does not fix the linkage type unless the problem does. By way of a change point positions then come to
+//! lie on two circuits, or on both branches of a rocking motion, and such an end may well have the least error of all.
+//! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
+//! input that turns fully if one branch is required.
 
 use super::super::starts::Start;
 use crate::linkage::mobility::linkage_type;
@@ -14,8 +14,8 @@ use crate::problem::requirements::assembly_of;
 /// Types whose circuits are branches: the input turns fully.
 const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
 
-/// Whether the points of a start lie on circuits or branches that the problem does not allow together, or its crank
-/// rocks where it has to turn fully.
+/// Returns whether the points of a start lie on circuits or branches that the problem does not allow together, or its
+/// crank rocks although it has to turn fully.
 pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
     if problem.circuit_any() && problem.branch_any() {
         return false;
@@ -37,7 +37,8 @@ pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
     !start.positions.iter().map(branch).all(allowed)
 }
 
-/// Starts near a strayed one that aim at types whose points cannot stray; none where the problem allows no such type.
+/// Returns starts near a strayed one that aim at types whose points cannot stray; empty if the problem allows no such
+/// type.
 pub(super) fn led_back(problem: &Problem, end: &Start) -> Vec<Start> {
     let types = problem.types();
     let allowed = |kind: &LinkageType| match end.setting.aim {
@@ -59,7 +60,8 @@ fn aimed_at(start: &Start, kind: LinkageType) -> Start {
     start
 }
 
-/// With all points in the assembly that most of them have: at the same crank angle D mirrored in the line B C,
+/// Returns the start with all points in the assembly that most of them have: at the same crank angle, D is mirrored in
+/// the line B C,
 ///
 /// ```text
 /// w = B - C,   u' = (w/|w|)^2 conj(u)
@@ -88,12 +90,12 @@ mod tests {
     use crate::search::fixture;
     use std::f64::consts::TAU;
 
-    /// Points all around the curve of a linkage, and a start there in the assemblies that are told.
+    /// Returns points all around the curve of a linkage, and a start there in the given assemblies.
     fn start(links: [f64; 4], require: &str, assemblies: impl Fn(usize) -> AssemblyMode) -> (Problem, Start) {
         let linkage = fixture::linkage(links);
         let (mut points, mut positions) = (Vec::new(), Vec::new());
         for j in 0..24 {
-            // Where the crank rocks, on an arc that it reaches.
+            // If the crank rocks, on an arc that it reaches.
             let turns = linkage.linkage_type().is_some_and(LinkageType::input_turns_fully);
             let angle = if turns { TAU * j as f64 / 24.0 } else { 0.6 + 0.02 * j as f64 };
             let joints = linkage.position_with(angle, assemblies(j)).joints().expect("it closes");

@@ -1,4 +1,5 @@
-//! One round of the search for free timing: starts, short fits, fits of the best, and what becomes of their ends.
+//! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
+//! ends.
 
 use super::super::Budget;
 use super::super::atlas::Matches;
@@ -24,17 +25,17 @@ const JITTERED: usize = 40;
 /// Starts fitted for a few steps.
 const SHORT: usize = 16;
 const DENSE_SHORT: usize = 10;
-/// Starts fitted on. On a dense target most lead to the same end: at first one a round, and more rounds.
+/// Starts fitted further. On a dense target most lead to the same end: at first one per round, and more rounds.
 const MIDDLE: usize = 3;
 const DENSE_MIDDLE: usize = 1;
-/// How often the points of an end are brought to their best places.
+/// Most passes that reassign the points of an end to the curve and fit again.
 const REASSIGNED: usize = 6;
-/// What a fit may spend that leads strayed points back to a type whose points cannot stray: where the type binds, the linkage is almost a change point, and not worth more.
+/// Most evaluations of a fit that leads strayed points back to a type whose points cannot stray: if the type binds, the
+/// linkage is almost a change point, and not worth more.
 const LED_BACK_MOST: u64 = 600;
-/// After a few steps, of the strayed end's merit.
+/// Greatest merit after a few steps, in units of the strayed end's merit, at which such a fit is continued.
 const WORTH_LEADING_BACK: f64 = 16.0;
-/// An end whose merit on the explored points is beyond this many times the best one there is not finished when
-/// one answer is wanted.
+/// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
 const WORTH_FINISHING: f64 = 4.0;
 
 /// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
@@ -49,56 +50,56 @@ const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-
 const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
 const LAST_FIT: Effort = Effort { steps: 300, rounds: 14, relative_reduction: 1e-12 };
 
-/// What all rounds share.
+/// The data that all rounds share.
 pub(super) struct Setup<'a> {
     pub(super) problem: &'a Problem,
     pub(super) coarse: Option<&'a Coarse>,
     pub(super) starts: &'a Starts<'a>,
     pub(super) matches: Option<Matches>,
-    /// One answer is wanted: the first exact one ends the search.
+    /// Whether one answer is wanted: the first exact one then ends the search.
     pub(super) single: bool,
     pub(super) exact: f64,
 }
 
 impl Setup<'_> {
-    /// The problem that is explored.
+    /// Returns the problem that is explored: the coarse one if there is one.
     fn explored(&self) -> &Problem {
         self.coarse.map_or(self.problem, |coarse| &coarse.problem)
     }
 
-    /// Whether ends are finished after their batch, each of them once. Sparse ones are finished in their rounds: the
-    /// first exact answer ends a batch.
+    /// Returns whether ends are finished after their batch, each of them once. Sparse ones are finished in their
+    /// rounds: the first exact answer ends a batch.
     pub(super) fn finishes_apart(&self) -> bool {
         Coarse::is_for(self.problem)
     }
 
-    /// Whether an end with this merit on the explored points can still matter beside the best one there.
+    /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
     fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
         !self.single || merit <= WORTH_FINISHING * best + self.exact
     }
 }
 
-/// What earlier batches of a stage know.
+/// The results of earlier batches of a stage that a round uses.
 pub(super) struct Known<'a> {
     pub(super) bar: f64,
     pub(super) near_ends: &'a [Start],
 }
 
 impl Known<'_> {
-    /// Whether a round starts from nothing that others have found.
+    /// Returns whether a round is independent: it uses no results of others.
     fn is_independent(&self, index: u64) -> bool {
         self.near_ends.is_empty() || index.is_multiple_of(2)
     }
 }
 
-/// Which round it is: of the whole search, for its random stream, and of its stage.
+/// Index of a round: in the whole search, for its random stream, and in its stage.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub(super) stream: u64,
     pub(super) index: u64,
 }
 
-/// What fits cost.
+/// The evaluations and positions used by fits.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cost {
     pub(super) evaluations: u64,
@@ -118,19 +119,19 @@ pub(super) struct Round {
     pub(super) cost: Cost,
     /// The ends on the explored points with their merits there, best first.
     pub(super) leaders: Vec<(f64, Start)>,
-    /// Those that it finished itself.
+    /// The ends that the round finished itself.
     pub(super) finished: Vec<Finished>,
-    /// It started from nothing that other rounds have found.
+    /// Whether it is independent: it used no results of other rounds.
     pub(super) independent: bool,
 }
 
 impl Round {
-    /// The least merit on the explored points.
+    /// Returns the least merit on the explored points.
     pub(super) fn explored(&self) -> f64 {
         self.leaders.first().map_or(f64::INFINITY, |(merit, _)| *merit)
     }
 
-    /// Whether it met an exact, accepted answer.
+    /// Returns whether it found an exact, accepted answer.
     pub(super) fn is_exact(&self) -> bool {
         self.finished.iter().any(|done| done.exact)
     }
@@ -142,11 +143,11 @@ pub(super) struct Finished {
     /// Its merit on the explored points.
     pub(super) explored: f64,
     pub(super) end: End,
-    /// It is an exact, accepted answer.
+    /// Whether it is an exact, accepted answer.
     pub(super) exact: bool,
 }
 
-/// Counts while it fits, and stops at its allowance.
+/// Runs fits within an allowance and counts their cost.
 struct Spender<'a> {
     cost: Cost,
     allowance: u64,
@@ -173,7 +174,7 @@ impl Spender<'_> {
         fit.end.map(|end| (fit.merit, end))
     }
 
-    /// An end with its points brought to their best places on its curve and fitted again, as long as that gains.
+    /// Reassigns the points of an end to their best places on its curve and fits it again, as long as that gains.
     fn at_best_places(
         &mut self,
         problem: &Problem,
@@ -183,7 +184,7 @@ impl Spender<'_> {
         for _ in 0..REASSIGNED {
             let Reassigned { better, positions } = reassigned(problem, &end);
             self.cost.positions += positions;
-            // As many evaluations as its positions are worth, within the allowance.
+            // Counted as evaluations of as many positions, within the allowance.
             self.cost.evaluations += (positions / problem.task().len() as u64).min(self.left());
             let Some(start) = better else { break };
             match self.fit_as_required(problem, start, effort) {
@@ -194,8 +195,8 @@ impl Spender<'_> {
         (merit, end)
     }
 
-    /// As `fit`, and where the points have come to lie where the problem does not allow them, from there to the
-    /// nearest ends that it does.
+    /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
+    /// there to the nearest ends that it allows.
     fn fit_as_required(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
         let (merit, end) = self.fit(problem, start, effort)?;
         if !strayed(problem, &end) {
@@ -218,7 +219,7 @@ impl Spender<'_> {
                 return again;
             }
         }
-        // Where that fails, an end that the referee will refuse.
+        // If that fails: the end that the referee will refuse.
         Some((merit, end))
     }
 }
@@ -228,7 +229,7 @@ pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
     ends.truncate(keep);
 }
 
-/// The starts of a round with what they promise on the explored points, and how many were drawn.
+/// Returns the starts of a round with their promise ([`promise`]) on the explored points, and the number drawn.
 fn drawn(
     setup: &Setup<'_>,
     Place { stream: of_search, index }: Place,
@@ -293,8 +294,8 @@ fn drawn(
     (drawn, count)
 }
 
-/// A round: its ends on the explored points, and on a sparse target what became of them. `found` is the first round
-/// with an exact answer; those after it are not read and may stop.
+/// Runs a round: its ends on the explored points, and on a sparse target the finished ends. `found` is the index of the
+/// first round with an exact answer; those after it are not read and may stop.
 pub(super) fn round(
     setup: &Setup<'_>,
     Place { stream: of_search, index }: Place,
@@ -333,7 +334,7 @@ pub(super) fn round(
             round.cost = spender.cost;
             return round;
         }
-        // Out of budget: as it stands.
+        // Out of budget: taken as it is.
         let kept = (merit, start.clone());
         let end = spender.fit_as_required(explored, start, MIDDLE_FIT).unwrap_or(kept);
         middle.push(if dense { spender.at_best_places(explored, end, MIDDLE_FIT) } else { end });
@@ -366,7 +367,7 @@ pub(super) fn round(
     round
 }
 
-/// An end on the explored points fitted to all of them; `None` where its points cannot be taken over.
+/// Fits an end on the explored points to all points; `None` if its positions cannot be refined to them.
 fn finish(
     setup: &Setup<'_>,
     (explored, start): (f64, &Start),
@@ -379,7 +380,7 @@ fn finish(
     let fitted = spender.fit_as_required(setup.problem, start.clone(), LAST_FIT);
     let (merit, start) = match fitted {
         Some(end) => end,
-        // Out of budget: as it stands, by its error on all points.
+        // Out of budget: taken as it is, with its error on all points.
         None => (promise(setup.problem, &mut start)?, start),
     };
     let (merit, start) = if setup.finishes_apart() {
@@ -397,8 +398,8 @@ fn finish(
     Some(Finished { explored, end, exact })
 }
 
-/// The ends of rounds on the explored points that can still matter and are not among the `finished` (merits on the
-/// explored points and on all), each once, best first.
+/// Returns the ends of rounds on the explored points that can still matter and are not among the `finished` (merits on
+/// the explored points and on all), each once, best first.
 pub(super) fn unfinished<'a>(
     setup: &Setup<'_>,
     rounds: &'a [Round],
@@ -418,7 +419,7 @@ pub(super) fn unfinished<'a>(
     out
 }
 
-/// Whether two merits on the explored points are of one end.
+/// Returns whether two merits on the explored points belong to one end.
 pub(super) fn is_same(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME_OPTIMUM * other
 }

@@ -1,4 +1,4 @@
-//! Where the search for free timing stands between two batches.
+//! The checkpoint state of the search for free timing between two batches.
 
 use super::super::multistart::judged;
 use super::super::starts::Start;
@@ -9,17 +9,17 @@ use crate::solve::exact_float::Exact;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// What is counted over all batches.
+/// Counters over all batches.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Counts {
-    /// Distinct answers known, and batches that brought none.
+    /// Distinct answers known; `quiet`: batches in a row without a new one.
     pub(super) known: usize,
     pub(super) quiet: u64,
     pub(super) batch: u64,
     pub(super) draws: u64,
 }
 
-/// All that the next batches depend on besides the problem and the budget.
+/// The state on which the next batches depend, besides the problem and the budget.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FreeState {
     counts: Counts,
@@ -41,11 +41,11 @@ struct StageState {
 struct EndState {
     merit: Exact,
     start: Start,
-    /// Whether the referee has seen it: its verdict follows from the rest.
+    /// Whether the referee has judged it; the verdict is computed again on resuming.
     judged: bool,
 }
 
-/// What a search goes on from, apart from its stages.
+/// The state from which a search resumes, apart from its stages.
 pub(super) struct Resumed {
     pub(super) counts: Counts,
     pub(super) evaluations: Evaluations,
@@ -85,13 +85,13 @@ impl FreeState {
         state
     }
 
-    /// Whether it lies between two batches.
+    /// Returns whether the state lies between two batches.
     fn is_counted(&self) -> bool {
         self.stages.iter().map(|stage| stage.index).sum::<u64>() == self.counts.batch * BATCH
     }
 
-    /// How many ways of exploring have begun, where the state can be one of this problem's; `points` are those that
-    /// the first explores.
+    /// Returns the number of stages that have begun, if the state can be one of this problem's; `points` is the number
+    /// of points that the first stage explores.
     pub(super) fn stages(&self, problem: &Problem, points: usize) -> Option<usize> {
         let n = problem.task().len();
         let coarse = points != n;
@@ -106,7 +106,7 @@ impl FreeState {
         (possible && self.is_counted() && leaders && ends).then_some(stages)
     }
 
-    /// Gives the stages what they knew, and the rest back; ends that the referee has seen are judged again.
+    /// Restores the memories of the stages and returns the rest; ends that were judged are judged again.
     pub(super) fn resume(&self, problem: &Problem, stages: &mut [Stage<'_>]) -> Resumed {
         for (stage, state) in stages.iter_mut().zip(&self.stages) {
             stage.memory = Memory {

@@ -1,40 +1,41 @@
-//! The convex model of a step: what is linear in it, what is quadratic, and which points and rows enter.
+//! The convex model of a step: its linear and quadratic terms, and the points and rows that enter it.
 
 use super::super::conic::{ConicProgram, LinearForm};
 use super::super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 use super::{At, ConvexOptions, Goal, MAX_TAU, Multipliers, norm};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
-/// Points that get a cone of their own without being looked at; of more, the worst this many.
+/// The largest number of points that get a cone of their own in the first program, and the largest number added in a
+/// later round: the worst ones.
 const CONES: usize = 48;
-/// Rounds in which points that the model puts above the maximum are added.
+/// The largest number of rounds in which points that the model puts above the maximum are added.
 const CONE_ROUNDS: usize = 12;
 
-/// A step and what the model says of it.
+/// A step with the predictions of the model.
 #[derive(Clone, Debug)]
 pub(super) struct Step<const N: usize> {
     pub dx: [f64; N],
-    /// The points' own steps.
+    /// The steps of the points' own unknowns.
     pub tau: Vec<f64>,
-    /// The objective of the model.
+    /// The objective that the model predicts.
     pub objective: f64,
-    /// The lack of the model, without a unit.
+    /// The lack that the model predicts, dimensionless.
     pub lack: f64,
-    /// The largest component of dx in half widths of the trust box: 1 on its side.
+    /// The largest component of dx in half widths of the trust box: 1 on its boundary.
     pub reach: f64,
     pub multipliers: Multipliers<N>,
     /// The derivative of the Lagrangian by each residual.
     pub forces: Vec<[f64; 2]>,
 }
 
-/// The Hessian of the Lagrangian as far as the linear models leave it out, in first half widths of the trust
-/// box.
+/// The part of the Hessian of the Lagrangian that the linear models leave out, in units of the first half widths of
+/// the trust box.
 #[derive(Clone, Debug)]
 pub(super) struct Curvature<const N: usize> {
     matrix: SMatrix<f64, N, N>,
 }
 
-/// A rank-one correction whose denominator is below this part of its factors is left out.
+/// The least denominator of a rank-one correction, relative to its factors; with a smaller one it is left out.
 const LEAST_DENOMINATOR: f64 = 1e-6;
 
 impl<const N: usize> Curvature<N> {
@@ -42,7 +43,7 @@ impl<const N: usize> Curvature<N> {
         Curvature { matrix: SMatrix::zeros() }
     }
 
-    /// The symmetric rank-one correction from a step that was looked at, whether it was kept or not:
+    /// Applies the symmetric rank-one correction from a step that was evaluated, whether it was accepted or not:
     /// B s = sum_j (J_j' - J_j)^T z_j - sum_i mu_i (dg_i' - dg_i).
     pub fn learn<S>(
         &mut self,
@@ -83,7 +84,7 @@ impl<const N: usize> Curvature<N> {
     }
 }
 
-/// The positive part of a symmetric matrix; zero where it has none.
+/// Returns the positive semidefinite part of a symmetric matrix; zero if it has none.
 fn positive_part<const N: usize>(matrix: SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
     let symmetric = nalgebra::DMatrix::from_fn(N, N, |i, k| 0.5 * (matrix[(i, k)] + matrix[(k, i)]));
     if !symmetric.iter().all(|v| v.is_finite()) {
@@ -103,18 +104,18 @@ fn positive_part<const N: usize>(matrix: SMatrix<f64, N, N>) -> SMatrix<f64, N, 
     out
 }
 
-/// A point of the model: r + J dx, of which only the component across `tangent` counts where there is one.
+/// A point of the model: r + J dx, of which only the component across `tangent` counts if there is one.
 #[derive(Clone, Copy, Debug)]
 struct ModelPoint<const N: usize> {
     residual: [f64; 2],
     jacobian: [[f64; N]; 2],
-    /// t_j with |t_j|^2, where the point has a freedom that can take up what is along it.
+    /// The tangent t_j with |t_j|^2, if the point's own unknown can take up the residual along it.
     tangent: Option<([f64; 2], f64)>,
     weight: f64,
 }
 
 impl<const N: usize> ModelPoint<N> {
-    /// r + J dx, and the point's own step.
+    /// Computes the residual after a step, r + J dx + t tau, and the point's own step tau.
     fn after(&self, dx: &[f64; N], tau_limit: f64) -> ([f64; 2], f64) {
         let mut r = self.residual;
         for (axis, value) in r.iter_mut().enumerate() {
@@ -129,20 +130,21 @@ impl<const N: usize> ModelPoint<N> {
         }
     }
 
-    /// The unit vector across the tangent.
+    /// Returns the unit vector perpendicular to the tangent, if there is one.
     fn across(&self) -> Option<[f64; 2]> {
         self.tangent.map(|(t, t_sq)| [-t[1] / t_sq.sqrt(), t[0] / t_sq.sqrt()])
     }
 }
 
-/// The model at a point of the iteration inside a trust box.
+/// The convex model at an iterate, inside a trust box.
 pub(super) struct Model<'a, const N: usize> {
     goal: &'a Goal<'a>,
     length: f64,
     unit: f64,
     points: Vec<ModelPoint<N>>,
     rows: Vec<ConstraintRow<N>>,
-    /// The half width of the trust box in first half widths, and the box in units of x around the present point.
+    /// The half width of the trust box relative to the first; `widths` and `sides` give the box in units of x around
+    /// the present point.
     trust: f64,
     widths: [f64; N],
     sides: [(f64, f64); N],
@@ -172,7 +174,7 @@ impl<'a, const N: usize> Model<'a, N> {
                 let t = block.tangent;
                 let t_sq = t[0] * t[0] + t[1] * t[1];
                 let along = t[0] * block.residual[0] + t[1] * block.residual[1];
-                // Beyond its reach a point's own unknown takes nothing up for certain.
+                // Beyond its reach a point's own unknown cannot be relied on to take up the residual.
                 let within = t_sq > 0.0 && along.abs() <= 0.5 * MAX_TAU * t_sq;
                 ModelPoint {
                     residual: block.residual,
@@ -211,7 +213,7 @@ impl<'a, const N: usize> Model<'a, N> {
         }
     }
 
-    /// Moves the constants so that the model is right at a trial point that was refused.
+    /// Moves the constants so that the model is exact at a rejected trial point (second-order correction).
     pub fn correct(&mut self, blocks: &[PointBlock<N>], rows: &[ConstraintRow<N>], step: &Step<N>) {
         let dot = |row: &[f64; N]| row.iter().zip(&step.dx).map(|(j, d)| j * d).sum::<f64>();
         for (point, block) in self.points.iter_mut().zip(blocks) {
@@ -225,7 +227,7 @@ impl<'a, const N: usize> Model<'a, N> {
         }
     }
 
-    /// The rows that can be broken inside the box.
+    /// Returns the indices of the rows that can be violated inside the box.
     fn near_rows(&self) -> Vec<usize> {
         let can_break = |row: &ConstraintRow<N>| {
             let fall: f64 = self
@@ -238,7 +240,7 @@ impl<'a, const N: usize> Model<'a, N> {
         (0..self.rows.len()).filter(|&i| can_break(&self.rows[i])).collect()
     }
 
-    /// The minimum of the model with a slack at this price; `None` where the program has no solution.
+    /// Minimises the model with a slack at this price; `None` if the program has no solution.
     pub fn solve(&self, curvature: &Curvature<N>, price: f64) -> Option<Step<N>> {
         let Some(tolerances) = self.goal.tolerances() else {
             return self.solve_with(curvature, price, &[]);
@@ -273,7 +275,7 @@ impl<'a, const N: usize> Model<'a, N> {
         None
     }
 
-    /// J^T W J over what counts of each point, doubled, and the gradient of the sum of squares.
+    /// Computes 2 J^T W J over the components that count of each point, and the gradient of the sum of squares.
     fn least_squares(&self) -> (SMatrix<f64, N, N>, SVector<f64, N>) {
         let (mut matrix, mut gradient) = (SMatrix::<f64, N, N>::zeros(), SVector::<f64, N>::zeros());
         for point in &self.points {
@@ -441,7 +443,7 @@ impl<'a, const N: usize> Model<'a, N> {
                 if !tolerances.is_empty() {
                     lack = lack.max(deviation - 1.0);
                 }
-                // The component along the tangents is taken up whatever dx is.
+                // The component along the tangents is taken up for any dx.
                 let along: f64 = self
                     .points
                     .iter()

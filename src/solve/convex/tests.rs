@@ -1,4 +1,4 @@
-//! Known optima, and no derivative taken from the solver itself.
+//! Tests against known optima; no derivative is taken from the solver itself.
 
 use super::*;
 
@@ -76,7 +76,7 @@ fn solved(problem: &Plain<'_>, goal: &Goal<'_>, start: [f64; 2]) -> ConvexResult
     result
 }
 
-/// Values f(t) - x0 - x1 t at evenly spaced t in [0, 1] as residuals along the x axis.
+/// Builds a line fit: values f(t) - x0 - x1 t at evenly spaced t in [0, 1] as residuals along the x axis.
 fn line_fit(n: usize, f: impl Fn(f64) -> f64) -> Plain<'static> {
     let values: Vec<(f64, f64)> = (0..n).map(|i| i as f64 / (n - 1) as f64).map(|t| (t, f(t))).collect();
     let residual =
@@ -103,13 +103,13 @@ fn the_best_line_to_a_parabola_is_chebyshevs() {
 
 #[test]
 fn a_tolerance_a_point_scales_its_deviation() {
-    // Values 0 at t = 0 and 1 at t = 1, a constant to fit: the deviations stand as the tolerances do.
+    // Values 0 at t = 0 and 1 at t = 1, a constant to fit: the deviations are proportional to the tolerances.
     let problem = Plain { bounds: [(-9.0, 9.0), (0.0, 0.0)], ..line_fit(2, |t| t) };
     let result = solved(&problem, &Goal::MaxDeviation { tolerances: &[1.0, 3.0] }, [5.0, 0.0]);
     assert!((result.x[0] - 0.25).abs() < 1e-8 && (result.objective - 0.25).abs() < 1e-8, "{result:?}");
 }
 
-/// Distances to four places minus given ranges: curved residuals.
+/// Builds a problem with curved residuals: distances to four places minus given ranges.
 fn ranges() -> Plain<'static> {
     let places = [([0.0, 0.0], 2.0), ([4.0, 0.0], 3.0), ([0.0, 3.0], 2.2), ([5.0, 4.0], 3.1)];
     let residual = |(at, range): ([f64; 2], f64)| -> Residual<'static> {
@@ -118,7 +118,7 @@ fn ranges() -> Plain<'static> {
     Plain { bounds: ANYWHERE, residuals: places.into_iter().map(residual).collect(), rows: Vec::new() }
 }
 
-/// The least of a function of two variables by a grid that is refined around its best.
+/// Finds the least value of a function of two variables by a grid that is refined around its best point.
 fn by_grid(f: impl Fn(&[f64; 2]) -> f64, mut centre: [f64; 2], mut half: f64) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..60 {
@@ -151,7 +151,7 @@ fn curved_residuals_end_where_a_search_without_derivatives_does() {
     assert!(result.evaluations < 25, "{}", result.evaluations);
 }
 
-/// The disc |x - (2, 1)| <= radius.
+/// Adds the constraint of the disc |x - (2, 1)| <= radius.
 fn in_disc(mut problem: Plain<'_>, radius: f64) -> Plain<'_> {
     problem.rows.push(Box::new(move |x| radius - (x[0] - 2.0).hypot(x[1] - 1.0)));
     problem
@@ -159,7 +159,7 @@ fn in_disc(mut problem: Plain<'_>, radius: f64) -> Plain<'_> {
 
 #[test]
 fn a_start_outside_first_gets_inside_and_multipliers_are_rates() {
-    // The middle of nothing: values pull to (5, 5), the disc holds.
+    // The residuals pull to (5, 5); the disc constraint is active.
     let pull = || Plain {
         bounds: [(f64::NEG_INFINITY, f64::INFINITY), (f64::NEG_INFINITY, 1.4)],
         residuals: vec![Box::new(|x| [x[0] - 5.0, x[1] - 5.0]), Box::new(|x| [0.5 * x[0] - 1.0, 0.1 * x[1]])],

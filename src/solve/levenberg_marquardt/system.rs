@@ -1,5 +1,5 @@
-//! The linear system of a step: normal equations with the points' own unknowns eliminated, pools of points that
-//! may not pass each other, the bend of a step, and the step inside the bounds.
+//! The linear system of a step: normal equations with the points' own unknowns eliminated, pools of points that may
+//! not pass each other, the geodesic acceleration of a step, and the step inside the bounds.
 
 use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
 use crate::solve::ordered::Ordered;
@@ -8,18 +8,18 @@ use nalgebra::{SMatrix, SVector};
 pub(super) struct Normal<const N: usize> {
     pub(super) matrix: SMatrix<f64, N, N>,
     pub(super) gradient: SVector<f64, N>,
-    /// mean |t_j|^2.
+    /// The mean of |t_j|^2 over the points.
     pub(super) tangent_sq: f64,
 }
 
-/// What an inner solve works with, kept from step to step.
+/// The buffers of an inner solve, kept from step to step.
 pub(super) struct Workspace<const N: usize> {
     pub(super) blocks: Vec<PointBlock<N>>,
-    /// The constraints that lack something: (shift - g, dg/dx).
+    /// The constraints with a penalty, shift - g > 0: (shift - g, dg/dx).
     pub(super) lacking: Vec<(f64, [f64; N])>,
-    /// w_j (|t_j|^2 + nu).
+    /// The stiffness of each point, w_j (|t_j|^2 + nu).
     pub(super) stiffness: Vec<f64>,
-    /// The points' own steps.
+    /// The steps tau_j of the points' own unknowns.
     pub(super) tau: Vec<f64>,
     pub(super) gaps: Vec<f64>,
     pub(super) order: Ordered,
@@ -39,7 +39,7 @@ impl<const N: usize> Workspace<N> {
         }
     }
 
-    /// Each point's own best step for its residual as it stands.
+    /// Computes each point's own step that is best for its present residual.
     pub(super) fn own_steps(&mut self, nu: f64) {
         for (j, block) in self.blocks.iter().enumerate() {
             let t = block.tangent;
@@ -53,7 +53,7 @@ impl<const N: usize> Workspace<N> {
         }
     }
 
-    /// Each point's own step after a shared step `dx`; pooled points end in one place.
+    /// Computes each point's own step after a shared step `dx`; pooled points end in one place.
     pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64, ordered: bool) {
         let along = |block: &PointBlock<N>| {
             let mut moved = block.residual;
@@ -76,9 +76,9 @@ impl<const N: usize> Workspace<N> {
         }
     }
 
-    /// The right-hand side of the acceleration: J^T of the residuals' second derivative along a step, the
-    /// points' own unknowns eliminated; `bend` receives that derivative. `ahead` holds the residuals at the part
-    /// [`AHEAD`] of the step.
+    /// Computes the right-hand side of the geodesic acceleration: J^T of the residuals' second derivative along a
+    /// step, the points' own unknowns eliminated; `bend` receives that derivative. `ahead` holds the residuals at the
+    /// part [`AHEAD`] of the step.
     pub(super) fn bending(
         &self,
         ahead: &[[f64; 2]],
@@ -99,7 +99,7 @@ impl<const N: usize> Workspace<N> {
                 second[axis] = 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope);
             }
             bend.push(second);
-            // What the point's own unknown does not take up.
+            // The part that the point's own unknown does not take up.
             let t_sq = t[0] * t[0] + t[1] * t[1];
             let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
             for axis in 0..2 {
@@ -112,7 +112,7 @@ impl<const N: usize> Workspace<N> {
         gradient
     }
 
-    /// Adds the bend's half to the points' own steps.
+    /// Adds half the geodesic acceleration to the points' own steps.
     pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
         for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
             let t = block.tangent;
@@ -132,7 +132,7 @@ impl<const N: usize> Workspace<N> {
         }
     }
 
-    /// What the linear model takes off the cost and the penalty.
+    /// Computes the reduction of the cost and the penalty that the linear model predicts.
     pub(super) fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
         let mut promised = 0.0;
         for (block, tau) in self.blocks.iter().zip(&self.tau) {
@@ -152,11 +152,11 @@ impl<const N: usize> Workspace<N> {
     }
 }
 
-/// Lanes that a sum of products runs in.
+/// The number of lanes in which a sum of products runs.
 const LANES: usize = 8;
 
-/// Rows of a Jacobian with their residuals, a block of [`LANES`] rows after the other and a column after the other
-/// in a block; what is missing in the last block is zero.
+/// Rows of a Jacobian with their residuals, in blocks of [`LANES`] rows, column by column within a block; the last
+/// block is padded with zeros.
 pub(super) struct Rows<const N: usize> {
     jacobian: Vec<[[f64; LANES]; N]>,
     residual: Vec<[f64; LANES]>,
@@ -190,7 +190,7 @@ impl<const N: usize> Rows<N> {
         }
     }
 
-    /// J^T J and J^T r. Each sum runs in [`LANES`] lanes whatever the machine has, so its rounding is the same
+    /// Computes J^T J and J^T r. Each sum runs in [`LANES`] lanes on every machine, so its rounding is the same
     /// everywhere.
     #[inline(always)]
     fn squared(&self) -> ([[f64; N]; N], [f64; N]) {
@@ -282,7 +282,7 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     let mut eliminated = Vec::new();
     if ordered {
         for pool in order.pools() {
-            // r_j + t_j m_j + J_j dx + t_j tau with the way m_j to the common place and one tau for all.
+            // r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and one tau for all.
             let mut by_tau = [0.0; N];
             let (mut along, mut stiff) = (0.0, 0.0);
             for &(index, way) in pool {
@@ -329,9 +329,9 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     })
 }
 
-/// The damped step inside the bounds: what a step would push through a bound is put onto it and the rest is
-/// solved again, so that the step is the model's minimum on the face that it ends on. `None` where the damped
-/// matrix is not positive definite.
+/// Computes the damped step inside the bounds: unknowns that a step would push through a bound are put onto it and
+/// the rest is solved again, so that the step is the model's minimum on the face that it ends on. `None` if the
+/// damped matrix is not positive definite.
 pub(super) fn bounded_step<const N: usize>(
     system: &Normal<N>,
     x: &[f64; N],
