@@ -61,7 +61,7 @@ fn thousands_of_points_give_the_same_bytes_on_any_number_of_threads() {
         .collect();
     let text = format!(
         "format = 1\n[task.path]\npoints = {points:?}\nclosed = true\n[solve]\nmethod = \"genetic\"\n\
-         evaluations = 40\ncandidates = 1\nadvice = false\n[solve.genetic]\npopulation = 20\n"
+         evaluations = 40\ncandidates = 1\nadvice = false\n[solve.genetic]\npopulation = 20\nelites = 2\n"
     );
     assert_eq!(bytes(&run_on(1, parse(&text))), bytes(&run_on(2, parse(&text))));
 }
