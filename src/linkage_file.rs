@@ -5,7 +5,7 @@ mod chain;
 use crate::diagnostic::Diagnostic;
 use crate::input_text;
 use crate::linkage::{
-    AssemblyMode, Chain, CouplerSide, FourBar, LinkageError, NaturalCoordinates, VectorLoop,
+    AssemblyMode, Chain, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, VectorLoop,
 };
 use crate::name;
 use crate::record::Unit;
@@ -238,7 +238,7 @@ fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagno
     let path = |key: &'static str| format!("{table}.{}", name(key));
     Box::new(match error {
         LinkageError::NotFinite { key, value } => toml
-            .at(&path(key), format!("{} = {value} is not a finite number below 1e12", name(key)))
+            .at(&path(key), format!("{} = {value} is not a finite number below {MAX_MAGNITUDE:e}", name(key)))
             .with_help("use a larger unit, such as m for mm"),
         LinkageError::LengthNotPositive { key, value } => toml
             .at(&path(key), format!("{} = {value}: a link's length must be positive", name(key)))

@@ -1,7 +1,7 @@
 //! Problem files: TOML is read, and a [`ProblemSpec`] with every default filled in is returned.
 //!
-//! There are three inputs, with the same diagnostics: a file, a text with `--set` overrides, a bare file of points. The
-//! values under `[expect]` are read and checked and are never part of the specification.
+//! Reads a file, a text with `--set` overrides, or a bare file of points, all with the same diagnostics. The values under
+//! `[expect]` are read and checked and are never part of the specification.
 
 mod certify;
 mod closing;

@@ -97,7 +97,7 @@ pub enum FolderError {
         /// The path of the folder.
         path: String,
     },
-    /// There is no record.
+    /// The folder holds no record.
     #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
     NoRecord {
         /// The path of the file that was looked for.

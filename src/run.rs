@@ -5,12 +5,10 @@ use crate::certificate;
 use crate::problem::Problem;
 use crate::problem::precision::{Refusal, precision_points};
 use crate::problem::spec::{Method, ProblemSpec};
-use crate::record::{
-    Candidate, FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit,
-};
+use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool, Unit};
 use crate::search::conflicts::Explained;
 use crate::search::keeper::Keeper;
-use crate::search::rank::exact_sum_sq;
+use crate::search::rank::holds_an_exact;
 use crate::search::{
     Budget, Observer, SearchOutcome, answers, cognates, conflicts, continuation, costs, plan,
 };
@@ -176,9 +174,7 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
 /// the list is exact. A search far from the origin, or one whose best gave way to a cognate, may have found an exact one
 /// that is not in the list: then it converged if its best came back, else it stalled.
 fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
-    let exact = exact_sum_sq(problem);
-    let is_exact = |c: &Candidate| c.accepted && c.error.sum_sq <= exact;
-    if outcome.reason == Reason::TargetReached && !outcome.candidates.iter().any(is_exact) {
+    if outcome.reason == Reason::TargetReached && !holds_an_exact(problem, &outcome.candidates) {
         let came_back = outcome.repeats.as_ref().is_some_and(|repeats| repeats.hits > 1);
         return if came_back { Reason::Converged } else { Reason::Stalled };
     }

@@ -400,7 +400,9 @@ pub struct Export {
 fn finite(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.abs() <= crate::linkage::MAX_MAGNITUDE => Ok(number),
-        Ok(_) => Err("a finite number below 1e12 in magnitude is needed".into()),
+        Ok(_) => {
+            Err(format!("a finite number below {:e} in magnitude is needed", crate::linkage::MAX_MAGNITUDE))
+        }
         Err(_) => Err("this is not a number".into()),
     }
 }

@@ -38,7 +38,7 @@ pub enum Format {
 /// The error that a word is not the name of a format of this build.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UnknownFormat {
-    /// There is no such format.
+    /// The word names no format.
     #[error("there is no format {0:?}: choose from {list}", list = Format::list())]
     Unknown(String),
     /// The format was left out when the program was built.

@@ -132,7 +132,7 @@ impl CouplerCurve {
             let sampled = Nearest { parameter: middle, point: self.samples[i]?, distance: coarse[i] };
             let refined = self
                 .interpolated(to, [middle, step], around)
-                .or_else(|| self.refine(to, middle, step))
+                .or_else(|| self.golden_section(to, middle, step))
                 .unwrap_or(sampled);
             if nearest.is_none_or(|n| refined.distance < n.distance) {
                 nearest = Some(refined);
@@ -182,7 +182,7 @@ impl CouplerCurve {
     }
 
     /// Minimises the squared distance over [middle - step, middle + step] by golden section.
-    fn refine(&self, to: Complex, middle: f64, step: f64) -> Option<Nearest> {
+    fn golden_section(&self, to: Complex, middle: f64, step: f64) -> Option<Nearest> {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
         // 0.618^60 of a step is below the rounding of the parameter.
         const ROUNDS: usize = 60;
@@ -279,7 +279,7 @@ mod tests {
                 let to = Complex::new(uniform(draws, -9.0, 12.0), uniform(draws, -9.0, 9.0));
                 let nearest = curve.nearest(to).expect("a curve");
                 let least = (0..DEFAULT_SAMPLES)
-                    .filter_map(|i| curve.refine(to, i as f64 * step, step))
+                    .filter_map(|i| curve.golden_section(to, i as f64 * step, step))
                     .map(|n| n.distance)
                     .fold(f64::INFINITY, f64::min);
                 let off = nearest.distance - least;

@@ -4,6 +4,9 @@
 //! A stopped search ends at its next check. Its work between two checks is bounded in positions of the linkage, a
 //! number that does not depend on the machine.
 
+/// Least number of points of a target that a thread takes at once: for a few positions each, tens of microseconds of work.
+pub(crate) const POINTS_AT_ONCE: usize = 512;
+
 /// Records that so many positions are about to be computed on this thread.
 #[inline(always)]
 pub(crate) fn computed(positions: usize) {

@@ -155,7 +155,7 @@ sign_type!(
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinkageError {
     /// A number that is NaN, infinite or beyond [`MAX_MAGNITUDE`].
-    #[error("{key} = {value} is not a finite number below 1e12 in magnitude")]
+    #[error("{key} = {value} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
     NotFinite {
         /// The parameter's letter.
         key: &'static str,

@@ -18,6 +18,7 @@
 //! beside the nine, and is no part of the band because Bx and By are.
 
 use super::sweep::Sweep;
+use crate::linkage::effort::POINTS_AT_ONCE;
 use crate::linkage::gradient::shape_gradient;
 use crate::linkage::{AssemblyMode, Complex, FourBar, dot, length, turned};
 use rayon::prelude::*;
@@ -109,9 +110,6 @@ pub fn is_flat(linkage: &FourBar) -> bool {
     linkage.coupler_offset().im.abs() < FLAT * linkage.crank_side().max(linkage.follower_side())
 }
 
-/// Minimum number of positions whose shifts a thread computes at once.
-const AT_ONCE: usize = 512;
-
 /// Computes dP by the nine dimensions and the crank angle at a position; `None` at a toggle or if the loop is open.
 fn columns(linkage: &FourBar, at: &At, flat: bool) -> Option<([Complex; 9], Complex)> {
     if !flat {
@@ -131,7 +129,7 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
     let mut rows: Vec<([Complex; 10], Complex)> = Vec::new();
     let ground = Complex::from_polar(1.0, linkage.ground_angle());
     let shifts: Vec<_> =
-        positions.par_iter().with_min_len(AT_ONCE).map(|at| columns(linkage, at, flat)).collect();
+        positions.par_iter().with_min_len(POINTS_AT_ONCE).map(|at| columns(linkage, at, flat)).collect();
     for (j, shift) in shifts.into_iter().enumerate() {
         let Some((nine, mut by_crank)) = shift else {
             at_toggles.push(j);

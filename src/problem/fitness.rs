@@ -16,7 +16,7 @@ use super::requirements::{Motion, Requirements, nearest_type};
 use super::spec::Objective;
 use super::{Problem, Setting};
 use crate::linkage::dispatch::vectorised;
-use crate::linkage::effort::computed;
+use crate::linkage::effort::{POINTS_AT_ONCE, computed};
 use crate::linkage::lane::{F64x8, LANES, Lane};
 use crate::linkage::mobility::{linkage_type, wrapped};
 use crate::linkage::position::Kernel;
@@ -297,7 +297,7 @@ impl<'a> PathFitness<'a> {
                 // digit.
                 let nearest = |target: &Complex| curve.nearest(assembly, *target, &reachable);
                 let ready: Option<Vec<_>> = (points.len() >= MANY && nearest(&points[0]).is_some())
-                    .then(|| points.par_iter().with_min_len(AT_ONCE).map(nearest).collect());
+                    .then(|| points.par_iter().with_min_len(POINTS_AT_ONCE).map(nearest).collect());
                 for (j, target) in points.iter().enumerate() {
                     match ready.as_ref().map_or_else(|| nearest(target), |ready| ready[j]) {
                         Some((angle, sq)) => {
@@ -342,7 +342,7 @@ impl<'a> PathFitness<'a> {
             .task()
             .points()
             .par_iter()
-            .with_min_len(AT_ONCE)
+            .with_min_len(POINTS_AT_ONCE)
             .map(|target| {
                 let (angle, _) =
                     curve.nearest(assembly, *target, &|i| self.on_arc(ground, reading.arc, i))?;
@@ -356,8 +356,6 @@ impl<'a> PathFitness<'a> {
 
 /// Number of points from which they are compared with the curve by all threads.
 const MANY: usize = 4096;
-/// Least number of points that a thread takes at once.
-const AT_ONCE: usize = 512;
 
 impl PopulationProblem for PathFitness<'_> {
     fn bounds(&self) -> &[(f64, f64)] {

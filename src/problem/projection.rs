@@ -84,7 +84,7 @@ enum GroundKnown {
 /// The meaning of the angle among the unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum AngleRole {
-    /// There is no angle.
+    /// No angle is among the unknowns.
     None,
     /// The angle is phi_0: it turns the crank.
     Crank,

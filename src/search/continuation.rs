@@ -7,7 +7,7 @@
 //! are drawn, at a tenth to a third more evaluations.
 
 use super::exact_linkages::{Class, Depth, classes};
-use super::rank::{count_distinct, divided, exact_sum_sq};
+use super::rank::{count_distinct, divided, exact_sum_sq, holds_an_exact};
 use super::{Budget, Observer, Progress, SearchOutcome};
 use crate::exact::certificate::{Certificate, certify, certify_all};
 use crate::exact::distinct::not_proved_distinct;
@@ -118,9 +118,8 @@ impl Exact {
     /// Returns the exact answers as the outcome of a search.
     pub fn alone(self, problem: &Problem, budget: &Budget<'_>) -> SearchOutcome {
         let (candidates, others) = divided(problem, self.candidates(), problem.spec().solve.candidates);
-        let exact = exact_sum_sq(problem);
-        let reached = candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
-        let reason = if reached { Reason::TargetReached } else { Reason::Converged };
+        let reason =
+            if holds_an_exact(problem, &candidates) { Reason::TargetReached } else { Reason::Converged };
         SearchOutcome {
             candidates,
             others,
@@ -138,8 +137,7 @@ impl Exact {
         found.append(&mut outcome.candidates);
         found.append(&mut outcome.others);
         (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-        let exact = exact_sum_sq(problem);
-        let reached = outcome.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+        let reached = holds_an_exact(problem, &outcome.candidates);
         if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
             outcome.reason = Reason::TargetReached;
         }

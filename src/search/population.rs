@@ -229,8 +229,7 @@ fn search_in<F: Searched>(
         found.extend(judged(problem, &start));
         starts.push(start);
     }
-    let exact = super::rank::exact_sum_sq(problem);
-    let reached = found.iter().any(|c| c.accepted && c.error.sum_sq <= exact);
+    let reached = super::rank::holds_an_exact(problem, &found);
     Ok(PopulationEnd {
         starts,
         found,

@@ -38,6 +38,12 @@ pub fn exact_sum_sq(problem: &Problem) -> f64 {
     EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
+/// Returns whether an accepted candidate of a list is exact: the target is reached.
+pub fn holds_an_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
+    let exact = exact_sum_sq(problem);
+    candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact)
+}
+
 /// Returns the weighted sum of squares below which a fit is exact.
 pub fn exact_cost(problem: &Problem) -> f64 {
     EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)

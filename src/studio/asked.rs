@@ -1,6 +1,7 @@
 //! What a tab asks as the text of a problem file, and a problem file as what a tab asks.
 
 use super::messages::{Ask, Known};
+use crate::linkage::MAX_MAGNITUDE;
 use crate::problem::spec::{DesignSpec, ProblemSpec, RawPoints, SolveSpec};
 use crate::problem_file::{self, Expect, ProblemFile};
 use serde::Serialize;
@@ -137,7 +138,7 @@ impl Ask {
         let within = |raw: &&RawPoints| {
             let smooth = raw.smooth.is_none_or(|deviation| deviation > 0.0 && deviation.is_finite());
             let samples = raw.samples.is_none_or(|samples| (2..=MOST_POINTS).contains(&samples));
-            let finite = raw.points.iter().flatten().all(|value| value.abs() < 1e12);
+            let finite = raw.points.iter().flatten().all(|value| value.abs() <= MAX_MAGNITUDE);
             smooth && samples && finite && (2..=MOST_RAW).contains(&raw.points.len())
         };
         self.raw.as_ref().filter(within).filter(|raw| raw.target(self.closed) == self.points)

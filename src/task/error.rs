@@ -2,7 +2,7 @@
 
 use super::PathTask;
 use crate::linkage::coupler_curve::DEFAULT_SAMPLES;
-use crate::linkage::effort::computed;
+use crate::linkage::effort::{POINTS_AT_ONCE, computed};
 use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use rayon::prelude::*;
 
@@ -92,8 +92,6 @@ impl PathTask {
 /// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima
 /// refined.
 const NEAREST: usize = 150;
-/// Least number of points whose distances to a curve a thread takes at once: some milliseconds of work.
-const AT_ONCE: usize = 512;
 
 /// Returns the distances from any points to the coupler curve of the circuit that holds the given position; `None` if
 /// that circuit has no point.
@@ -106,8 +104,11 @@ pub fn distances_to_curve(
     let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
     computed(NEAREST * points.len());
     // In parallel, and summed in the order of the points: the number of threads changes no digit.
-    let distances: Option<Vec<f64>> =
-        points.par_iter().with_min_len(AT_ONCE).map(|&point| Some(curve.nearest(point)?.distance)).collect();
+    let distances: Option<Vec<f64>> = points
+        .par_iter()
+        .with_min_len(POINTS_AT_ONCE)
+        .map(|&point| Some(curve.nearest(point)?.distance))
+        .collect();
     let mut error = CurveError { distances: distances?, sum_sq: 0.0, max: 0.0 };
     for distance in &error.distances {
         error.sum_sq += distance * distance;

@@ -78,7 +78,7 @@ pub enum TaskError {
     #[error("a path needs at least 2 points, this one has {0}")]
     TooFewPoints(usize),
     /// A number that is NaN, infinite or too large.
-    #[error("point {index}: {value} is not a finite number below 1e12 in magnitude")]
+    #[error("point {index}: {value} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
     NotFinite {
         /// Index of the point, counted from 0.
         index: usize,

@@ -5,7 +5,7 @@ use crate::problem::Problem;
 use crate::problem::spec::Method;
 use crate::record::{Reason, Record};
 use crate::search::RELAXED;
-use crate::search::rank::exact_sum_sq;
+use crate::search::rank::holds_an_exact;
 
 /// Entries of `method.used` that no search writes: of a linkage that was snapped, or followed by hand.
 const SNAPPED: &str = "snap ";
@@ -39,8 +39,7 @@ fn termination(problem: &Problem, record: &Record, whole: &mut dyn FnMut(&str, S
     let end = &record.termination;
     let repeatable = end.reason.is_repeatable();
     whole("termination.reproducible", end.reproducible.to_string(), repeatable.to_string());
-    let best_known = record.candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact_sum_sq(problem));
-    if end.reason == Reason::TargetReached && !best_known {
+    if end.reason == Reason::TargetReached && !holds_an_exact(problem, &record.candidates) {
         whole(
             "termination.reason",
             "target-reached".into(),

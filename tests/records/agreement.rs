@@ -7,10 +7,11 @@
 
 use crate::common::{bytes, job, parse};
 use crate::problems::wide_case;
+use linkwright::problem_file::ProblemFile;
 use linkwright::record::{Reason, Record};
 use linkwright::results_folder::parse_record;
 use linkwright::run::{Context, run};
-use linkwright::verify::verify;
+use linkwright::verify::{Mismatch, verify};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -27,10 +28,17 @@ fn asked() -> Option<Range<u64>> {
     Some(from.parse().expect("a number")..to.parse().expect("a number"))
 }
 
-/// A record as it is read back from disk.
-fn read_back(record: &Record) -> Record {
+/// The record of a run.
+fn recorded(file: ProblemFile) -> Record {
+    let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+    run(&job(file), &context).expect("it runs").record
+}
+
+/// What `verify` finds in a record as it is read back from disk.
+fn mismatches(record: &Record) -> Vec<Mismatch> {
     let text = bytes(record);
-    parse_record("record.json", text.as_bytes()).unwrap_or_else(|e| panic!("{e:?}\n{text}"))
+    let read = parse_record("record.json", text.as_bytes()).unwrap_or_else(|e| panic!("{e:?}\n{text}"));
+    verify(&read).expect("the problem is one")
 }
 
 #[test]
@@ -51,12 +59,11 @@ fn verify_agrees_with_every_record_that_a_run_writes() {
             "weight {weight:?}, tolerance {tolerance:?}, advice {}, closing {:?}",
             spec.solve.advice, spec.require.closing
         );
-        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
-        let record = run(&job(case.file), &context).expect("it runs").record;
+        let record = recorded(case.file);
         count(&accepted, record.candidates.iter().any(|c| c.accepted));
         count(&conflicts, record.conflict.is_some());
         count(&buildable, record.buildable.is_some());
-        let found = verify(&read_back(&record)).expect("the problem is one");
+        let found = mismatches(&record);
         let words: Vec<String> = found.iter().take(5).map(ToString::to_string).collect();
         let told = || format!("case {}: {}\n{}{beside}", case.index, words.join("\n"), case.text);
         let complaint = (!found.is_empty()).then(told);
@@ -88,10 +95,9 @@ fn verify_agrees_with_every_record_that_a_run_writes() {
 fn verify_agrees_where_it_once_did_not() {
     for index in [8376, 9962, 12_808, 13_947] {
         let case = wide_case(SEED, index).expect("a problem");
-        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
-        let record = run(&job(case.file), &context).expect("it runs").record;
+        let record = recorded(case.file);
         assert!(record.exact.as_ref().is_some_and(|exact| !exact.linkages.is_empty()), "case {index}");
-        let found = verify(&read_back(&record)).expect("the problem is one");
+        let found = mismatches(&record);
         assert!(found.is_empty(), "case {index}: {found:?}");
     }
 }
@@ -106,9 +112,8 @@ fn points_that_are_met_around_their_centre_alone_are_no_target_reached() {
                 \"crank-rocker\"]\ntransmission_deg_min = 15.973317189664494\ntransmission_over = \
                 \"used\"\nlink_ratio_max = 19.073332882511384\norder = \"any\"\ndirection = \"ccw\"\nbranch = \
                 \"any\"\n[solve]\nevaluations = 15708\ncandidates = 3\nseed = 31\nadvice = false\n";
-    let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
-    let record = run(&job(parse(text)), &context).expect("it runs").record;
+    let record = recorded(parse(text));
     assert!(record.candidates.iter().any(|c| c.accepted), "{:?}", record.termination);
-    assert_eq!(verify(&read_back(&record)).expect("the problem is one"), Vec::new());
+    assert_eq!(mismatches(&record), Vec::new());
     assert_ne!(record.termination.reason, Reason::TargetReached);
 }

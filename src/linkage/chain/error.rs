@@ -1,6 +1,7 @@
 //! Errors in the parts of a chain, each with its part, key and point.
 
 use super::builder::MAX_STAGES;
+use crate::linkage::MAX_MAGNITUDE;
 
 /// The part of a chain that an error is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,8 +70,8 @@ pub enum ChainFault {
         /// Names of all pivots.
         known: Vec<String>,
     },
-    /// A number that is NaN, infinite or beyond 1e12.
-    #[error("{value} is not a finite number below 1e12 in magnitude")]
+    /// A number that is NaN, infinite or beyond [`MAX_MAGNITUDE`].
+    #[error("{value} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
     NotFinite {
         /// The number given.
         value: f64,
