@@ -164,11 +164,6 @@ const CLEAR_OF_TOGGLES: f64 = 1e-4;
 /// of half a turn, or on two ways round of one length.
 const NUDGE: f64 = 1e-7;
 
-/// Returns whether a mechanism passes the points, each in its assembly, whatever rounding does.
-fn is_beyond_doubt(mechanism: &Mechanism) -> bool {
-    mechanism.miss_over_limit <= BEYOND_DOUBT && mechanism.least_sine >= CLEAR_OF_TOGGLES
-}
-
 /// Computes the class of a linkage from its positions alone; `None` if it does not pass the points.
 pub fn class_at(
     problem: &Problem,
@@ -182,15 +177,17 @@ pub fn class_at(
     if list.is_empty() {
         return None;
     }
+    let settled: Vec<bool> = list.iter().map(|m| is_settled(problem, m)).collect();
+    let beyond_doubt = |m: &Mechanism, settled: bool| settled && m.miss_over_limit <= BEYOND_DOUBT;
     let ability = |defects: &[&str]| {
         let can = |m: &Mechanism| !m.defects.iter().any(|defect| defects.contains(&defect.name()));
-        // At a toggle the defects are rounding too.
-        let perhaps = |m: &Mechanism| can(m) || m.least_sine < CLEAR_OF_TOGGLES;
+        let all = || list.iter().zip(settled.iter().copied());
         Ability {
-            certain: list.iter().filter(|m| is_beyond_doubt(m)).any(can),
-            possible: list.iter().any(perhaps),
+            certain: all().any(|(m, settled)| beyond_doubt(m, settled) && can(m)),
+            possible: all().any(|(m, settled)| !settled || can(m)),
         }
     };
+    let forms = list.iter().zip(settled.iter().copied());
     Some(Recomputed {
         judged: assess(problem, linkage, crank_deg, t1_at),
         abilities: [
@@ -198,17 +195,18 @@ pub fn class_at(
             ability(&["circuit", "order"]),
             ability(&["circuit", "order", "branch"]),
         ],
-        forms: list
-            .iter()
-            .filter_map(|m| {
-                let found = form(problem, m, 0.0)?;
-                let stays =
-                    |by: f64| form(problem, m, by).is_some_and(|moved| moved.defects == found.defects);
-                let beyond_doubt = is_beyond_doubt(m) && stays(NUDGE) && stays(-NUDGE);
-                Some((found, beyond_doubt))
-            })
+        forms: forms
+            .filter_map(|(m, settled)| Some((form(problem, m, 0.0)?, beyond_doubt(m, settled))))
             .collect(),
     })
+}
+
+/// Returns whether the defects of a mechanism are beyond rounding: no point lies at a toggle, and a small change of the
+/// crank angles leaves them as they are.
+fn is_settled(problem: &Problem, mechanism: &Mechanism) -> bool {
+    let defects = |by: f64| form(problem, mechanism, by).map(|form| form.defects);
+    let found = defects(0.0);
+    mechanism.least_sine >= CLEAR_OF_TOGGLES && defects(NUDGE) == found && defects(-NUDGE) == found
 }
 
 /// Returns a mechanism with its type and its defects, its crank angles moved by `by` (radians) to and fro from point to
