@@ -10,11 +10,11 @@
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
-use linkwright::checkpoint::{Checkpoint, Writer};
-use linkwright::problem_file;
-use linkwright::results_folder::{CHECKPOINT, replace_file};
-use linkwright::run::{Context, Job, run_kept};
-use linkwright::search::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::app::checkpoint::{Checkpoint, Writer};
+use linkwright::internals::app::results_folder::{CHECKPOINT, replace_file};
+use linkwright::internals::app::run::{Context, Job, run_kept};
+use linkwright::internals::files::problem_file;
+use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};

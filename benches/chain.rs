@@ -2,8 +2,9 @@
 //! Each answer is asserted before it is timed.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkwright::linkage::{Chain, Complex};
-use linkwright::linkage_file::{self, Linkage};
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::mechanism::Linkage;
+use linkwright::internals::mechanism::{Chain, Complex};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::path::Path;

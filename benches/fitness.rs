@@ -1,17 +1,19 @@
 //! Fitness evaluations of the population searches: a core's rate, and two threads against one.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkwright::linkage::AssemblyMode;
-use linkwright::problem::Problem;
-use linkwright::problem::fitness::PathFitness;
-use linkwright::problem::projection::{Batch, ProjectedFit, Projection};
-use linkwright::problem::spec::{
+use linkwright::internals::mechanism::AssemblyMode;
+use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
+use linkwright::internals::numbers::optimise::compact_lm::CompactLeastSquares;
+use linkwright::internals::numbers::optimise::population::{
+    Individual, PopulationProblem, draw_uniform, evaluate_generation,
+};
+use linkwright::internals::task::AngleOffset;
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::fitness::PathFitness;
+use linkwright::internals::task::forms::projection::{Batch, ProjectedFit, Projection};
+use linkwright::internals::task::spec::{
     DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
-use linkwright::solve::compact_lm::CompactLeastSquares;
-use linkwright::solve::population::{Individual, PopulationProblem, draw_uniform, evaluate_generation};
-use linkwright::solve::streams::{stream, uniform};
-use linkwright::task::AngleOffset;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 

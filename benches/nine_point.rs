@@ -15,12 +15,12 @@
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::exact::{
+use linkwright::internals::mechanism::{Complex, FourBar};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
+use linkwright::internals::numbers::nine_point::{
     Certificate, Class, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
 };
-use linkwright::linkage::{Complex, FourBar};
-use linkwright::solve::streams::{Stream, normal, stream, uniform};
 use random::{TYPES, linkage, one_of, trace};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;

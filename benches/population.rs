@@ -5,12 +5,12 @@
 
 #![expect(clippy::print_stdout, reason = "the table is what this program is for")]
 
-use linkwright::problem::Problem;
-use linkwright::problem::spec::{Method, Variables};
-use linkwright::problem_file;
-use linkwright::record::Candidate;
-use linkwright::search::population::{Population, search};
-use linkwright::search::{Budget, plan};
+use linkwright::internals::files::problem_file;
+use linkwright::internals::record::Candidate;
+use linkwright::internals::synthesis::population::{Population, search};
+use linkwright::internals::synthesis::{Budget, plan};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::spec::{Method, Variables};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;

@@ -2,10 +2,10 @@
 //! textbook solver by angles, in one run. Each is asserted to give the answer before it is timed.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkwright::linkage::dispatch::{instruction_set, vectorised};
-use linkwright::linkage::lane::{F64x8, Lane};
-use linkwright::linkage::position::{CouplerPoints, Kernel};
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::numbers::arithmetic::dispatch::{instruction_set, vectorised};
+use linkwright::internals::numbers::arithmetic::lane::{F64x8, Lane};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 

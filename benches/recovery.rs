@@ -38,14 +38,15 @@ mod random;
 #[path = "recovery/yardstick.rs"]
 mod yardstick;
 
-use linkwright::linkage::Complex;
-use linkwright::problem::Problem;
-use linkwright::problem::spec::{
+use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::judge::assess::assess;
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::mechanism::LinkageType;
+use linkwright::internals::numbers::arithmetic::streams::{stream, uniform};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::spec::{
     DesignSpec, Limits, OnePolicy, OrderPolicy, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec,
 };
-use linkwright::run::{Context, Job, run};
-use linkwright::solve::streams::{stream, uniform};
-use linkwright::{assess::assess, linkage::LinkageType};
 use random::{ROCKING, TURNING, Traced, bounding_box, noisy, one_of, trace};
 use std::sync::atomic::AtomicBool;
 use yardstick::from_the_truth;

@@ -15,11 +15,11 @@
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::linkage::LinkageType;
-use linkwright::problem_file;
-use linkwright::record::Record;
-use linkwright::run::{Context, Job, run};
-use linkwright::solve::streams::stream;
+use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::files::problem_file;
+use linkwright::internals::mechanism::LinkageType;
+use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::record::Record;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 

@@ -1,7 +1,7 @@
 //! Makes the start set of exact synthesis from nothing and writes it to a file.
 //!
 //! ```text
-//! cargo run --release --example nine-point-start-set -- src/exact/start-set.bin [SEED]
+//! cargo run --release --example nine-point-start-set -- src/numbers/nine_point/start-set.bin [SEED]
 //! ```
 //!
 //! Monodromy from one random complex four-bar until four loops in a row find no new class. It refuses to write a set
@@ -9,9 +9,9 @@
 
 #![expect(clippy::print_stdout, reason = "it says what it found")]
 
-use linkwright::exact::monodromy::{Limits, orbit};
-use linkwright::exact::start::{CLASSES, StartSet};
-use linkwright::solve::streams::{stream, unit};
+use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
+use linkwright::internals::numbers::nine_point::monodromy::{Limits, orbit};
+use linkwright::internals::numbers::nine_point::start::{CLASSES, StartSet};
 use std::sync::atomic::AtomicBool;
 
 /// The embedded set's.

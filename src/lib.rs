@@ -10,86 +10,92 @@
 //!              A-----------B                 footprint, order, circuit, branch
 //! ```
 //!
+//! ```
+//! use linkwright::{Context, Job, parse_problem, run};
+//! use std::sync::atomic::AtomicBool;
+//! let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\n";
+//! let file = parse_problem("path.toml", text, None, &[]).map_err(|e| e.to_string())?;
+//! let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+//! let record = run(&Job::from(file), &context)?.record;
+//! assert!(record.candidates[0].accepted && record.candidates[0].error.rms < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The house
 //!
-//! The linkage depends on nothing, the task on the linkage; solvers are pure mathematics and depend on nothing of ours.
-//! Problems put tasks into the solvers' terms, the search decides what to try, and `run` joins them. Reports are pure
-//! functions of records and analyses.
+//! Nine storeys, each one folder of `src/`; a storey uses only the storeys that its row names. `mod.rs` of a storey lists
+//! its rooms.
 //!
-//! | room | what it holds | may use |
+//! | storey | what it holds | may use |
 //! |---|---|---|
-//! | [`linkage`] | what a four-bar is and where it is: position, gradient, mobility, transmission, curve | |
-//! | [`task`] | what is wanted: paths, timing, errors, the referee | linkage |
-//! | [`solve`] | numbers only: populations, Levenberg-Marquardt, convex programs, non-negative least squares, random streams | |
-//! | [`resampling`] | digitised points smoothed and spread evenly | |
-//! | [`problem`] | the task as mathematics: design space, residuals, reduced form of prescribed timing, requirements, fitness | linkage, task, solve, resampling |
-//! | [`record`] | the truth on disk: what was asked, done and found | linkage, task, problem |
-//! | [`assess`] | every figure and verdict of a candidate, recomputed | linkage, task, problem, record |
-//! | [`exact`] | every linkage through nine precision points | linkage, task |
-//! | [`certificate`] | a certified lower bound of the sum of squares for prescribed timing: no linkage whose input turns fully does better | linkage, task, problem, record |
-//! | [`search`] | what to try: starts, rounds, plan; which answers to give: distinct ones, cognates, families, what can be built; what requirements cost, which conflict | linkage, task, solve, problem, record, assess, exact |
-//! | [`mod@run`] | a job in, a record out | solve, task, problem, record, assess, certificate, search |
-//! | [`live`] | answers that follow a target under the hand: warm starts, same referee; all linkages through nine points | assess, exact, problem, record, search |
-//! | [`checkpoint`] | a search half done, on disk: written at its boundaries, checked before it goes on | record, run, search |
-//! | [`published`] | answers from the literature, evaluated by our own referee | linkage, problem, problem_file, record, assess, search |
-//! | [`suite`] | problems with a known answer, many seeds each, beside the population searches | diagnostic, problem, problem_file, record, search, run, published |
-//! | [`analysis`] | what a given linkage or chain does: positions, velocities, accelerations, mobility | linkage, record |
-//! | [`plates`] | the links as plates with holes: outlines, distances between them | linkage |
-//! | [`mod@verify`] | is a record true? everything recomputed | linkage, task, problem, record, assess, certificate, search, run |
-//! | [`problem_file`], [`points_file`], [`svg_file`], [`linkage_file`] (`input_text`, `toml_text`, `toml_values` inside) | text in, with errors that point at their place | diagnostic, generator, name, linkage, task, solve, resampling, problem, record |
-//! | [`problem_template`], [`schema`], [`name`] | a file to start from, schemas for editors, what a name may be | problem_file, linkage_file, record |
-//! | [`diagnostic`] | an error with file, line, caret and remedy | |
-//! | [`generator`] | the mark of written files: whether a file is one that this program wrote as the same kind | |
-//! | [`export`] | files to build from: drawings in millimetres, cutting and printing files, lists | generator, linkage, plates, record, report, analysis, linkage_file, toml_text, name |
-//! | [`report`] | what a person sees: pure functions of the record, of an analysis or of a suite | generator, linkage, linkage_file, task, problem, record, analysis, suite, plates, practicality, snap |
-//! | [`practicality`] | what stands between a linkage and a workshop: layers, clearances, sensitivity to dimensions | linkage, task, problem, record, plates |
-//! | [`snap`] | lengths brought to stock sizes, the rest fitted again | practicality, linkage, problem, record, assess, search, run |
-//! | [`results_folder`] | a result's folder: locked, replaced as a whole, never mixed with foreign files; files that a person named | generator, record |
-//! | [`given`], [`measured`] | a result, a candidate or a linkage that is to be compared; its figures, by the referee | assess, diagnostic, linkage, linkage_file, problem, problem_file, record, report, results_folder, run, search, task, verify |
-//! | [`result_files`], [`saved_run`] | what a result's folder holds; a job from its folder to its files, the same for every door | record, report, linkage_file, name, results_folder, run, search, checkpoint, certificate |
-//! | `studio` (feature) | a local page that answers while a target is drawn: server, messages, tabs, jobs; no mathematics | live, run, saved_run, search, assess, verify, record, report, export, given, measured, results_folder, problem, problem_file, points_file, svg_file, diagnostic, linkage, linkage_file, name |
-//! | `cli` (feature) | arguments, commands, exit codes | everything |
+//! | `numbers` | numerical mathematics that knows nothing of linkages, a package for each subject: [`arithmetic`](internals::numbers::arithmetic) (lanes, double-double, random streams), [`optimise`](internals::numbers::optimise) (least squares, populations, convex programs), [`nine_point`](internals::numbers::nine_point) (path tracking), [`bound`](internals::numbers::bound) (branch and bound), [`checker`](internals::numbers::checker) (the check of its proofs, without its code) and [`leaves`](internals::numbers::leaves) (their file) | |
+//! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`chain`](internals::mechanism::chain), their [`analysis`](internals::mechanism::analysis), their [`plates`](internals::mechanism::plates) | numbers |
+//! | `task` | what is wanted: the path, the [`spec`](internals::task::spec) with every key of a problem file, the checked [`Problem`], and the task as mathematics in [`forms`](internals::task::forms) (design space, residuals, [rows of the requirements](internals::task::forms::requirements)) | numbers, mechanism |
+//! | `record` | the truth on disk: what was asked, done and found | numbers, mechanism, task |
+//! | `judge` | is it so: the [`referee`](internals::judge::referee) (order, circuit and branch defects), [`assess`](internals::judge::assess) (every figure of a candidate), ranking, warnings, cognates, costs, [`certificate`](internals::judge::certificate), [`practicality`](internals::judge::practicality), and [`verify`](internals::judge::verify), which recomputes a record | numbers, mechanism, task, record |
+//! | `synthesis` | what to try: the [`plan`](internals::synthesis::plan) of a search, starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for [`timed`](internals::synthesis::timed) and [`free`](internals::synthesis::free) timing, populations, [`conflicts`](internals::synthesis::conflicts), live fitting, snapping | numbers, mechanism, task, record, judge |
+//! | `files` | text in: problem, points, linkage and drawing files, schemas, and errors that point at their place | numbers, mechanism, task, record |
+//! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
+//! | `app` | the doors: a job in, a record out ([`run`](internals::app::run)), folders of results, checkpoints, the [`suite`](internals::app::suite), the command line (feature `cli`), the studio (feature `studio`) | everything |
+//!
+//! Public are the names below; `internals` holds the rest for this repository's own tests and tools, and versions say
+//! nothing about it.
 
-pub mod analysis;
-pub mod assess;
-pub mod certificate;
-pub mod checkpoint;
-#[cfg(feature = "cli")]
-pub mod cli;
-pub mod diagnostic;
-pub mod exact;
-pub mod export;
-pub mod generator;
-pub mod given;
-mod input_text;
-pub mod linkage;
-pub mod linkage_file;
-pub mod live;
-pub mod measured;
-pub mod name;
-pub mod plates;
-pub mod points_file;
-pub mod practicality;
-pub mod problem;
-pub mod problem_file;
-pub mod problem_template;
-pub mod published;
-pub mod record;
-pub mod report;
-pub mod resampling;
-pub mod result_files;
-pub mod results_folder;
-pub mod run;
-pub mod saved_run;
-pub mod schema;
-pub mod search;
-pub mod snap;
-pub mod solve;
-#[cfg(feature = "studio")]
-pub mod studio;
-pub mod suite;
-pub mod svg_file;
-pub mod task;
-mod toml_text;
-mod toml_values;
-pub mod verify;
+mod app;
+mod files;
+mod judge;
+mod mechanism;
+mod numbers;
+mod record;
+mod report;
+mod synthesis;
+mod task;
+
+pub use app::run::{Context, Finished, Job, RunError, run};
+pub use files::diagnostic::Diagnostic;
+pub use files::linkage_file::{
+    AnyLinkageFile, load_any as load_linkage, parse_any as parse_linkage, to_toml as linkage_to_toml,
+};
+pub use files::problem_file::{ProblemFile, load_any as load_problem, parse as parse_problem};
+pub use judge::certificate::{NoCertificate, Request as CertificateRequest, certify};
+pub use judge::verify::{Mismatch, verify};
+pub use mechanism::analysis::{Analysis, Request as AnalysisRequest, analyze};
+pub use mechanism::four_bar::cognate::Cognate;
+pub use mechanism::{
+    AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, Joints, Linkage,
+    LinkageError, LinkageType, Mobility, NaturalCoordinates, Position, Unit, VectorLoop,
+};
+pub use record::{Candidate, Certificate, Record};
+pub use report::export::{
+    Exported, Format as ExportFormat, Settings as ExportSettings, Subject as ExportSubject, export,
+};
+pub use report::html::report_html;
+pub use synthesis::{Observer, Progress};
+pub use task::spec::ProblemSpec;
+pub use task::{AngleOffset, Defect, PathTask, Problem, TaskError, Timing};
+
+/// All rooms, for this repository's integration tests, benchmarks, fuzz targets and commands.
+#[doc(hidden)]
+pub mod internals {
+    macro_rules! storeys {
+        ($($name:ident: $doc:literal),*) => {
+            $(
+                #[doc = $doc]
+                pub mod $name {
+                    pub use crate::$name::*;
+                }
+            )*
+        };
+    }
+    storeys! {
+        numbers: "Numerical mathematics.",
+        mechanism: "Mechanisms.",
+        task: "Tasks.",
+        record: "Records.",
+        judge: "The judge.",
+        synthesis: "Searches.",
+        files: "Text in.",
+        report: "Text and drawings out.",
+        app: "Doors."
+    }
+}

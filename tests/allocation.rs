@@ -3,11 +3,13 @@
 mod common;
 
 use common::{literature, load, root};
-use linkwright::linkage::position::{CouplerPoints, Kernel};
-use linkwright::problem::Problem;
-use linkwright::problem::fitness::PathFitness;
-use linkwright::solve::population::{Individual, PopulationProblem, draw_uniform, evaluate_generation};
-use linkwright::solve::streams::stream;
+use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::numbers::optimise::population::{
+    Individual, PopulationProblem, draw_uniform, evaluate_generation,
+};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::fitness::PathFitness;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 
@@ -83,9 +85,10 @@ fn a_fitness_evaluation_allocates_nothing() {
 
 #[test]
 fn filling_a_curve_allocates_nothing() {
-    let linkage = linkwright::linkage_file::load(&root().join("problems/seeds/romero.toml"))
-        .expect("it is one")
-        .linkage;
+    let linkage =
+        linkwright::internals::files::linkage_file::load(&root().join("problems/seeds/romero.toml"))
+            .expect("it is one")
+            .linkage;
     let kernel = Kernel::new(&linkage);
     let (cos, sin): (Vec<f64>, Vec<f64>) =
         (0..360).map(|i| f64::from(i).to_radians().sin_cos()).map(|(s, c)| (c, s)).unzip();

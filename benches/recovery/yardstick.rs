@@ -11,17 +11,17 @@
 //! holds (pool adjacent violators; Ayer et al. 1955). Nothing of a search's own handling of order is used.
 
 use crate::random::Traced;
-use linkwright::assess::assess;
-use linkwright::linkage::mobility::wrapped;
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, LinkageType, Mobility};
-use linkwright::problem::design_space::{Design, Shape};
-use linkwright::problem::spec::OrderPolicy;
-use linkwright::problem::torus::Positions;
-use linkwright::problem::{Problem, Setting};
-use linkwright::record::Candidate;
-use linkwright::search::Budget;
-use linkwright::search::multistart::{LONG_ROUNDS, LONG_STEPS, polish, settle_positions};
-use linkwright::search::starts::Start;
+use linkwright::internals::judge::assess::assess;
+use linkwright::internals::mechanism::four_bar::mobility::wrapped;
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, LinkageType, Mobility};
+use linkwright::internals::record::Candidate;
+use linkwright::internals::synthesis::Budget;
+use linkwright::internals::synthesis::multistart::{LONG_ROUNDS, LONG_STEPS, polish, settle_positions};
+use linkwright::internals::task::forms::design_space::{Design, Shape};
+use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::torus::Positions;
+use linkwright::internals::task::spec::OrderPolicy;
+use linkwright::internals::task::{Problem, Setting};
 use std::f64::consts::TAU;
 use std::sync::atomic::AtomicBool;
 

@@ -1,6 +1,6 @@
 //! Exact synthesis: every linkage through nine points, counted, and the real ones listed.
 
-use crate::linkage::{AssemblyMode, FourBar, LinkageType};
+use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
 use crate::task::Defect;
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,6 @@
 //! What stands beside a candidate's figures: warnings, the same curve by other linkages, families of answers.
 
-use crate::linkage::{AssemblyMode, FourBar, LinkageType};
+use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
 use serde::{Deserialize, Serialize};
 
 /// Why a linkage that meets every requirement may still be a poor one to build.

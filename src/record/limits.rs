@@ -1,8 +1,8 @@
 //! What a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file.
 
 use super::{Candidate, Record};
-use crate::linkage::MAX_MAGNITUDE;
-use crate::problem::spec::{MAX_CANDIDATES, MAX_POINTS, MAX_SMOOTHED};
+use crate::mechanism::MAX_MAGNITUDE;
+use crate::task::spec::{MAX_CANDIDATES, MAX_POINTS, MAX_SMOOTHED};
 
 /// The most entries of a list that has no limit of its own: classes of exact linkages, costs, changes.
 const MAX_LIST: usize = 10_000;

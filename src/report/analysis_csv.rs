@@ -2,8 +2,8 @@
 
 use super::csv::written;
 use super::text::exact;
-use crate::analysis::{Analysis, Row};
-use crate::linkage::FourBar;
+use crate::mechanism::FourBar;
+use crate::mechanism::analysis::{Analysis, Row};
 
 /// The header row of [`analysis_csv`].
 pub const ANALYSIS_COLUMNS: [&str; 29] = [

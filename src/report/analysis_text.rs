@@ -2,10 +2,10 @@
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{clean, significant, wrapped};
-use crate::analysis::{Analysis, Configuration, MobilityRecord, Row, Status};
-use crate::linkage::transmission::ForceTransmission;
-use crate::linkage::{FourBar, LinkageType};
-use crate::record::Unit;
+use crate::mechanism::Unit;
+use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Row, Status};
+use crate::mechanism::four_bar::transmission::ForceTransmission;
+use crate::mechanism::{FourBar, LinkageType};
 
 /// The width of the page, in columns.
 const COLUMNS: usize = 100;
@@ -210,8 +210,8 @@ fn positions(configuration: &Configuration, colour: Colour) -> String {
                 .flatten()
                 .fold(0.0, |m: f64, x| m.max(x.abs()))
         });
-        let at = |f: fn(&crate::analysis::Pose) -> f64| number(p.as_ref().map(f), size);
-        let angle = |f: fn(&crate::analysis::Pose) -> f64| {
+        let at = |f: fn(&crate::mechanism::analysis::Pose) -> f64| number(p.as_ref().map(f), size);
+        let angle = |f: fn(&crate::mechanism::analysis::Pose) -> f64| {
             plain(p.as_ref().map_or_else(|| "-".to_owned(), |p| significant(f(p), 6)))
         };
         grid.row(vec![
@@ -231,7 +231,7 @@ fn positions(configuration: &Configuration, colour: Colour) -> String {
     grid.render(colour)
 }
 
-type Of = fn(&crate::analysis::Rates) -> f64;
+type Of = fn(&crate::mechanism::analysis::Rates) -> f64;
 
 fn rates(configuration: &Configuration, colour: Colour, columns: [(&'static str, Of); 8]) -> String {
     let mut heads = vec![("crank", Align::Right)];
@@ -326,7 +326,7 @@ fn methods(configuration: &Configuration, colour: Colour) -> String {
 /// at which it is nearest to failing.
 fn conditions(configuration: &Configuration) -> String {
     let rows = || configuration.rows.iter().filter_map(|row| Some((row, row.assembly?)));
-    let line = |(row, condition): (&Row, crate::analysis::ConditionRecord)| {
+    let line = |(row, condition): (&Row, crate::mechanism::analysis::ConditionRecord)| {
         let ratio = condition.ratio.map_or("undefined".to_owned(), |r| significant(r, 5));
         let word = |holds| if holds { "holds" } else { "fails" };
         format!(
@@ -339,7 +339,7 @@ fn conditions(configuration: &Configuration) -> String {
     let open: Vec<String> = rows().filter(|(row, _)| row.pose.is_none()).take(6).map(line).collect();
     let shown = if open.is_empty() {
         let least = rows().min_by(|x, y| {
-            let ratio = |c: &crate::analysis::ConditionRecord| c.ratio.unwrap_or(f64::INFINITY);
+            let ratio = |c: &crate::mechanism::analysis::ConditionRecord| c.ratio.unwrap_or(f64::INFINITY);
             ratio(&x.1).total_cmp(&ratio(&y.1))
         });
         least.map(line).into_iter().collect()

@@ -2,7 +2,7 @@
 
 use super::scene::Bounds;
 use super::text::xml;
-use crate::linkage::Complex;
+use crate::mechanism::Complex;
 use std::fmt::Write;
 
 /// Colours that colour-blind readers can distinguish (Okabe and Ito 2008) on a light ground.
@@ -251,7 +251,7 @@ impl Canvas {
             ),
             w = px(width),
             h = px(height),
-            mark = crate::generator::mark(),
+            mark = crate::files::generator::mark(),
             title = xml(title),
             description = xml(description),
             paper = palette::PAPER,
@@ -268,7 +268,7 @@ pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::px;
-    use crate::solve::streams::{stream, unit};
+    use crate::numbers::arithmetic::streams::{stream, unit};
 
     #[test]
     fn pixels_are_rounded_as_the_language_does() {

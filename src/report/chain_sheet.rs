@@ -7,9 +7,9 @@ use super::parts::{away, letter, point_mark, stand};
 use super::scene::Bounds;
 use super::sheet::{FULL, Heading, Sheet, fitted, page, scale_bar};
 use super::text::significant;
-use crate::analysis::Status;
-use crate::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
-use crate::linkage::{Chain, Complex};
+use crate::mechanism::analysis::Status;
+use crate::mechanism::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
+use crate::mechanism::{Chain, Complex};
 
 /// The largest number of positions that are drawn faintly besides the first.
 const GHOSTS: usize = 5;

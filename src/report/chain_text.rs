@@ -3,8 +3,8 @@
 use super::csv::written;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{clean, exact, significant, wrapped};
-use crate::analysis::Status;
-use crate::analysis::chain::{ChainAnalysis, ChainRow};
+use crate::mechanism::analysis::Status;
+use crate::mechanism::analysis::chain::{ChainAnalysis, ChainRow};
 
 const COLUMNS: usize = 100;
 const DIGITS: usize = 7;

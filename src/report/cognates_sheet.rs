@@ -7,8 +7,8 @@ use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark,
 use super::scene::{Bounds, SAMPLES, circuits_through, closest, middle_position};
 use super::sheet::{FULL, Heading, INSET, Sheet, fitted, page, scale_bar};
 use super::text::{brief, clean};
-use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar};
-use crate::record::Unit;
+use crate::mechanism::Unit;
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use std::f64::consts::TAU;
 
 /// The number of positions along the circuit among which the most legible one is chosen.
@@ -30,11 +30,11 @@ const LEGEND_LINE: f64 = 20.0;
 /// lengths and the coupler point. A cognate that does not reach the point is named in the legend and not drawn.
 ///
 /// ```
-/// # use linkwright::linkage::*;
+/// # use linkwright::internals::mechanism::*;
 /// let original = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
 ///     point([2.5, 4.3]), AssemblyMode::Plus)?;
 /// let cognates: Vec<FourBar> = original.cognates().into_iter().flatten().map(|c| c.linkage).collect();
-/// let svg = linkwright::report::analysis_sheets::cognates_svg("mine", None, &original, &cognates);
+/// let svg = linkwright::internals::report::analysis_sheets::cognates_svg("mine", None, &original, &cognates);
 /// assert!(svg.contains(">G</text>") && !svg.contains("not drawn"));
 /// # Ok::<(), LinkageError>(())
 /// ```

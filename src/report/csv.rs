@@ -4,8 +4,8 @@
 use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
-use crate::linkage::transmission::angle_opposite;
-use crate::linkage::{CouplerCurve, FourBar};
+use crate::mechanism::four_bar::transmission::angle_opposite;
+use crate::mechanism::{CouplerCurve, FourBar};
 use crate::record::{Candidate, Record};
 use crate::task::Defect;
 

@@ -4,7 +4,7 @@ use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
 use super::text::{grouped, significant, wrapped};
 use super::words;
-use crate::linkage::AssemblyMode;
+use crate::mechanism::AssemblyMode;
 use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
 
 /// The number of rows if not all are asked for.

@@ -4,7 +4,7 @@ use super::canvas::{Anchor, Canvas, Spot, View, palette, px};
 use super::labels::Labels;
 use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
 use super::scene::{Bounds, Pose, Scene};
-use crate::linkage::{Complex, Joints};
+use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
 
 /// The amount of detail and the thickness of lines of a drawing.

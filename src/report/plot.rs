@@ -3,7 +3,7 @@
 use super::scene::{Bounds, Scene, round_length};
 use super::text::brief;
 use super::words;
-use crate::linkage::Complex;
+use crate::mechanism::Complex;
 use crate::record::Record;
 
 /// The characters with which a plot is drawn.

@@ -2,12 +2,12 @@
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, significant, wrapped};
-use crate::plates::Link;
-use crate::practicality::clearance::PivotDistance;
-use crate::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
-use crate::practicality::sensitivity::{Crank, Dimension, Sensitivity};
-use crate::practicality::{Closest, Practicality};
-use crate::record::Unit;
+use crate::judge::practicality::clearance::PivotDistance;
+use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
+use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
+use crate::judge::practicality::{Closest, Practicality};
+use crate::mechanism::Unit;
+use crate::mechanism::plates::Link;
 
 /// The width of the page, in columns.
 const COLUMNS: usize = 100;
@@ -71,7 +71,7 @@ impl Words {
         let motion = match practicality.sweep.full_turn {
             true => "the full turn of the crank".to_owned(),
             false => {
-                let of = |s: &crate::practicality::sweep::Stretch| {
+                let of = |s: &crate::judge::practicality::sweep::Stretch| {
                     format!("{} to {}", degrees(s.from), degrees(s.to))
                 };
                 format!(
@@ -151,7 +151,7 @@ impl Words {
         &self,
         layering: &Layering,
         stack: &Stack,
-        pin: crate::practicality::Pin,
+        pin: crate::judge::practicality::Pin,
         layer: usize,
     ) -> String {
         let beside: Vec<String> = stack.layers[layer]

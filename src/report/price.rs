@@ -2,7 +2,8 @@
 
 use super::text::{clean, significant, wrapped};
 use super::words;
-use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue, Unit};
+use crate::mechanism::Unit;
+use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue};
 
 /// The largest relative change of the error by a step for which rates are stated.
 const SMALL_STEP: f64 = 0.5;

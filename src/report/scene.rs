@@ -1,6 +1,6 @@
 //! The scene of a candidate's drawing: target points, the circuits used, and one position of the linkage.
 
-use crate::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
+use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, Joints, MAX_MAGNITUDE, point};
 use crate::record::{Candidate, Record};
 use std::f64::consts::{PI, TAU};
 
@@ -117,7 +117,7 @@ pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
 pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
     /// Offsets from the middle, as fractions of a half turn or of half the arc.
     const ASIDE: [f64; 9] = [0.0, 1.0 / 3.0, -1.0 / 3.0, 0.5, -0.5, 2.0 / 3.0, -2.0 / 3.0, 0.1, -0.1];
-    let arc = linkage.mobility().arc(crate::linkage::Circuit { index: 0 });
+    let arc = linkage.mobility().arc(crate::mechanism::Circuit { index: 0 });
     let (middle, half) = arc.map_or((0.0, PI), |arc| (arc.middle, arc.half_width));
     let assembly = linkage.assembly();
     let angles = ASIDE.map(|part| middle + part * half);

@@ -4,8 +4,8 @@ use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
 use super::scene::{Bounds, round_length};
 use super::text::{brief, shortened};
 use super::words;
-use crate::linkage::Complex;
-use crate::record::Unit;
+use crate::mechanism::Complex;
+use crate::mechanism::Unit;
 
 /// The width of a page and of the sheets on it, in pixels.
 const WIDTH: f64 = 1080.0;

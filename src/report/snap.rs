@@ -2,8 +2,9 @@
 
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, exact, grouped, significant, wrapped};
-use crate::record::{Candidate, Unit};
-use crate::snap::{Length, Request, Snapped};
+use crate::mechanism::Unit;
+use crate::record::Candidate;
+use crate::synthesis::snap::{Length, Request, Snapped};
 
 /// The width of the page, in columns.
 const COLUMNS: usize = 100;
@@ -111,7 +112,7 @@ fn dimensions(
         row(length.key(), length.of(from), value, stock, note);
     }
     for (name, of) in [
-        ("Ax", (|l| l.crank_pivot().re) as fn(&crate::linkage::FourBar) -> f64),
+        ("Ax", (|l| l.crank_pivot().re) as fn(&crate::mechanism::FourBar) -> f64),
         ("Ay", |l| l.crank_pivot().im),
         ("Bx", |l| l.follower_pivot().re),
         ("By", |l| l.follower_pivot().im),

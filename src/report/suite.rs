@@ -3,7 +3,7 @@
 use super::grid::{Align, Colour, Grid, Ink};
 use super::table::COLUMNS;
 use super::text::{brief, clean, clean_sentence, grouped, percent_up, shortened, significant, wrapped};
-use crate::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
+use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
 /// The mark of a problem with a sum that is smaller than the best known.
 const SMALLER: &str = " *";

@@ -7,8 +7,8 @@ use super::figure::{Detail, draw};
 use super::scene::{SAMPLES, Scene, circuits, round_length};
 use super::text::{brief, clean, shortened, significant};
 use super::words;
-use crate::problem::spec::TransmissionOver;
 use crate::record::{Candidate, Record};
+use crate::task::spec::TransmissionOver;
 
 const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 30.0;

@@ -4,10 +4,11 @@ use super::beside;
 use super::grid::{Align, Colour, Grid, Ink};
 use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
 use super::{price, words};
-use crate::linkage::FourBar;
-use crate::problem::spec::Measure;
-use crate::record::{Candidate, Record, Unit};
+use crate::mechanism::FourBar;
+use crate::mechanism::Unit;
+use crate::record::{Candidate, Record};
 use crate::task::Defect;
+use crate::task::spec::Measure;
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
@@ -239,7 +240,7 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
 /// Returns the linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
 fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let pair = |p: crate::linkage::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
+    let pair = |p: crate::mechanism::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
     let parts = [
         format!("A = {},", pair(a)),
         format!("B = {},", pair(b)),

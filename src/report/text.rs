@@ -11,7 +11,7 @@ const PLAIN_EXPONENTS: std::ops::RangeInclusive<i32> = -4..=5;
 /// Returns `value` with `digits` significant digits, such as `0.02240`, `31.42`, `7.416e-7`; 0 is `0`.
 ///
 /// ```
-/// use linkwright::report::text::significant;
+/// use linkwright::internals::report::text::significant;
 /// assert_eq!(significant(0.022396524, 4), "0.02240");
 /// assert_eq!(significant(9.99996, 4), "10.00");
 /// assert_eq!(significant(7.4157e-7, 4), "7.416e-7");
@@ -38,7 +38,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// Returns a positive number as [`significant`] does, rounded so that the text is never more than the number.
 ///
 /// ```
-/// use linkwright::report::text::{at_least, at_most};
+/// use linkwright::internals::report::text::{at_least, at_most};
 /// assert_eq!((at_most(0.12349, 4), at_least(0.12341, 4)), ("0.1234".into(), "0.1235".into()));
 /// assert_eq!((at_most(0.5, 2), at_least(0.5, 2)), ("0.50".into(), "0.50".into()));
 /// ```
@@ -100,7 +100,7 @@ fn without_zeros(text: &str) -> String {
 /// Returns the shortest text that reads back as the same number; empty for a number that is not finite.
 ///
 /// ```
-/// use linkwright::report::text::exact;
+/// use linkwright::internals::report::text::exact;
 /// assert_eq!((exact(5.0), exact(0.1), exact(1e-300)), ("5".into(), "0.1".into(), "1e-300".into()));
 /// ```
 pub fn exact(value: f64) -> String {
@@ -148,7 +148,7 @@ const LONGEST_SENTENCE: usize = 800;
 /// characters.
 ///
 /// ```
-/// assert_eq!(linkwright::report::text::clean("a\x1b[31mb\n c\u{202e}"), "a[31mb c");
+/// assert_eq!(linkwright::internals::report::text::clean("a\x1b[31mb\n c\u{202e}"), "a[31mb c");
 /// ```
 pub fn clean(text: &str) -> String {
     clean_to(text, LONGEST_TEXT)
@@ -233,7 +233,7 @@ fn columns_of_char(c: char) -> usize {
 /// Returns cleaned foreign text as XML character data or attribute value.
 ///
 /// ```
-/// assert_eq!(linkwright::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
+/// assert_eq!(linkwright::internals::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
 /// ```
 pub fn xml(text: &str) -> String {
     let mut escaped = String::new();
@@ -282,7 +282,7 @@ pub fn wrapped(lead: &str, indent: &str, text: &str, columns: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::{at_least, at_most, exact, percent_up};
-    use crate::solve::streams::{stream, unit};
+    use crate::numbers::arithmetic::streams::{stream, unit};
 
     #[test]
     fn a_bound_is_never_shown_on_the_other_side_of_itself() {

@@ -1,8 +1,9 @@
 //! Verdicts, requirements and endings in plain words.
 
 use super::text::{brief, clean, exact};
-use crate::problem::spec::{Measure, TransmissionOver};
-use crate::record::{Candidate, Figure, Reason, Record, Requirement, Unit};
+use crate::mechanism::Unit;
+use crate::record::{Candidate, Figure, Reason, Record, Requirement};
+use crate::task::spec::{Measure, TransmissionOver};
 use crate::task::{AngleOffset, Defect};
 
 /// An objection: one reason why a candidate is not accepted.
@@ -136,7 +137,7 @@ fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
     points
         .filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
             let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
-            let error = (crate::linkage::point(*target) - joints.coupler_point).norm();
+            let error = (crate::mechanism::point(*target) - joints.coupler_point).norm();
             Some(Deviation { point, error, tolerance: *tolerance })
         })
         .collect()

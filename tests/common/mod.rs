@@ -2,9 +2,10 @@
 
 #![allow(dead_code, reason = "every test file uses its own part of it")]
 
-use linkwright::problem_file::{self, ProblemFile};
-use linkwright::record::Record;
-use linkwright::run::{Context, Job, run};
+use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::files::problem_file;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::record::Record;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -44,7 +45,7 @@ pub fn parse(text: &str) -> ProblemFile {
 
 /// The job of a problem file.
 pub fn job(file: ProblemFile) -> Job {
-    Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec }
+    Job::from(file)
 }
 
 /// Runs a problem on this many threads.

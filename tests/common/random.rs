@@ -3,9 +3,9 @@
 
 #![allow(dead_code, reason = "every user takes its own part of it")]
 
-use linkwright::linkage::mobility::{grashof_margin, linkage_type};
-use linkwright::linkage::{AssemblyMode, Circuit, Complex, FourBar, LinkageType};
-use linkwright::solve::streams::{Stream, below, normal, uniform, unit};
+use linkwright::internals::mechanism::four_bar::mobility::{grashof_margin, linkage_type};
+use linkwright::internals::mechanism::{AssemblyMode, Circuit, Complex, FourBar, LinkageType};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, below, normal, uniform, unit};
 use std::f64::consts::{PI, TAU};
 
 /// The five types that have a margin.

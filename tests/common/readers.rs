@@ -3,24 +3,34 @@
 
 #![allow(dead_code, reason = "a fuzz target uses one of them")]
 
-use linkwright::analysis::chain::{ChainRequest, analyze_chain};
-use linkwright::analysis::{PositionMethod, Request, analyze, full_turn};
-use linkwright::checkpoint::{self, Writer};
-use linkwright::diagnostic::Diagnostic;
-use linkwright::linkage::motion::CrankMotion;
-use linkwright::linkage_file::{self, AnyLinkageFile, Linkage};
-use linkwright::problem::Problem;
-use linkwright::problem::spec::ProblemSpec;
-use linkwright::problem_file::{self, ProblemFile};
-use linkwright::record::Record;
-use linkwright::report::compare::{Entry, SortKey, compare};
-use linkwright::report::plot::{Glyphs, terminal_plot};
-use linkwright::report::{Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text};
-use linkwright::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
-use linkwright::run::{Context, Job};
-use linkwright::search::keeper::{Keeper, Pace, SearchState};
-use linkwright::svg_file::{self, SvgOptions};
-use linkwright::{points_file, results_folder, run, verify};
+use linkwright::internals::app::checkpoint;
+use linkwright::internals::app::checkpoint::Writer;
+use linkwright::internals::app::run::{Context, Job};
+use linkwright::internals::app::{results_folder, run};
+use linkwright::internals::files::diagnostic::Diagnostic;
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::files::linkage_file::AnyLinkageFile;
+use linkwright::internals::files::points_file;
+use linkwright::internals::files::problem_file;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::files::svg_file;
+use linkwright::internals::files::svg_file::SvgOptions;
+use linkwright::internals::judge::verify;
+use linkwright::internals::mechanism::Linkage;
+use linkwright::internals::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use linkwright::internals::mechanism::analysis::{PositionMethod, Request, analyze, full_turn};
+use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
+use linkwright::internals::record::Record;
+use linkwright::internals::record::digest::digest;
+use linkwright::internals::report::compare::{Entry, SortKey, compare};
+use linkwright::internals::report::plot::{Glyphs, terminal_plot};
+use linkwright::internals::report::{
+    Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text,
+};
+use linkwright::internals::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
+use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::spec::ProblemSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A problem that `--set` changes.
@@ -61,7 +71,7 @@ fn shown(refusal: &Diagnostic) {
 fn usable(file: &ProblemFile) {
     file.warnings.iter().for_each(shown);
     Problem::new(file.spec.clone()).expect("what was read can be run");
-    run::digest(&file.spec).expect("it is data");
+    digest(&file.spec).expect("it is data");
     let kept = serde_json::to_vec(&file.spec).expect("it is data");
     let back: ProblemSpec = serde_json::from_slice(&kept).expect("what was written can be read");
     assert_eq!(back, file.spec);

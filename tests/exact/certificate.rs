@@ -3,15 +3,15 @@
 use crate::known::{
     GAUSSIAN, Known, WMS3, random_complex, random_real, random_real_curve, real_linkages, target,
 };
-use linkwright::exact::certificate::{
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream};
+use linkwright::internals::numbers::nine_point::certificate::{
     Certificate, Refused, certify, certify_all, certify_displacements, check,
 };
-use linkwright::exact::conjugation::Reality;
-use linkwright::exact::distinct::not_proved_distinct;
-use linkwright::exact::refinement::refine;
-use linkwright::exact::{Displacements, Solution, Target};
-use linkwright::linkage::Complex;
-use linkwright::solve::streams::{Stream, normal, stream};
+use linkwright::internals::numbers::nine_point::conjugation::Reality;
+use linkwright::internals::numbers::nine_point::distinct::not_proved_distinct;
+use linkwright::internals::numbers::nine_point::refinement::refine;
+use linkwright::internals::numbers::nine_point::{Displacements, Solution, Target};
 
 fn certificates(target: &Target, known: &[Known]) -> Vec<Certificate> {
     let solutions: Vec<Solution> = known.iter().map(|known| known.solution).collect();

@@ -1,10 +1,12 @@
 //! The linearised equations beside dual numbers, the symmetries, the elimination.
 
-use linkwright::exact::equations::{DisplacementLanes, UNKNOWNS, residuals, solution, steps, unknowns};
-use linkwright::exact::lanes::ComplexLanes;
-use linkwright::exact::start::{StartSet, largest_residual};
-use linkwright::exact::{Displacements, Solution};
-use linkwright::linkage::Complex;
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::arithmetic::complex_lanes::ComplexLanes;
+use linkwright::internals::numbers::nine_point::equations::{
+    DisplacementLanes, UNKNOWNS, residuals, solution, steps, unknowns,
+};
+use linkwright::internals::numbers::nine_point::start::{StartSet, largest_residual};
+use linkwright::internals::numbers::nine_point::{Displacements, Solution};
 use nalgebra::{DMatrix, DVector};
 use num_dual::Dual64;
 

@@ -1,10 +1,10 @@
 //! Solutions of known targets: published ones, random real and random complex four-bars.
 
 use crate::random;
-use linkwright::exact::target::STEPS;
-use linkwright::exact::{Displacements, Solution, Target};
-use linkwright::linkage::Complex;
-use linkwright::solve::streams::{Stream, normal, uniform, unit};
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, uniform, unit};
+use linkwright::internals::numbers::nine_point::target::STEPS;
+use linkwright::internals::numbers::nine_point::{Displacements, Solution, Target};
 use std::f64::consts::PI;
 
 /// Problem 3 of Wampler, Morgan and Sommese (1992).

@@ -2,12 +2,12 @@
 
 use crate::known::{GAUSSIAN, WMS3, target};
 use crate::verdicts::verdicts;
-use linkwright::exact::{Solution, Target};
-use linkwright::problem::Problem;
-use linkwright::problem_file;
-use linkwright::record::{Census, Completeness, ExactLinkage};
-use linkwright::search::continuation::{Exact, listed};
-use linkwright::task::Defect;
+use linkwright::internals::files::problem_file;
+use linkwright::internals::numbers::nine_point::{Solution, Target};
+use linkwright::internals::record::{Census, Completeness, ExactLinkage};
+use linkwright::internals::synthesis::continuation::{Exact, listed};
+use linkwright::internals::task::Defect;
+use linkwright::internals::task::Problem;
 
 fn problem(target: &Target, more: &str) -> Problem {
     let points: Vec<String> = target.points.iter().map(|p| format!("[{}, {}]", p.re, p.im)).collect();

@@ -2,10 +2,11 @@
 
 use crate::known::{GAUSSIAN, WMS3, target};
 use crate::verdicts::{Verdict, verdicts};
-use linkwright::exact::mechanisms::{mechanisms, solution_of};
-use linkwright::exact::{Mechanism, Target};
-use linkwright::linkage::{Complex, xy};
-use linkwright::task::{PathOptions, PathTask, Timing};
+use linkwright::internals::judge::mechanisms::Mechanism;
+use linkwright::internals::judge::mechanisms::{mechanisms, solution_of};
+use linkwright::internals::mechanism::{Complex, xy};
+use linkwright::internals::numbers::nine_point::Target;
+use linkwright::internals::task::{PathOptions, PathTask, Timing};
 
 fn wms3() -> (Target, Vec<Verdict>) {
     let target = target(WMS3);

@@ -1,12 +1,12 @@
 //! The shipped nine-point problems from file to record.
 
 use crate::common::{bytes, load, parse, root, run_on};
-use linkwright::linkage::point;
-use linkwright::record::{Completeness, Record};
-use linkwright::report::Colour;
-use linkwright::report::exact::exact_text;
-use linkwright::report::exact_sheet::exact_svg;
-use linkwright::verify::verify;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::point;
+use linkwright::internals::record::{Completeness, Record};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::exact::exact_text;
+use linkwright::internals::report::exact_sheet::exact_svg;
 
 fn run(name: &str, threads: usize) -> Record {
     run_on(threads, load(&root().join(format!("problems/exact/{name}.toml")), &[]))
@@ -49,7 +49,7 @@ fn a_record_that_claims_more_than_is_so_is_found_out() {
         change(&mut record);
         verify(&record).expect("a problem").iter().map(|m| m.what.clone()).collect::<Vec<_>>().join("; ")
     };
-    let exact = |change: fn(&mut linkwright::record::ExactRecord)| {
+    let exact = |change: fn(&mut linkwright::internals::record::ExactRecord)| {
         tampered(&|record| record.exact.iter_mut().for_each(change))
     };
     assert!(exact(|e| e.census.failed = 1).contains("exact.census.tracked"));
@@ -79,7 +79,7 @@ fn the_linkage_that_drew_the_points_is_among_the_answers() {
     holds_its_expectation("crank-rocker", &record);
     let exact = record.exact.as_ref().expect("exact answers");
     let drew = [point([0.0, 0.0]), point([4.0, 1.0])];
-    let near = |l: &linkwright::linkage::FourBar| {
+    let near = |l: &linkwright::internals::mechanism::FourBar| {
         let apart = (l.crank_pivot() - drew[0]).norm() + (l.follower_pivot() - drew[1]).norm();
         apart < 1e-9 && (l.crank() - 1.3).abs() < 1e-9 && (l.follower() - 3.6).abs() < 1e-9
     };

@@ -1,11 +1,11 @@
 //! Complete solutions: published counts, every real linkage, targets in special position, targets that move.
 
-use linkwright::exact::certificate::check;
-use linkwright::exact::{
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::nine_point::certificate::check;
+use linkwright::internals::numbers::nine_point::{
     Census, Certificate, Completeness, Options, Reality, Solution, Solved, Target, certify_all,
     not_proved_distinct, resolve_from, solve,
 };
-use linkwright::linkage::Complex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 fn solved(points: [Complex; 9]) -> Solved {

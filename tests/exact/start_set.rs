@@ -1,12 +1,14 @@
 //! The embedded start set: whole, complete, and what comes out when it is made anew.
 
-use linkwright::exact::monodromy::{Limits, orbit};
-use linkwright::exact::start::{CLASSES, EMBEDDED, StartSet, StartSetError, largest_residual};
-use linkwright::solve::streams::{stream, unit};
+use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
+use linkwright::internals::numbers::nine_point::monodromy::{Limits, orbit};
+use linkwright::internals::numbers::nine_point::start::{
+    CLASSES, EMBEDDED, StartSet, StartSetError, largest_residual,
+};
 use sha2::{Digest, Sha256};
 use std::sync::atomic::AtomicBool;
 
-/// Of `src/exact/start-set.bin`.
+/// Of `src/numbers/nine_point/start-set.bin`.
 const SHA_256: &str = "3c894278aaa3946d1f30a5e16b106328fbd7d7dcda3d21945b5ae473a0fca418";
 
 #[test]

@@ -1,8 +1,8 @@
 //! What each known real class can do.
 
 use crate::known::{Known, real_linkages};
-use linkwright::exact::certificate::certify;
-use linkwright::exact::{Solution, Target};
+use linkwright::internals::numbers::nine_point::certificate::certify;
+use linkwright::internals::numbers::nine_point::{Solution, Target};
 
 /// A row of `data/verdicts.csv`.
 pub struct Verdict {

@@ -1,14 +1,15 @@
 //! Compound mechanisms against the four-bar, independent solves, closed forms and central differences.
 
-use linkwright::linkage::chain::{
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::files::schema::{SchemaKind, schema};
+use linkwright::internals::mechanism::Linkage;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::chain::{
     ChainArc, ChainFault, ChainInput, ChainPlace, Outcome, PointId, SliderLine, Stage,
 };
-use linkwright::linkage::{
+use linkwright::internals::mechanism::{
     AssemblyMode, Chain, ChainBuilder, Complex, CouplerSide, FourBar, NaturalCoordinates,
 };
-use linkwright::linkage_file::{self, Linkage};
-use linkwright::record::Unit;
-use linkwright::schema::{SchemaKind, schema};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};

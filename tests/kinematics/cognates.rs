@@ -1,9 +1,9 @@
 //! The Roberts-Chebyshev cognates: three linkages, one curve.
 
 use crate::reference::{Draws, Flooded, linkage, rounding, scale, shipped_linkage, transmission};
-use linkwright::linkage::cognate::{Cognate, CognateError, OriginalLink, SharedPivot};
-use linkwright::linkage::mobility::wrapped;
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, Joints, LinkageType, point};
+use linkwright::internals::mechanism::four_bar::cognate::{Cognate, CognateError, OriginalLink, SharedPivot};
+use linkwright::internals::mechanism::four_bar::mobility::wrapped;
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, Joints, LinkageType, point};
 use std::f64::consts::PI;
 
 const BOTH: [AssemblyMode; 2] = [AssemblyMode::Plus, AssemblyMode::Minus];

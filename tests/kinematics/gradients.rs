@@ -4,8 +4,8 @@
 use crate::reference::{
     cases, closed_position, joints_by_angles, linkage, nine, position, scale, transmission,
 };
-use linkwright::linkage::gradient::{Frame, shape_gradient};
-use linkwright::linkage::{AssemblyMode, Complex, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::four_bar::gradient::{Frame, shape_gradient};
+use linkwright::internals::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, NaturalCoordinates};
 use num_dual::{Dual64, DualNum};
 use proptest::prelude::*;
 

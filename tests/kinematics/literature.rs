@@ -3,8 +3,8 @@
 //! they should.
 
 use crate::reference::{linkage, shipped_linkage};
-use linkwright::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, LinkageType};
-use linkwright::task::{AngleOffset, PathOptions, PathTask, Timing};
+use linkwright::internals::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, LinkageType};
+use linkwright::internals::task::{AngleOffset, PathOptions, PathTask, Timing};
 use std::f64::consts::{PI, TAU};
 
 fn read(folder: &str, name: &str) -> toml::Table {

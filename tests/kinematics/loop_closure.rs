@@ -3,12 +3,12 @@
 use crate::reference::{
     Draws, any_linkage, cases, closed_position, linkage, rounding, scale, shipped_linkage,
 };
-use linkwright::linkage::assembly_condition::AssemblyCondition;
-use linkwright::linkage::loop_closure::{
+use linkwright::internals::mechanism::four_bar::assembly_condition::AssemblyCondition;
+use linkwright::internals::mechanism::four_bar::loop_closure::{
     Arctangent, Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity,
 };
-use linkwright::linkage::mobility::wrapped;
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, LinkageType, cross};
+use linkwright::internals::mechanism::four_bar::mobility::wrapped;
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, LinkageType, cross};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 

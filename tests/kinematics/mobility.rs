@@ -1,9 +1,13 @@
 //! What a linkage can do, against brute force: a flood fill of its configuration curve and dense samples.
 
 use crate::reference::{Draws, Flooded, linkage, position, shipped_linkage, transmission};
-use linkwright::linkage::mobility::{CHANGE_POINT_TOLERANCE, grashof_margin, linkage_type, wrapped};
-use linkwright::linkage::transmission::angle_opposite;
-use linkwright::linkage::{AssemblyMode, Complex, CouplerCurve, FourBar, InputRange, LinkageType, cross};
+use linkwright::internals::mechanism::four_bar::mobility::{
+    CHANGE_POINT_TOLERANCE, grashof_margin, linkage_type, wrapped,
+};
+use linkwright::internals::mechanism::four_bar::transmission::angle_opposite;
+use linkwright::internals::mechanism::{
+    AssemblyMode, Complex, CouplerCurve, FourBar, InputRange, LinkageType, cross,
+};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,10 +1,10 @@
 //! Velocities and accelerations: the seed's tables, central differences, analytic cases, and toggles.
 
 use crate::reference::{cases, closed_position, linkage, position, scale, shipped_linkage, transmission};
-use linkwright::linkage::gradient::TOGGLE_SINE;
-use linkwright::linkage::mobility::wrapped;
-use linkwright::linkage::motion::{CrankMotion, LinkageMotion, Motion};
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, Position, VectorLoop};
+use linkwright::internals::mechanism::four_bar::gradient::TOGGLE_SINE;
+use linkwright::internals::mechanism::four_bar::mobility::wrapped;
+use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion, Motion};
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, Position, VectorLoop};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 

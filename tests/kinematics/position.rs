@@ -3,12 +3,12 @@
 use crate::reference::{
     any_linkage, cases, closed_position, joints_by_angles, linkage, nine, rounding, scale,
 };
-use linkwright::linkage::lane::{F64x8, LANES};
-use linkwright::linkage::position::{CouplerPoints, Kernel};
-use linkwright::linkage::{
+use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, Position,
     VectorLoop, cross,
 };
+use linkwright::internals::numbers::arithmetic::lane::{F64x8, LANES};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI, TAU};
 

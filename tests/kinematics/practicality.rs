@@ -1,17 +1,19 @@
 //! Layers and least distances against a brute-force sweep of the plates' outlines; sensitivities against Monte Carlo.
 
 use crate::random::{TYPES, linkage};
-use linkwright::linkage::{
+use linkwright::internals::judge::practicality::clearance::{MARGIN, Workpieces, pivot_distances};
+use linkwright::internals::judge::practicality::closest::RELATIVE;
+use linkwright::internals::judge::practicality::layers::{FREE_PAIRS, clear, layering};
+use linkwright::internals::judge::practicality::sensitivity::{
+    At, Crank, Sensitivity, along, is_flat, sensitivity,
+};
+use linkwright::internals::judge::practicality::{Build, Pin, Sweep};
+use linkwright::internals::mechanism::plates::{Edge, Link, Plate};
+use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerCurve, CouplerSide, FourBar, Joints, LinkageType, NaturalCoordinates,
     cross, dot,
 };
-use linkwright::plates::{Edge, Link, Plate};
-use linkwright::practicality::clearance::{MARGIN, Workpieces, pivot_distances};
-use linkwright::practicality::closest::RELATIVE;
-use linkwright::practicality::layers::{FREE_PAIRS, clear, layering};
-use linkwright::practicality::sensitivity::{At, Crank, Sensitivity, along, is_flat, sensitivity};
-use linkwright::practicality::{Build, Pin, Sweep};
-use linkwright::solve::streams::{Stream, normal, stream, uniform};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, normal, stream, uniform};
 use std::f64::consts::TAU;
 
 /// The hole centres of a link at a position.
@@ -132,13 +134,14 @@ fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
         let least = |of: &dyn Fn(&Joints) -> f64| {
             positions.iter().map(|(_, _, j)| of(j)).fold(f64::INFINITY, f64::min)
         };
-        let check = |what: &str, closest: &linkwright::practicality::Closest, sampled: f64| {
-            let slack = 1e-9 * size;
-            let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + slack;
-            assert!(closest.bound <= sampled + slack, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value <= sampled + margin, "{i} {what}: {closest:?}, sampled {sampled}");
-            assert!(closest.value - closest.bound <= 1.01 * margin, "{i} {what}: {closest:?}");
-        };
+        let check =
+            |what: &str, closest: &linkwright::internals::judge::practicality::Closest, sampled: f64| {
+                let slack = 1e-9 * size;
+                let margin = (MARGIN * size).max(RELATIVE * closest.value.abs()) + slack;
+                assert!(closest.bound <= sampled + slack, "{i} {what}: {closest:?}, sampled {sampled}");
+                assert!(closest.value <= sampled + margin, "{i} {what}: {closest:?}, sampled {sampled}");
+                assert!(closest.value - closest.bound <= 1.01 * margin, "{i} {what}: {closest:?}");
+            };
         for pair in &found.free_pairs {
             let [one, other] = pair.plates;
             check("plates", &pair.closest, least(&|j| pieces.between_plates_at(one, other, j)));
@@ -469,7 +472,10 @@ fn a_motion_past_a_toggle_is_split_there() {
         let sweep = Sweep::of_linkage(&l).expect("joined");
         let both = Sweep {
             stretches: [AssemblyMode::Plus, AssemblyMode::Minus]
-                .map(|assembly| linkwright::practicality::sweep::Stretch { assembly, ..sweep.stretches[0] })
+                .map(|assembly| linkwright::internals::judge::practicality::sweep::Stretch {
+                    assembly,
+                    ..sweep.stretches[0]
+                })
                 .to_vec(),
             ..sweep.clone()
         };

@@ -6,11 +6,12 @@
 mod closed_paths;
 
 use crate::reference::{Draws, Flooded, linkage, position, transmission};
-use linkwright::linkage::{
+use linkwright::internals::judge::referee::Verdict;
+use linkwright::internals::judge::referee::judge;
+use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, InputRange, LinkageType, NaturalCoordinates,
 };
-use linkwright::task::referee::judge;
-use linkwright::task::{AngleOffset, Defect, PathOptions, PathTask, Timing, Verdict};
+use linkwright::internals::task::{AngleOffset, Defect, PathOptions, PathTask, Timing};
 use std::f64::consts::{PI, TAU};
 
 /// n distinct points; with `repeated` the last is the first.

@@ -7,11 +7,11 @@
 
 use crate::common::{bytes, job, parse};
 use crate::problems::wide_case;
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Reason, Record};
-use linkwright::results_folder::parse_record;
-use linkwright::run::{Context, run};
-use linkwright::verify::{Mismatch, verify};
+use linkwright::internals::app::results_folder::parse_record;
+use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::verify::{Mismatch, verify};
+use linkwright::internals::record::{Reason, Record};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};

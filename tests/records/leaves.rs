@@ -4,12 +4,12 @@
 //! `EVERY_LEAF=1` changes each of them; without it some of each key.
 
 use crate::common::{job, load, parse, root};
-use linkwright::certificate::{Proof, Request};
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::Record;
-use linkwright::results_folder::parse_record;
-use linkwright::run::{Context, prove, run};
-use linkwright::verify::{Checked, UNCHECKED, checked, unchecked, verify};
+use linkwright::internals::app::results_folder::parse_record;
+use linkwright::internals::app::run::{Context, prove, run};
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::certificate::{Proof, Request};
+use linkwright::internals::judge::verify::{Checked, UNCHECKED, checked, unchecked, verify};
+use linkwright::internals::record::Record;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};

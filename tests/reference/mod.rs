@@ -6,7 +6,7 @@
 
 #![allow(dead_code)] // each test file uses its own part
 
-use linkwright::linkage::{AssemblyMode, Complex, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, NaturalCoordinates};
 use num_dual::DualNum;
 use proptest::prelude::*;
 use std::f64::consts::TAU;

@@ -2,17 +2,18 @@
 //! answers, warnings and what can be built.
 
 use crate::common::{bytes, literature, parse, run_on};
-use linkwright::assess::assess;
-use linkwright::linkage::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
-use linkwright::problem::Problem;
-use linkwright::record::{Candidate, Record, Warning, WarningKind};
-use linkwright::search::buildable::buildable;
-use linkwright::search::cognates::{self, cognates};
-use linkwright::search::family::dimension;
-use linkwright::search::rank::{chosen, count_distinct, distinct, divided};
-use linkwright::search::warnings::{is_serious, warnings};
-use linkwright::search::{Budget, plan};
-use linkwright::verify::verify;
+use linkwright::internals::judge::assess::assess;
+use linkwright::internals::judge::cognates::cognates;
+use linkwright::internals::judge::family::dimension;
+use linkwright::internals::judge::rank::{chosen, count_distinct, distinct, divided};
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::judge::warnings::{is_serious, warnings};
+use linkwright::internals::mechanism::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
+use linkwright::internals::record::{Candidate, Record, Warning, WarningKind};
+use linkwright::internals::synthesis::buildable::buildable;
+use linkwright::internals::synthesis::offered_cognates;
+use linkwright::internals::synthesis::{Budget, plan};
+use linkwright::internals::task::Problem;
 use std::sync::atomic::AtomicBool;
 
 fn is_true(record: &Record) {
@@ -31,7 +32,7 @@ fn found(problem: &Problem) -> Vec<Candidate> {
     outcome.candidates.into_iter().chain(outcome.others).collect()
 }
 
-fn joints(candidate: &Candidate) -> [linkwright::linkage::Complex; 4] {
+fn joints(candidate: &Candidate) -> [linkwright::internals::mechanism::Complex; 4] {
     let joints = candidate
         .linkage
         .position_with(candidate.crank_deg[0].to_radians(), candidate.t1_at[0])
@@ -99,7 +100,7 @@ fn an_exact_answer_to_many_points_stands_alone_and_a_poor_one_has_no_family() {
         crank_side: 3.0,
         follower_side: 2.5,
         assembly: AssemblyMode::Plus,
-        side: linkwright::linkage::CouplerSide::Plus,
+        side: linkwright::internals::mechanism::CouplerSide::Plus,
     })
     .expect("it is one");
     let deg: Vec<f64> = (0..20).map(|i| 18.0 * f64::from(i)).collect();
@@ -113,7 +114,7 @@ fn an_exact_answer_to_many_points_stands_alone_and_a_poor_one_has_no_family() {
     let candidate = assess(&problem, &linkage, &deg, &[AssemblyMode::Plus; 20]).expect("it closes");
     assert!(candidate.accepted && candidate.error.sum_sq < 1e-24);
     assert_eq!(dimension(&problem, &candidate), Some(0));
-    assert_eq!(linkwright::search::family::family(&problem, &candidate), None);
+    assert_eq!(linkwright::internals::judge::family::family(&problem, &candidate), None);
     let record = run_on(1, literature("k18", &[("solve.candidates", "1")]));
     assert_eq!(record.family, None);
 }
@@ -188,7 +189,7 @@ fn the_better_cognate_takes_the_candidates_place() {
     let endless = Budget { cancel: &flag, deadline: None };
     for start in forms.iter().chain([&best]) {
         let mut list = vec![start.clone()];
-        cognates::offer(&problem, &mut list, &endless);
+        offered_cognates::offer(&problem, &mut list, &endless);
         let first = &list[0];
         assert!(first.accepted);
         assert_eq!(first.alternatives.len(), 2);
@@ -200,7 +201,7 @@ fn the_better_cognate_takes_the_candidates_place() {
         }
         // Whichever of the three was found, the same one is given.
         let mut from_best = vec![best.clone()];
-        cognates::offer(&problem, &mut from_best, &endless);
+        offered_cognates::offer(&problem, &mut from_best, &endless);
         assert!((first.linkage.crank() - from_best[0].linkage.crank()).abs() < 1e-9);
         assert!((first.linkage.crank_pivot() - from_best[0].linkage.crank_pivot()).norm() < 1e-9);
     }
@@ -356,9 +357,9 @@ fn a_far_target_is_offered_the_same_linkage() {
 
 #[test]
 fn the_table_says_what_stands_beside_the_candidates() {
-    use linkwright::report::Colour;
-    use linkwright::report::svg::candidate_svg;
-    use linkwright::report::table::candidates_table;
+    use linkwright::internals::report::Colour;
+    use linkwright::internals::report::svg::candidate_svg;
+    use linkwright::internals::report::table::candidates_table;
     let record = run_on(2, literature("a6b", &[("solve.candidates", "1")]));
     let text = candidates_table(&record, Colour::Never);
     for line in ["#1: worst transmission angle", "it will jam", "buildable (beside the table): sum of sq"] {

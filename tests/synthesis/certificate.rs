@@ -1,9 +1,11 @@
 //! The certificate: chart, balls, the bound of a box, each rule that discards, the search.
 
-use linkwright::certificate::search::{in_cognate_half, outside};
-use linkwright::certificate::{Ball, Cell, Class, Outcome, Point, Question, Search, Target, bound};
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
-use linkwright::solve::streams::{Stream, stream, unit};
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
+use linkwright::internals::numbers::bound::bound;
+use linkwright::internals::numbers::bound::search::{in_cognate_half, outside};
+use linkwright::internals::numbers::bound::{Ball, Outcome, Point, Question, Search, Target};
+use linkwright::internals::numbers::leaves::{Cell, Class};
 
 pub const K18: [[f64; 2]; 18] = [
     [0.5, 1.1],

@@ -3,16 +3,15 @@
 use crate::certificate::{cell, directions, draws, points_of};
 use crate::certificate_leaves::{sealed, stopped, whole};
 use crate::common::{job, literature};
-use linkwright::certificate::absolute::bound;
-use linkwright::certificate::checker::region::{Claim, Region, Shown};
-use linkwright::certificate::leaves::root;
-use linkwright::certificate::{
-    Axis, Cell, CheckError, Class, Leaves, Lengths, Line, Outcome, Point, Proof, Question, Request, Search,
-    Target, check,
-};
-use linkwright::record::Record;
-use linkwright::run::{Context, run};
-use linkwright::solve::streams::{Stream, stream, unit};
+use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::judge::certificate::{CheckError, Proof, Request, check};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
+use linkwright::internals::numbers::bound::absolute::{bound, exclude};
+use linkwright::internals::numbers::bound::{Outcome, Point, Question, Search, Target};
+use linkwright::internals::numbers::checker::region::{Claim, Region, Shown};
+use linkwright::internals::numbers::leaves::root;
+use linkwright::internals::numbers::leaves::{Axis, Cell, Class, Leaves, Lengths, Line};
+use linkwright::internals::record::Record;
 use nalgebra::{Complex, DMatrix, DVector};
 use std::sync::atomic::AtomicBool;
 
@@ -180,7 +179,7 @@ fn no_point_of_a_box_has_a_sum_below_the_certified_one() {
             let cell = task.cell(random, &x);
             let wanted = sum * 10.0_f64.powf(between(random, -1.0, 2.0));
             let found = bound(&target, task.class, &cell, &task.axis.lengths, task.cap, wanted).sum_sq;
-            let outside = task.axis.lengths.exclude(task.class, &cell);
+            let outside = exclude(&task.axis.lengths, task.class, &cell);
             excluded += usize::from(outside);
             if found == 0.0 && !outside {
                 continue;
@@ -356,7 +355,7 @@ fn e5_is_a_proved_optimum() {
     let found = checked(&certificate, &bytes).expect("true");
     assert_eq!(found.leaves, certificate.boxes / 2 + 1);
     // As a file of another question, and with a bound above the best.
-    let subject = linkwright::certificate::Subject::new(&record, 1e-4).expect("a subject");
+    let subject = linkwright::internals::judge::certificate::Subject::new(&record, 1e-4).expect("a subject");
     let mut other = leaves.clone();
     other.parts[0].origin = 1;
     assert_eq!(checked(&subject.certificate(&other), &other.to_bytes()), Err(CheckError::Parts));

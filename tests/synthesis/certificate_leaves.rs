@@ -2,13 +2,14 @@
 
 use crate::certificate::{K18, KINDS, capped_sum, cell, directions, draws, points_of, turns};
 use crate::common::{job, literature};
-use linkwright::certificate::checker::region::{Claim, Region, Shown};
-use linkwright::certificate::{
-    CheckError, Checked, Leaves, LeavesError, Proof, Question, Request, check, leaves::ROOT,
-};
-use linkwright::record::{Certificate, Record};
-use linkwright::run::{Context, run};
-use linkwright::solve::streams::{stream, unit};
+use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::judge::certificate::{CheckError, Checked, Proof, Request, check};
+use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
+use linkwright::internals::numbers::bound::Question;
+use linkwright::internals::numbers::checker::region::{Claim, Region, Shown};
+use linkwright::internals::numbers::leaves::ROOT;
+use linkwright::internals::numbers::leaves::{Leaves, LeavesError};
+use linkwright::internals::record::{Certificate, Record};
 use sha2::{Digest, Sha256};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -134,7 +135,7 @@ fn a_bound_that_was_raised_and_a_rule_that_does_not_hold_are_refused() {
         Err(CheckError::Other { what, .. }) if what == "statement"
     ));
     // In both, above what a known linkage has.
-    let subject = linkwright::certificate::Subject::new(&record, 1e-4).expect("a subject");
+    let subject = linkwright::internals::judge::certificate::Subject::new(&record, 1e-4).expect("a subject");
     let mut raised = leaves.clone();
     for part in &mut raised.parts {
         part.lower_bound = 1.5 * subject.best;
@@ -157,7 +158,8 @@ fn a_bound_that_was_raised_and_a_rule_that_does_not_hold_are_refused() {
 fn what_the_checker_shows_of_a_box_holds_at_its_points() {
     let random = &mut stream(11, 0);
     let size = KINDS.map(|(_, direction)| {
-        let target = linkwright::certificate::Target::new(&K18, &turns(), direction).expect("a target");
+        let target =
+            linkwright::internals::numbers::bound::Target::new(&K18, &turns(), direction).expect("a target");
         target.size_sq()
     });
     let (mut shown, mut near) = (0, 0);
@@ -223,7 +225,7 @@ fn a_closed_certificate_is_proved_by_its_leaves_and_by_nothing_less() {
     // The file of another question: any first crank angle.
     let mut other = leaves.clone();
     other.parts[0].origin = 0;
-    let subject = linkwright::certificate::Subject::new(&record, gap).expect("a subject");
+    let subject = linkwright::internals::judge::certificate::Subject::new(&record, gap).expect("a subject");
     let refused = checked(&record, &subject.certificate(&other), &other.to_bytes());
     assert_eq!(refused, Err(CheckError::Parts));
     // A bound above the best candidate's sum, in the record and in the file: some leaf does not hold it.

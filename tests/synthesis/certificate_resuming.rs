@@ -1,7 +1,7 @@
 //! A search for a certificate that is stopped and goes on ends in the bytes of one that was never broken.
 
 use crate::certificate_leaves::{from_ground, k18, sealed, stopped, whole};
-use linkwright::certificate::{Proof, Request, ResumeError};
+use linkwright::internals::judge::certificate::{Proof, Request, ResumeError};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 const GAP: Request = Request { gap: 1e-4 };

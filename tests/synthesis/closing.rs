@@ -1,12 +1,12 @@
 //! Closed paths: the motion comes back to the first point without reversing, unless the problem allows that.
 
 use crate::common::{parse, run_on};
-use linkwright::problem::Problem;
-use linkwright::record::{Figure, Record, TO_AND_FRO, WarningKind};
-use linkwright::report::Colour;
-use linkwright::report::table::candidates_table;
-use linkwright::task::Defect;
-use linkwright::verify::verify;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::record::{Figure, Record, TO_AND_FRO, WarningKind};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::table::candidates_table;
+use linkwright::internals::task::Defect;
+use linkwright::internals::task::Problem;
 
 /// `n` points of an ellipse or an egg, `k` of its second harmonic.
 fn oval(n: usize, k: f64, tables: &str) -> String {

@@ -1,10 +1,10 @@
 //! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
 
 use crate::common::{bytes, job, literature, load, root, run_on};
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Reason, Record};
-use linkwright::run::{Context, run};
-use linkwright::verify::verify;
+use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::record::{Reason, Record};
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
@@ -118,8 +118,8 @@ fn proposals_that_are_typed_in_end_with_accepted_candidates() {
 /// proposed has to say enough for the problem that was proved.
 #[test]
 fn changes_that_are_typed_give_the_very_problem_that_was_proved() {
-    use linkwright::problem::Problem;
-    use linkwright::search::loosen::{Demand, changes};
+    use linkwright::internals::judge::loosen::{Demand, changes};
+    use linkwright::internals::task::Problem;
     let designs = [
         "",
         "A = [[-20, 20], [-20, 20]]",
@@ -141,7 +141,7 @@ fn changes_that_are_typed_give_the_very_problem_that_was_proved() {
              [require]\ntype = [\"crank-rocker\"]\ntransmission_deg_min = 40\npivots_in = [-30, -30, 30, 30]\n"
         );
         let parse = |set: &[(String, String)]| {
-            let file = linkwright::problem_file::parse("test.toml", &text, None, set);
+            let file = linkwright::internals::files::problem_file::parse("test.toml", &text, None, set);
             file.unwrap_or_else(|e| panic!("{design} {set:?}: {e}")).spec
         };
         let problem = Problem::new(parse(&[])).expect("it is one");
@@ -221,7 +221,7 @@ fn a_clock_that_ends_the_explanation_ends_the_run() {
     // The search is over at once; what follows is cut.
     let file = literature("k18", &[("task.path.tolerance", "0.001"), ("solve.evaluations", "30000")]);
     let cancel = AtomicBool::new(false);
-    let observer = |progress: &linkwright::search::Progress| {
+    let observer = |progress: &linkwright::internals::synthesis::Progress| {
         if progress.phase == "what would help" {
             cancel.store(true, std::sync::atomic::Ordering::Relaxed);
         }
@@ -246,7 +246,8 @@ fn guide(length: f64, seed: u64, evaluations: u64, set: &[(&str, &str)]) -> Prob
         0.75 * length
     );
     let set: Vec<_> = set.iter().map(|(k, v)| ((*k).to_string(), (*v).to_string())).collect();
-    linkwright::problem_file::parse("guide.toml", &text, None, &set).unwrap_or_else(|e| panic!("{e}"))
+    linkwright::internals::files::problem_file::parse("guide.toml", &text, None, &set)
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]

@@ -1,15 +1,15 @@
 //! What requirements cost: the multipliers against solving again at moved limits, and what the record says.
 
 use crate::common::{bytes, literature, load, root, run_on};
-use linkwright::problem::Problem;
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Candidate, Cost};
-use linkwright::search::Budget;
-use linkwright::search::costs::weighted_rms;
-use linkwright::search::loosen::Demand;
-use linkwright::search::multistart::{judged, polish};
-use linkwright::search::warm::start_at;
-use linkwright::verify::verify;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::costs::weighted_rms;
+use linkwright::internals::judge::loosen::Demand;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::judge::warm::start_at;
+use linkwright::internals::record::{Candidate, Cost};
+use linkwright::internals::synthesis::Budget;
+use linkwright::internals::synthesis::multistart::{judged, polish};
+use linkwright::internals::task::Problem;
 use std::sync::atomic::AtomicBool;
 
 /// The error where the limit of a cost has been moved outward by `room`, fitted from the candidate.
@@ -146,7 +146,12 @@ fn a_weighted_problem_is_priced_in_weighted_errors() {
         points.iter().zip([1, 2, 3, 1, 5, 1]).map(|((x, y), w)| format!("{x},{y},{w}")).collect();
     std::fs::write(folder.path().join("points.csv"), format!("x,y,weight\n{}\n", rows.join("\n")))
         .expect("it can be written");
-    let file = linkwright::problem_file::parse("weighted.toml", &text("weighted"), Some(folder.path()), &[]);
+    let file = linkwright::internals::files::problem_file::parse(
+        "weighted.toml",
+        &text("weighted"),
+        Some(folder.path()),
+        &[],
+    );
     let seen = rates_agree(file.unwrap_or_else(|e| panic!("{e}")));
     assert!(!seen.is_empty());
 }
@@ -170,9 +175,9 @@ fn a_changed_rate_or_a_flattering_total_is_found_out() {
 fn records_without_costs_still_read() {
     let record = run_on(2, literature("k18", &[("solve.candidates", "1")]));
     let text = bytes(&record);
-    let read: linkwright::record::Record = serde_json::from_str(&text).expect("it reads");
+    let read: linkwright::internals::record::Record = serde_json::from_str(&text).expect("it reads");
     assert_eq!(read, record);
     let with = run_on(2, literature("a6", &[]));
-    let read: linkwright::record::Record = serde_json::from_str(&bytes(&with)).expect("it reads");
+    let read: linkwright::internals::record::Record = serde_json::from_str(&bytes(&with)).expect("it reads");
     assert_eq!(read, with);
 }

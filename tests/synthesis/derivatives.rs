@@ -1,14 +1,15 @@
 //! The derivatives that the local searches use, by the public check, on random starts of every kind of task.
 
 use crate::common::parse;
-use linkwright::problem::Problem;
-use linkwright::problem::timed::TimedFit;
-use linkwright::problem::torus::TorusFit;
-use linkwright::search::starts::{Start, Starts};
-use linkwright::solve::levenberg_marquardt::{
+use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, ConstraintRow, LmOptions, LmOutcome, PointBlock, derivative_error, solve,
 };
-use linkwright::solve::streams::stream;
+use linkwright::internals::synthesis::starts::Starts;
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::start::Start;
+use linkwright::internals::task::forms::timed::TimedFit;
+use linkwright::internals::task::forms::torus::TorusFit;
 
 /// Differences of 1e-6 of a number near 1 carry 1e-10 of rounding and 1e-12 of curvature; starts near a toggle
 /// have third derivatives of up to some thousands.

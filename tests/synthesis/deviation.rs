@@ -2,17 +2,17 @@
 //! holds.
 
 use crate::common::{bytes, literature, parse, run_on};
-use linkwright::problem::Problem;
-use linkwright::problem::fitness::PathFitness;
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Candidate, Figure, Record};
-use linkwright::report::Colour;
-use linkwright::report::table::candidates_table;
-use linkwright::search::Budget;
-use linkwright::search::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
-use linkwright::search::polish::finish;
-use linkwright::search::warm::start_at;
-use linkwright::verify::verify;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::judge::warm::start_at;
+use linkwright::internals::record::{Candidate, Figure, Record};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::table::candidates_table;
+use linkwright::internals::synthesis::Budget;
+use linkwright::internals::synthesis::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use linkwright::internals::synthesis::polish::finish;
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::fitness::PathFitness;
 use std::sync::atomic::AtomicBool;
 
 const LARGEST: (&str, &str) = ("solve.objective", "max-deviation");
@@ -86,13 +86,15 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
     let problem = Problem::new(parse(&text).spec).expect("it is one");
     let start = start_at(&problem, best).expect("it closes");
     let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
-    let mut stream = linkwright::solve::streams::stream(3, 0);
+    let mut stream = linkwright::internals::numbers::arithmetic::streams::stream(3, 0);
     for _ in 0..200 {
         let mut moved = start.clone();
         for value in &mut moved.design {
-            *value += 1e-3 * linkwright::solve::streams::uniform(&mut stream, -1.0, 1.0) * value.abs();
+            *value += 1e-3
+                * linkwright::internals::numbers::arithmetic::streams::uniform(&mut stream, -1.0, 1.0)
+                * value.abs();
         }
-        let settled = linkwright::search::multistart::settle_positions(
+        let settled = linkwright::internals::synthesis::multistart::settle_positions(
             &problem,
             &moved.design,
             moved.setting,

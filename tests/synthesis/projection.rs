@@ -2,12 +2,12 @@
 //! best ones, its Jacobian gives the gradient, and eight lanes give the bits of one.
 
 use crate::common::parse;
-use linkwright::linkage::{AssemblyMode, Complex};
-use linkwright::problem::Problem;
-use linkwright::problem::projection::{Batch, ProjectedFit, Projection, Reduced, UNKNOWNS};
-use linkwright::solve::compact_lm::CompactLeastSquares;
-use linkwright::solve::streams::{Stream, stream, uniform};
-use linkwright::task::{AngleOffset, Timing};
+use linkwright::internals::mechanism::{AssemblyMode, Complex};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
+use linkwright::internals::numbers::optimise::compact_lm::CompactLeastSquares;
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, UNKNOWNS};
+use linkwright::internals::task::{AngleOffset, Timing};
 use std::f64::consts::PI;
 
 const POINTS: &str =
@@ -158,7 +158,7 @@ fn no_neighbouring_coupler_point_or_pivot_fits_better() {
     for x in usable(&form, AssemblyMode::Minus, 20) {
         let solution = fit.solution(&x).expect("usable");
         let Timing::Prescribed { crank_angles, .. } = problem.task().timing() else { panic!("prescribed") };
-        let cost_of = |shape: &linkwright::problem::design_space::Shape, offset: f64| {
+        let cost_of = |shape: &linkwright::internals::task::forms::design_space::Shape, offset: f64| {
             let linkage = shape.linkage(AssemblyMode::Minus).expect("it is one");
             let angles: Vec<f64> = crank_angles.iter().map(|psi| offset + psi).collect();
             problem.task().errors(&linkage, &angles, &[AssemblyMode::Minus; 7]).expect("closed").objective

@@ -1,20 +1,21 @@
 //! The population searches in reduced variables: what is found, how much cheaper, and when they are refused.
 
 use crate::common::{bytes, literature, parse, run_on};
-use linkwright::linkage::{AssemblyMode, CouplerSide};
-use linkwright::problem::Problem;
-use linkwright::problem::design_space::Shape;
-use linkwright::problem::fitness::PathFitness;
-use linkwright::problem::projection::{ProjectedFit, Projection};
-use linkwright::problem::reduced::{Refusal, refusal};
-use linkwright::problem::spec::Variables;
-use linkwright::problem_file::{self, ProblemFile};
-use linkwright::record::Record;
-use linkwright::run::digest;
-use linkwright::search::reduced::{ReducedFitness, forms};
-use linkwright::solve::population::{PopulationProblem, draw_uniform};
-use linkwright::solve::streams::stream;
-use linkwright::verify::verify;
+use linkwright::internals::files::problem_file;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide};
+use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::numbers::optimise::population::{PopulationProblem, draw_uniform};
+use linkwright::internals::record::Record;
+use linkwright::internals::record::digest::digest;
+use linkwright::internals::synthesis::reduced::{ReducedFitness, forms};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::fitness::PathFitness;
+use linkwright::internals::task::forms::projection::{ProjectedFit, Projection};
+use linkwright::internals::task::forms::reduced::{Refusal, refusal};
+use linkwright::internals::task::spec::Variables;
 
 const DE: &str = "differential-evolution";
 
@@ -167,11 +168,11 @@ fn the_variables_arrive_are_recorded_and_decide_the_digest() {
     let written = serde_json::to_string(&reduced.spec).expect("it is data");
     assert!(written.contains("\"variables\":\"reduced\""));
     assert_eq!(
-        serde_json::from_str::<linkwright::problem::spec::ProblemSpec>(&written).expect("it is one"),
+        serde_json::from_str::<linkwright::internals::task::spec::ProblemSpec>(&written).expect("it is one"),
         reduced.spec
     );
     let before = written.replace("\"variables\":\"reduced\",", "");
-    let old: linkwright::problem::spec::ProblemSpec =
+    let old: linkwright::internals::task::spec::ProblemSpec =
         serde_json::from_str(&before).expect("older records are read");
     assert_eq!(old.solve.variables, Variables::Nine);
     let record = run_on(1, reduced);
@@ -239,10 +240,10 @@ fn what_a_linear_fit_cannot_hold_is_refused_and_what_it_can_is_not() {
 
 #[test]
 fn a_caller_without_a_file_gets_the_refusal_as_an_error() {
-    use linkwright::search::{Budget, plan};
+    use linkwright::internals::synthesis::{Budget, plan};
     let mut spec = asked("k18", DE, "nine", 100, 1).spec;
     spec.solve.variables = Variables::Reduced;
-    spec.design.coupler_x = Some(linkwright::problem::spec::Limits(0.5, 0.5));
+    spec.design.coupler_x = Some(linkwright::internals::task::spec::Limits(0.5, 0.5));
     let problem = Problem::new(spec).expect("it is one");
     assert_eq!(refusal(&problem), Some(Refusal::Fixed { key: "coupler_x" }));
     let cancel = std::sync::atomic::AtomicBool::new(false);

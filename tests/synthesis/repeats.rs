@@ -1,7 +1,7 @@
 //! What repeated hits foretell, against simulations of searches with basins of known shares.
 
-use linkwright::record::Repeats;
-use linkwright::solve::streams::{Stream, stream, uniform};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
+use linkwright::internals::record::Repeats;
 
 /// Shares that are uniform on the simplex of `k` basins.
 fn shares(draws: &mut Stream, k: usize) -> Vec<f64> {

@@ -1,8 +1,8 @@
 //! What is required is held by the search, and what the search calls accepted the referee accepts.
 
 use crate::common::{parse, run_on};
-use linkwright::record::{Figure, Record};
-use linkwright::verify::verify;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::record::{Figure, Record};
 use proptest::prelude::*;
 
 /// Twelve points of an egg-shaped curve with extra tables.

@@ -1,11 +1,11 @@
 //! A search that goes on from a checkpoint ends in the same bytes as one that was never broken.
 
 use crate::common::{bytes, job, literature, parse};
-use linkwright::checkpoint::{Checkpoint, Writer};
-use linkwright::problem_file::ProblemFile;
-use linkwright::record::{Reason, Record};
-use linkwright::run::{Context, Job, run_kept};
-use linkwright::search::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::app::checkpoint::{Checkpoint, Writer};
+use linkwright::internals::app::run::{Context, Job, run_kept};
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::record::{Reason, Record};
+use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Mutex;

@@ -2,9 +2,9 @@
 //! and the seed decides it.
 
 use crate::common::{bytes, literature, load, parse, root, run_on};
-use linkwright::linkage::LinkageType;
-use linkwright::record::{Reason, Record};
-use linkwright::verify::verify;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::LinkageType;
+use linkwright::internals::record::{Reason, Record};
 
 fn best(record: &Record) -> f64 {
     record.candidates.first().filter(|c| c.accepted).map_or(f64::INFINITY, |c| c.error.sum_sq)
@@ -164,7 +164,7 @@ fn candidates_are_distinct_curves() {
     for (i, one) in record.candidates.iter().enumerate() {
         for other in &record.candidates[..i] {
             let apart = one.crank_deg.iter().zip(&other.crank_deg).any(|(a, b)| {
-                let at = |c: &linkwright::record::Candidate, deg: f64| {
+                let at = |c: &linkwright::internals::record::Candidate, deg: f64| {
                     c.linkage.position(deg.to_radians()).joints().map(|j| j.coupler_point)
                 };
                 match (at(one, *a), at(other, *b)) {
@@ -199,9 +199,9 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn population_searches_beat_uniform_sampling_tenfold_at_equal_evaluations() {
-    use linkwright::problem::Problem;
-    use linkwright::search::Budget;
-    use linkwright::search::population::{Population, search};
+    use linkwright::internals::synthesis::Budget;
+    use linkwright::internals::synthesis::population::{Population, search};
+    use linkwright::internals::task::Problem;
     use std::sync::atomic::AtomicBool;
     const EVALUATIONS: u64 = 20_000;
     let median_of = |which: Population| {

@@ -1,14 +1,16 @@
 //! Lengths snapped to a stock: exact, judged under the problem as it was, and no worse than trying everything.
 
 use crate::common::{bytes, literature, run_on};
-use linkwright::linkage::{AssemblyMode, Complex, FourBar};
-use linkwright::problem::Problem;
-use linkwright::problem::spec::ProblemSpec;
-use linkwright::record::{Candidate, Reason, Record, Termination};
-use linkwright::search::Budget;
-use linkwright::search::rank::compare;
-use linkwright::snap::{Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap};
-use linkwright::verify::verify;
+use linkwright::internals::judge::rank::compare;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar};
+use linkwright::internals::record::{Candidate, Reason, Record, Termination};
+use linkwright::internals::synthesis::Budget;
+use linkwright::internals::synthesis::snap::{
+    Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap,
+};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::spec::ProblemSpec;
 use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
@@ -178,7 +180,7 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     wish.fixed = Fixed::default().with(Length::A, 20.0);
     assert_eq!(snap(&problem, &candidate, &wish, &budget()), Err(SnapError::NothingToSnap));
     let mut limited = problem.spec().clone();
-    limited.design.a = Some(linkwright::problem::spec::Limits(18.0, 20.5));
+    limited.design.a = Some(linkwright::internals::task::spec::Limits(18.0, 20.5));
     let limited = Problem::new(limited).expect("a problem");
     let refused = snap(&limited, &candidate, &request(7.0, &[Length::A]), &budget());
     assert!(matches!(refused, Err(SnapError::NoStock { key: "a", .. })), "{refused:?}");

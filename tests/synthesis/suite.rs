@@ -2,15 +2,17 @@
 
 use crate::common::{job, literature, parse, root};
 use assert_cmd::Command;
-use linkwright::linkage::AssemblyMode;
-use linkwright::problem::Problem;
-use linkwright::problem::spec::{CertifySpec, Method};
-use linkwright::problem_file::{ProblemFile, Published};
-use linkwright::report::Colour;
-use linkwright::report::suite::{suite_markdown, suite_text};
-use linkwright::run::{Context, run};
-use linkwright::suite::{Options, Step, Suite, suite};
-use linkwright::{published, record};
+use linkwright::internals::app::published;
+use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::app::suite::{Options, Step, suite};
+use linkwright::internals::files::problem_file::{ProblemFile, Published};
+use linkwright::internals::mechanism::AssemblyMode;
+use linkwright::internals::record;
+use linkwright::internals::record::suite::Suite;
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::suite::{suite_markdown, suite_text};
+use linkwright::internals::task::Problem;
+use linkwright::internals::task::spec::{CertifySpec, Method};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -1,10 +1,10 @@
 //! Prescribed timing from many seeds, and targets that a known linkage draws.
 
 use crate::common::{literature, parse, run_on};
-use linkwright::linkage::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
-use linkwright::record::{Reason, Record};
-use linkwright::solve::streams::{Stream, stream, uniform};
-use linkwright::verify::verify;
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::{AssemblyMode, FourBar, LinkageType, NaturalCoordinates};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, uniform};
+use linkwright::internals::record::{Reason, Record};
 
 fn best(record: &Record) -> f64 {
     record.candidates.first().filter(|c| c.accepted).map_or(f64::INFINITY, |c| c.error.sum_sq)
@@ -62,7 +62,7 @@ fn any_linkage(draws: &mut Stream) -> FourBar {
             crank_side: offset[0].hypot(offset[1]),
             follower_side: (offset[0] - coupler).hypot(offset[1]),
             assembly: if number(-1.0, 1.0) < 0.0 { AssemblyMode::Minus } else { AssemblyMode::Plus },
-            side: linkwright::linkage::CouplerSide::Plus,
+            side: linkwright::internals::mechanism::CouplerSide::Plus,
         });
         if let Ok(linkage) = linkage {
             return linkage;

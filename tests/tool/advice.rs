@@ -1,7 +1,7 @@
 //! What stands beside the answers: its time is said by name, and it can be left out.
 
 use assert_cmd::Command;
-use linkwright::record::Record;
+use linkwright::internals::record::Record;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

@@ -1,12 +1,12 @@
 //! The drawings of analyses and of cognates: which sheets there are, sound markup, no number that isn't one.
 
 use crate::common::root;
-use linkwright::analysis::{Analysis, PositionMethod, Request, analyze, full_turn};
-use linkwright::linkage::motion::CrankMotion;
-use linkwright::linkage::{AssemblyMode, FourBar, point};
-use linkwright::linkage_file;
-use linkwright::record::Unit;
-use linkwright::report::analysis_sheets::{CYCLE_ROWS, analysis_svg, cognates_svg};
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::analysis::{Analysis, PositionMethod, Request, analyze, full_turn};
+use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
+use linkwright::internals::mechanism::{AssemblyMode, FourBar, point};
+use linkwright::internals::report::analysis_sheets::{CYCLE_ROWS, analysis_svg, cognates_svg};
 
 const POSITIONS: &str = "Positions";
 const CONSTRUCTION: &str = "Construction by arcs";

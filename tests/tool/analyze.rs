@@ -153,14 +153,22 @@ fn cognates_are_written_as_linkage_files_that_trace_the_same_curve() {
     let hoeken = shipped("linkages/hoeken.toml");
     let run = linkwright(folder.path(), &["cognates", &hoeken, "--out", "two", "--svg", "all.svg"]);
     assert_eq!(run.code, 0, "{}", run.stderr);
-    let original = linkwright::linkage_file::load(Path::new(&hoeken)).expect("it is one").linkage;
+    let original =
+        linkwright::internals::files::linkage_file::load(Path::new(&hoeken)).expect("it is one").linkage;
     for n in [1, 2] {
         let path = folder.path().join(format!("two/hoeken-cognate-{n}.toml"));
-        let cognate = linkwright::linkage_file::load(&path).expect("it is one").linkage;
+        let cognate = linkwright::internals::files::linkage_file::load(&path).expect("it is one").linkage;
         let start = cognate.mobility().toggles().first().map_or(0.5, |t| t.crank_angle + 1e-3);
         let curves: Vec<_> = [start, -start]
             .iter()
-            .map(|at| linkwright::linkage::CouplerCurve::through(&cognate, *at, cognate.assembly(), 2000))
+            .map(|at| {
+                linkwright::internals::mechanism::CouplerCurve::through(
+                    &cognate,
+                    *at,
+                    cognate.assembly(),
+                    2000,
+                )
+            })
             .collect();
         for i in 0..36 {
             let point =

@@ -3,8 +3,8 @@
 //! To word a message anew, change it, run this test, read what it says and put that into
 //! the `.expected` file.
 
-use linkwright::diagnostic::Diagnostic;
-use linkwright::{linkage_file, points_file, problem_file};
+use linkwright::internals::files::diagnostic::Diagnostic;
+use linkwright::internals::files::{linkage_file, points_file, problem_file};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

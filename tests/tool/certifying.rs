@@ -2,7 +2,7 @@
 
 use crate::common::root;
 use assert_cmd::Command;
-use linkwright::record::Record;
+use linkwright::internals::record::Record;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

@@ -2,7 +2,7 @@
 
 use crate::common::root;
 use assert_cmd::Command;
-use linkwright::record::Record;
+use linkwright::internals::record::Record;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -172,7 +172,10 @@ fn a_bare_drawing_runs_with_defaults_and_verifies() {
     let run = answer(linkwright(folder.path()).args(["synth", "oval.svg", "--quiet"]).args(short));
     assert!(run.code <= 1 && run.stderr.is_empty(), "{}", run.stderr);
     assert!(run.stdout.contains("12 points") && run.stdout.contains("closed"), "{}", run.stdout);
-    assert_eq!(record(&folder.path().join("results/oval")).problem.unit, Some(linkwright::record::Unit::Mm));
+    assert_eq!(
+        record(&folder.path().join("results/oval")).problem.unit,
+        Some(linkwright::internals::mechanism::Unit::Mm)
+    );
     assert_eq!(answer(linkwright(folder.path()).args(["verify", "results/oval"])).code, 0);
     let check = answer(linkwright(folder.path()).args(["check", "oval.svg"]));
     assert!(check.stdout.contains("60 points of a closed curve, size 62.0"), "{}", check.stdout);

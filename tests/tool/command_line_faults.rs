@@ -1,7 +1,7 @@
 //! Faults of the command line that were found from outside, each with its siblings.
 
 use crate::common::root;
-use linkwright::record::{Reason, Record};
+use linkwright::internals::record::{Reason, Record};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

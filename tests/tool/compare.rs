@@ -3,14 +3,15 @@
 use crate::common::root;
 use crate::report::records::{detail, ellipse, k18};
 use assert_cmd::Command;
-use linkwright::linkage_file;
-use linkwright::problem::spec::Measure;
-use linkwright::record::{Record, Unit};
-use linkwright::report::Colour;
-use linkwright::report::compare::{
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::numbers::arithmetic::streams::{below, stream, unit};
+use linkwright::internals::record::Record;
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::compare::{
     Entry, Point, SortKey, compare, front, in_one_unit, percent_above, scaled, times,
 };
-use linkwright::solve::streams::{below, stream, unit};
+use linkwright::internals::task::spec::Measure;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -255,7 +256,7 @@ fn nothing_in_a_label_or_a_record_becomes_markup() {
     let mut comparison = compare(&all, &[SortKey::Rms], Some(0));
     comparison
         .left_out
-        .push(linkwright::report::compare::LeftOut { label: hostile.into(), why: hostile.into() });
+        .push(linkwright::internals::report::compare::LeftOut { label: hostile.into(), why: hostile.into() });
     let html = comparison.html();
     assert_eq!(html.matches("<script").count(), 2, "the data and the script of the page alone");
     assert_eq!(html.matches("</script").count(), 2);

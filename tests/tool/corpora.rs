@@ -67,9 +67,9 @@ fn checkpoints() {
 #[test]
 #[ignore = "writes into the project"]
 fn remake_the_corpus_of_checkpoints() {
-    use linkwright::checkpoint::Writer;
-    use linkwright::run::{Context, run_kept};
-    use linkwright::search::keeper::{Keeper, Pace, SearchState};
+    use linkwright::internals::app::checkpoint::Writer;
+    use linkwright::internals::app::run::{Context, run_kept};
+    use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
     use std::collections::BTreeSet;
     use std::sync::Mutex;
     let folder = root().join("tests/corpora/checkpoint");

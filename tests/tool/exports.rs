@@ -5,10 +5,10 @@ mod dxf;
 use self::dxf::tags;
 use crate::common::root;
 use assert_cmd::Command;
-use linkwright::export::{Format, Settings, Subject, export};
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
-use linkwright::plates::{Link, Plate};
-use linkwright::record::Unit;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::plates::{Link, Plate};
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::report::export::{Format, Settings, Subject, export};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -261,7 +261,7 @@ fn scad_parameters_are_the_linkage_in_millimetres() {
 fn linkage_files_read_back_and_scale() {
     let subject = &subjects()[1];
     let toml = text(subject, Format::Toml, &[("scale", "2")]);
-    let read = linkwright::linkage_file::parse("x.toml", &toml).expect("a linkage file");
+    let read = linkwright::internals::files::linkage_file::parse("x.toml", &toml).expect("a linkage file");
     let n = subject.linkage.natural_coordinates();
     assert_eq!((read.unit, read.name.as_str()), (Some(Unit::In), "test"));
     assert_eq!(read.linkage.natural_coordinates().crank, 2.0 * n.crank);
@@ -323,11 +323,13 @@ fn hostile_names_break_out_of_no_format() {
                 assert_eq!(out.matches("cube").count(), 1);
             }
             Format::Toml => {
-                linkwright::linkage_file::parse("x.toml", &out).expect("a linkage file");
+                linkwright::internals::files::linkage_file::parse("x.toml", &out).expect("a linkage file");
             }
             Format::Json => {
                 let json: serde_json::Value = serde_json::from_str(&out).expect("JSON");
-                assert!(linkwright::name::check(json["name"].as_str().expect("a name")).is_ok());
+                assert!(
+                    linkwright::internals::files::name::check(json["name"].as_str().expect("a name")).is_ok()
+                );
             }
             _ => {}
         }

@@ -1,9 +1,9 @@
 //! Machines are switched off and disks are full: no torn file, no lost result, and an error that says what to do.
 
 use crate::common::root;
-use linkwright::checkpoint;
-use linkwright::results_folder::{ResultsFolder, read_record};
-use linkwright::solve::streams::{Stream, below, stream, unit};
+use linkwright::internals::app::checkpoint;
+use linkwright::internals::app::results_folder::{ResultsFolder, read_record};
+use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, unit};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;

@@ -1,12 +1,12 @@
 //! Numbers in the prose of the documents are those of the program.
 
 use crate::common::root;
-use linkwright::linkage::lane::LANES;
-use linkwright::linkage::transmission::POOR_DEG;
-use linkwright::problem::spec::SolveSpec;
-use linkwright::record::GENERIC_CLASSES;
-use linkwright::search::atlas::ENTRIES;
-use linkwright::search::free::LEAST_MATCHED;
+use linkwright::internals::mechanism::four_bar::transmission::POOR_DEG;
+use linkwright::internals::numbers::arithmetic::lane::LANES;
+use linkwright::internals::record::GENERIC_CLASSES;
+use linkwright::internals::synthesis::atlas::ENTRIES;
+use linkwright::internals::synthesis::free::LEAST_MATCHED;
+use linkwright::internals::task::spec::SolveSpec;
 use std::fs;
 
 /// With commas between thousands.

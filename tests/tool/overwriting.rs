@@ -1,7 +1,7 @@
 //! Files of a user stay: every door that writes a file where it is told, onto everything that linkwright did not write.
 
 use crate::common::root;
-use linkwright::export::Format;
+use linkwright::internals::report::export::Format;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};

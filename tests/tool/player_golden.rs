@@ -6,11 +6,11 @@
 use crate::common::root;
 use crate::random::{TYPES, linkage};
 use crate::report::records::{detail, k18, rocking, shapes};
-use linkwright::linkage::motion::{CrankMotion, Motion};
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, xy};
-use linkwright::record::Record;
-use linkwright::report::html::report_html;
-use linkwright::solve::streams::stream;
+use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, Motion};
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, xy};
+use linkwright::internals::numbers::arithmetic::streams::stream;
+use linkwright::internals::record::Record;
+use linkwright::internals::report::html::report_html;
 use serde_json::{Value, json};
 
 /// The crank's motion in the file.
@@ -54,7 +54,7 @@ fn motions(record: &Record) -> Vec<Value> {
     let data =
         page.split("id=\"data\">").nth(1).and_then(|rest| rest.split("</script>").next()).expect("data");
     let data: Value = serde_json::from_str(data).expect("JSON");
-    let of = |(i, candidate): (usize, &linkwright::record::Candidate)| {
+    let of = |(i, candidate): (usize, &linkwright::internals::record::Candidate)| {
         let reached: Vec<Value> = candidate
             .crank_deg
             .iter()

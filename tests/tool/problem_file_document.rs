@@ -3,7 +3,7 @@
 //! `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool problem_file_document`.
 
 use crate::common::root;
-use linkwright::schema::{SchemaKind, reference, schema};
+use linkwright::internals::files::schema::{SchemaKind, reference, schema};
 use std::fs;
 
 #[test]
@@ -34,7 +34,8 @@ fn the_examples_of_the_linkage_file_are_linkage_files() {
         assert!(blocks.iter().any(|block| block.contains(table)), "an example of {table}");
     }
     for block in blocks {
-        linkwright::linkage_file::parse_any("example.toml", block).expect("it is a linkage file");
+        linkwright::internals::files::linkage_file::parse_any("example.toml", block)
+            .expect("it is a linkage file");
     }
 }
 

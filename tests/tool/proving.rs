@@ -1,7 +1,7 @@
 //! `solve.certify`: a certificate after the search, or why there is none and what repeated hits say instead.
 
 use crate::common::root;
-use linkwright::record::Record;
+use linkwright::internals::record::Record;
 use std::fs;
 use std::path::Path;
 use std::process::Command;

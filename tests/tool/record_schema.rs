@@ -1,7 +1,7 @@
 //! `schema record`: every record is what the schema says, and a record that is not is told from it.
 
 use crate::common::root;
-use linkwright::schema::{SchemaKind, schema};
+use linkwright::internals::files::schema::{SchemaKind, schema};
 use serde_json::Value;
 use std::fs;
 use std::process::{Command, Stdio};

@@ -1,7 +1,7 @@
 //! A remedy that a message names is one that the reader takes.
 
 use crate::common::root;
-use linkwright::problem_file;
+use linkwright::internals::files::problem_file;
 use std::fs;
 use std::path::{Path, PathBuf};
 

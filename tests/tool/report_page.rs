@@ -2,13 +2,13 @@
 
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
-use linkwright::generator::FileKind;
-use linkwright::linkage::AssemblyMode;
-use linkwright::practicality::{Build, Practicality, millimetre};
-use linkwright::problem::Problem;
-use linkwright::record::*;
-use linkwright::report::html::{Extent, report_html, report_with_drawings};
-use linkwright::task::Defect;
+use linkwright::internals::files::generator::FileKind;
+use linkwright::internals::judge::practicality::{Build, Practicality, millimetre};
+use linkwright::internals::mechanism::AssemblyMode;
+use linkwright::internals::record::*;
+use linkwright::internals::report::html::{Extent, report_html, report_with_drawings};
+use linkwright::internals::task::Defect;
+use linkwright::internals::task::Problem;
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
@@ -382,7 +382,7 @@ fn what_it_takes_to_build_the_best_and_the_buildable_one_is_told() {
     assert!(section.contains(&format!("The worst dimension is {}.", felt.worst_dimension().name)));
     let distances = found.distances.expect("it closes");
     let nearest = distances.iter().find(|d| !d.fixed).expect("one that changes");
-    assert!(section.contains(&linkwright::report::text::significant(nearest.closest.value, 4)));
+    assert!(section.contains(&linkwright::internals::report::text::significant(nearest.closest.value, 4)));
     // One job of many leaves it to `report`.
     let brief = report_with_drawings(&record, 0, &[], Extent::Brief);
     assert!(
@@ -403,7 +403,7 @@ fn the_player_gets_every_digit_of_every_mechanism() {
     let keys: Vec<&str> = mechanisms.iter().map(|m| m["key"].as_str().expect("a key")).collect();
     assert_eq!(keys.len(), 5 * 3 + 1 + 1);
     assert!(keys.starts_with(&["c1", "c1a1", "c1a2", "c2"]) && keys.ends_with(&["b", "x1"]), "{keys:?}");
-    let first: linkwright::linkage::FourBar =
+    let first: linkwright::internals::mechanism::FourBar =
         serde_json::from_value(mechanisms[0]["linkage"].clone()).expect("a linkage");
     assert_eq!(first, record.candidates[0].linkage);
     let angles: Vec<f64> = serde_json::from_value(mechanisms[0]["crank_deg"].clone()).expect("angles");
@@ -541,9 +541,9 @@ fn pages_for_the_test_in_a_browser_are_written() {
 
 #[test]
 fn a_page_has_one_verdict_on_a_transmission_angle() {
-    use linkwright::linkage::transmission::ForceTransmission;
-    use linkwright::problem::Problem;
-    use linkwright::search::warnings::warnings;
+    use linkwright::internals::judge::warnings::warnings;
+    use linkwright::internals::mechanism::four_bar::transmission::ForceTransmission;
+    use linkwright::internals::task::Problem;
     let words = [
         ForceTransmission::Good,
         ForceTransmission::Fair,

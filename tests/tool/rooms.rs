@@ -1,7 +1,9 @@
-//! The house as lib.rs draws it: which room may use which.
+//! The house as `src/lib.rs` shows it: which storey may use which, and which file alone names a library.
 
 use crate::common::root;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use syn::visit::{self, Visit};
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
@@ -16,194 +18,199 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// The rooms of the crate that a file's code names.
-fn used(path: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(path).expect("it is text");
-    // Tests may use what they like: those at a file's end, and files that are compiled for tests alone.
-    if text.contains("\n#![cfg(test)]\n") {
-        return Vec::new();
+/// All paths that a file names outside its tests, as lists of names.
+#[derive(Default)]
+struct Paths(Vec<Vec<String>>);
+
+impl Paths {
+    fn of(text: &str) -> Self {
+        let file = syn::parse_file(text).expect("it is Rust");
+        let mut paths = Paths::default();
+        if !is_test(&file.attrs) {
+            paths.visit_file(&file);
+        }
+        paths
     }
-    let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or(&text);
-    let mut rooms = Vec::new();
-    for line in code.lines().filter(|line| !line.trim_start().starts_with("//")) {
-        for part in line.split("crate::").skip(1) {
-            // `use crate::{linkage, task::..}` names several at once.
-            let names: Vec<&str> = match part.strip_prefix('{') {
-                Some(list) => list.trim_end_matches(|c: char| "};".contains(c)).split(", ").collect(),
-                None => vec![part],
-            };
-            for name in names {
-                let room: String = name.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-                if !room.is_empty() {
-                    rooms.push(room);
+
+    fn tree(&mut self, before: &[String], tree: &syn::UseTree) {
+        let and = |name: &syn::Ident| before.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
+        match tree {
+            syn::UseTree::Path(path) => self.tree(&and(&path.ident), &path.tree),
+            syn::UseTree::Name(name) => self.0.push(and(&name.ident)),
+            syn::UseTree::Rename(name) => self.0.push(and(&name.ident)),
+            syn::UseTree::Glob(_) => self.0.push(before.to_vec()),
+            syn::UseTree::Group(group) => group.items.iter().for_each(|tree| self.tree(before, tree)),
+        }
+    }
+}
+
+/// Whether an item is compiled for tests alone.
+fn is_test(attributes: &[syn::Attribute]) -> bool {
+    attributes.iter().any(|attribute| {
+        attribute.path().is_ident("test")
+            || (attribute.path().is_ident("cfg")
+                && attribute.parse_args::<syn::Ident>().is_ok_and(|what| what == "test"))
+    })
+}
+
+impl<'ast> Visit<'ast> for Paths {
+    fn visit_item_use(&mut self, item: &'ast syn::ItemUse) {
+        if !is_test(&item.attrs) {
+            self.tree(&[], &item.tree);
+        }
+    }
+
+    fn visit_item_mod(&mut self, item: &'ast syn::ItemMod) {
+        if !is_test(&item.attrs) {
+            visit::visit_item_mod(self, item);
+        }
+    }
+
+    fn visit_path(&mut self, path: &'ast syn::Path) {
+        self.0.push(path.segments.iter().map(|segment| segment.ident.to_string()).collect());
+        visit::visit_path(self, path);
+    }
+
+    fn visit_macro(&mut self, item: &'ast syn::Macro) {
+        // The arguments of a macro are no syntax tree: their names are read one after the other.
+        let mut names: Vec<String> = Vec::new();
+        let mut open = false;
+        for word in item.tokens.to_string().split_whitespace() {
+            match word {
+                "::" => open = !names.is_empty(),
+                name if open => {
+                    names.push(name.trim_end_matches([',', ')']).to_owned());
+                    open = false;
+                }
+                name => {
+                    self.0.push(std::mem::take(&mut names));
+                    names.push(name.trim_start_matches('(').to_owned());
                 }
             }
         }
+        self.0.push(names);
+        visit::visit_macro(self, item);
     }
-    rooms
+}
+
+/// The table of `src/lib.rs`: each storey with the storeys that it may use; `None`: all.
+fn table() -> BTreeMap<String, Option<BTreeSet<String>>> {
+    let text = std::fs::read_to_string(root().join("src/lib.rs")).expect("it is text");
+    let rows = text.lines().filter_map(|line| line.strip_prefix("//! | `"));
+    rows.map(|row| {
+        let cells: Vec<&str> = row.split(" |").collect();
+        let storey = cells[0].trim_end_matches('`').to_owned();
+        let uses = cells[2].trim();
+        let list = uses.split(", ").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+        (storey, (uses != "everything").then_some(list))
+    })
+    .collect()
+}
+
+/// The storey of a file below `src`; `None` for `lib.rs` and `main.rs`.
+fn storey(file: &Path) -> Option<String> {
+    let below = file.strip_prefix(root().join("src")).expect("below src");
+    let first = below.components().next()?.as_os_str().to_str()?.to_owned();
+    (!first.ends_with(".rs")).then_some(first)
+}
+
+/// The storeys that a file uses, by absolute paths or by so many `super` that they lead out of its storey.
+fn used(file: &Path, storeys: &BTreeSet<String>) -> BTreeSet<String> {
+    let text = std::fs::read_to_string(file).expect("it is text");
+    let mut used = BTreeSet::new();
+    for names in Paths::of(&text).0 {
+        let rest = names.iter().skip_while(|name| *name == "super" || *name == "crate");
+        let leads_out = names.first().is_some_and(|name| name == "crate" || name == "super");
+        let Some(first) = rest.take(1).next().filter(|_| leads_out) else { continue };
+        if names[0] == "crate" || names.iter().filter(|name| *name == "super").count() > 1 {
+            used.extend(storeys.get(first).cloned());
+        }
+    }
+    used
 }
 
 #[test]
-fn every_room_uses_only_what_the_picture_allows() {
-    let allowed: &[(&str, &[&str])] = &[
-        ("linkage", &["linkage"]),
-        ("task", &["task", "linkage"]),
-        ("solve", &["solve"]),
-        ("exact", &["exact", "linkage", "task", "solve"]),
-        ("problem", &["problem", "task", "linkage", "solve", "resampling"]),
-        ("resampling.rs", &[]),
-        ("svg_file.rs", &["diagnostic", "input_text", "linkage", "record"]),
-        ("svg_file", &["diagnostic", "task", "toml_text"]),
-        ("search", &["search", "problem", "task", "linkage", "solve", "exact", "assess", "record"]),
-        (
-            "report",
-            &[
-                "report",
-                "generator",
-                "linkage",
-                "linkage_file",
-                "task",
-                "problem",
-                "record",
-                "analysis",
-                "suite",
-                "plates",
-                "practicality",
-                "snap",
-            ],
-        ),
-        ("published.rs", &["assess", "linkage", "problem", "problem_file", "record", "search"]),
-        ("suite.rs", &["problem", "problem_file", "published", "record", "run", "search"]),
-        ("suite", &["diagnostic", "problem_file", "record"]),
-        ("analysis.rs", &["linkage", "record"]),
-        ("analysis", &["linkage", "record"]),
-        ("export.rs", &["analysis", "generator", "linkage", "linkage_file", "report"]),
-        (
-            "export",
-            &["generator", "linkage", "linkage_file", "name", "plates", "record", "report", "toml_text"],
-        ),
-        ("plates.rs", &["linkage"]),
-        ("plates", &["linkage"]),
-        ("record.rs", &["linkage", "task", "problem"]),
-        ("record", &["linkage", "task", "problem"]),
-        ("assess.rs", &["linkage", "task", "problem", "record"]),
-        ("run.rs", &["assess", "certificate", "problem", "record", "search", "solve", "task"]),
-        ("live.rs", &["assess", "problem", "record", "search"]),
-        ("live", &["exact", "problem", "record", "search"]),
-        ("checkpoint.rs", &["record", "run", "search"]),
-        ("verify.rs", &["assess", "linkage", "problem", "record", "run", "search", "task"]),
-        ("verify", &["assess", "certificate", "linkage", "problem", "record", "search"]),
-        ("given.rs", &["linkage_file", "record", "results_folder"]),
-        (
-            "measured.rs",
-            &[
-                "assess",
-                "diagnostic",
-                "given",
-                "linkage",
-                "linkage_file",
-                "problem",
-                "problem_file",
-                "record",
-                "report",
-                "run",
-                "search",
-                "task",
-                "verify",
-            ],
-        ),
-        ("result_files.rs", &["linkage_file", "name", "record", "report", "results_folder", "run"]),
-        (
-            "saved_run.rs",
-            &[
-                "certificate",
-                "checkpoint",
-                "record",
-                "report",
-                "result_files",
-                "results_folder",
-                "run",
-                "search",
-            ],
-        ),
-        ("results_folder.rs", &["record"]),
-        ("results_folder", &["generator"]),
-        ("generator.rs", &[]),
-        ("practicality.rs", &[]),
-        ("practicality", &["linkage", "plates", "problem", "record", "task"]),
-        ("snap.rs", &["assess", "linkage", "practicality", "problem", "record", "run", "search", "task"]),
-        ("snap", &["assess", "linkage", "practicality", "problem", "record", "run", "search", "task"]),
-        ("certificate", &["linkage", "problem", "record", "task"]),
-        (
-            "studio",
-            &[
-                "assess",
-                "diagnostic",
-                "export",
-                "given",
-                "linkage",
-                "linkage_file",
-                "live",
-                "measured",
-                "name",
-                "points_file",
-                "problem",
-                "problem_file",
-                "record",
-                "report",
-                "results_folder",
-                "run",
-                "saved_run",
-                "search",
-                "studio",
-                "svg_file",
-                "verify",
-            ],
-        ),
-        ("diagnostic.rs", &[]),
-        ("name.rs", &[]),
+fn every_folder_of_src_is_a_storey_of_the_table_and_uses_only_what_its_row_names() {
+    let table = table();
+    let storeys: BTreeSet<String> = table.keys().cloned().collect();
+    assert_eq!(storeys.len(), 9, "{storeys:?}");
+    let mut seen = BTreeSet::new();
+    for file in sources(&root().join("src")) {
+        let Some(own) = storey(&file) else { continue };
+        let may = table.get(&own).unwrap_or_else(|| panic!("{own} has no row in src/lib.rs"));
+        seen.insert(own.clone());
+        // Packages of their own: the compiler holds what they use.
+        if own == "numbers" {
+            continue;
+        }
+        for name in used(&file, &storeys) {
+            let allowed = may.as_ref().is_none_or(|may| may.contains(&name)) || name == own;
+            assert!(allowed, "{} uses {name}", file.display());
+        }
+    }
+    assert_eq!(seen, storeys);
+}
+
+#[test]
+fn a_storey_that_uses_another_is_seen() {
+    let storeys: BTreeSet<String> = ["judge", "synthesis"].map(str::to_owned).into();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("it.rs");
+    for (text, sees) in [
+        ("use crate::{\n    synthesis::plan,\n    record::Record,\n};", true),
+        ("fn f() { let x = crate::synthesis::plan(); }", true),
+        ("fn f() { println!(\"{}\", crate::synthesis::NAME); }", true),
+        ("use super::super::synthesis::plan;", true),
+        ("// crate::synthesis\n#[cfg(test)]\nmod tests { use crate::synthesis::plan; }", false),
+        ("use super::synthesis;", false),
+    ] {
+        std::fs::write(&file, text).expect("written");
+        assert_eq!(!used(&file, &storeys).is_empty(), sees, "{text}");
+    }
+}
+
+/// The dependencies of a package below `src/numbers` on others of this repository, but for its tests.
+fn packages(name: &str) -> BTreeSet<String> {
+    let path = root().join("src/numbers").join(name).join("Cargo.toml");
+    let text = std::fs::read_to_string(path).expect("it is text");
+    let manifest: toml::Table = text.parse().expect("it is TOML");
+    let own = manifest["dependencies"].as_table().expect("a table").keys();
+    own.filter(|key| key.starts_with("linkwright")).cloned().collect()
+}
+
+#[test]
+fn the_checker_shares_nothing_with_the_search_but_the_file_of_the_leaves() {
+    let leaves: BTreeSet<String> = ["linkwright-leaves".to_owned()].into();
+    assert_eq!(packages("checker"), leaves);
+    assert_eq!(packages("bound"), leaves);
+    assert!(packages("leaves").is_empty());
+}
+
+#[test]
+fn a_library_that_could_be_exchanged_is_named_in_one_place() {
+    let places: &[(&str, &[&str])] = &[
+        ("argmin", &["numbers/optimise/argmin_bridge.rs", "numbers/optimise/population_tests.rs"]),
+        ("clarabel", &["numbers/optimise/conic.rs"]),
+        ("clap", &["app/cli"]),
+        ("indicatif", &["app/cli"]),
+        ("ctrlc", &["app/cli"]),
+        ("ariadne", &["app/cli"]),
+        ("axum", &["app/studio"]),
+        ("roxmltree", &["files/svg_file"]),
     ];
-    for (room, may) in allowed {
-        let path = root().join("src").join(room);
-        let files = if path.is_dir() { sources(&path) } else { vec![path] };
-        for file in files {
-            for name in used(&file) {
-                assert!(may.contains(&name.as_str()), "{} uses crate::{name}", file.display());
+    let src = root().join("src");
+    for file in sources(&src) {
+        let text = std::fs::read_to_string(&file).expect("it is text");
+        let below = file.strip_prefix(&src).expect("below src");
+        for names in Paths::of(&text).0 {
+            for (library, allowed) in places {
+                let names_it = names.first().is_some_and(|name| name == library) && names.len() > 1;
+                let inside = allowed.iter().any(|place| below.starts_with(place));
+                assert!(inside || !names_it, "{} names {library}", file.display());
             }
         }
-    }
-}
-
-#[test]
-fn the_command_line_stays_in_its_room() {
-    for file in sources(&root().join("src")) {
-        let inside = file.components().any(|c| c.as_os_str() == "cli");
-        let text = std::fs::read_to_string(&file).expect("it is text");
-        for name in ["clap", "indicatif", "ctrlc", "ariadne"] {
-            let names_it = text.lines().any(|l| {
-                let l = l.trim_start();
-                !l.starts_with("//")
-                    && (l.contains(&format!("{name}::")) || l.contains(&format!("use {name}")))
-            });
-            assert!(inside || !names_it, "{} names {name}", file.display());
-        }
-    }
-}
-
-#[test]
-fn argmin_and_clarabel_are_named_in_one_file_each_and_unsafe_code_stands_in_one() {
-    for file in sources(&root().join("src")) {
-        let text = std::fs::read_to_string(&file).expect("it is text");
-        let code = |line: &&str| !line.trim_start().starts_with("//");
-        let has = |word: &str| text.lines().filter(code).any(|line| line.contains(word));
-        let is = |name: &str| file.ends_with(name);
-        assert!(
-            !has("argmin::") || is("argmin_bridge.rs") || is("population_tests.rs"),
-            "{}",
-            file.display()
-        );
-        assert!(!has("clarabel::") || is("conic.rs"), "{}", file.display());
-        assert!(!has("unsafe ") || is("dispatch.rs"), "{}", file.display());
+        let is_unsafe = text.lines().any(|l| !l.trim_start().starts_with("//") && l.contains("unsafe "));
+        assert!(!is_unsafe || file.ends_with("dispatch.rs"), "{} has unsafe code", file.display());
     }
     let main = std::fs::read_to_string(root().join("src/main.rs")).expect("it is text");
     assert!(main.lines().count() < 40);

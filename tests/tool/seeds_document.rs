@@ -3,11 +3,11 @@
 //! compares. To write it after a change of wording: `LINKWRIGHT_WRITE_DOCS=1 cargo test --test tool seeds_document`.
 
 use crate::reference::shipped_linkage;
-use linkwright::linkage::loop_closure::{
+use linkwright::internals::mechanism::four_bar::loop_closure::{
     Arctangent, IterationOptions, IterationVerdict, LoopRoots, Singularity,
 };
-use linkwright::linkage::motion::{CrankMotion, LinkageMotion, Motion};
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::four_bar::motion::{CrankMotion, LinkageMotion, Motion};
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use std::fmt::Write;
 
 const HEAD: &str = "\
@@ -222,7 +222,8 @@ fn romero(out: &mut String) {
             (j.coupler_point - j.follower_pin).norm() - 5.0,
         ];
         assert!(miss.iter().all(|m| m.abs() <= 8.0 * f64::EPSILON * 5.0), "{miss:?}");
-        let show = |z: linkwright::linkage::Complex| format!("({:.5}, {:.5})", zero(z.re), zero(z.im));
+        let show =
+            |z: linkwright::internals::mechanism::Complex| format!("({:.5}, {:.5})", zero(z.re), zero(z.im));
         writeln!(
             out,
             "| {:+} | {:+} | {} | {} | {} | 1e-14 |",

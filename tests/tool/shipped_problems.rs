@@ -1,9 +1,9 @@
 //! Every file in `problems/` loads, says the same again, and can be written and read back.
 
 use crate::common::{bytes, load, run_on, shipped};
-use linkwright::linkage_file;
-use linkwright::problem::spec::ProblemSpec;
-use linkwright::record::Record;
+use linkwright::internals::files::linkage_file;
+use linkwright::internals::record::Record;
+use linkwright::internals::task::spec::ProblemSpec;
 
 #[test]
 fn every_problem_loads_without_a_warning_and_survives_a_round_trip() {

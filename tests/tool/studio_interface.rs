@@ -4,7 +4,7 @@
 
 use crate::common::root;
 use crate::studio::Studio;
-use linkwright::studio::{messages, openapi};
+use linkwright::internals::app::studio::{messages, openapi};
 use serde_json::Value;
 use std::fs;
 use tempfile::TempDir;

@@ -1,8 +1,8 @@
 //! Targets from drawings: each element with a known geometry, transforms composed by hand, hostile text.
 
-use linkwright::diagnostic::Diagnostic;
-use linkwright::record::Unit;
-use linkwright::svg_file::{SvgOptions, SvgTarget, parse};
+use linkwright::internals::files::diagnostic::Diagnostic;
+use linkwright::internals::files::svg_file::{SvgOptions, SvgTarget, parse};
+use linkwright::internals::mechanism::Unit;
 use proptest::prelude::*;
 use std::f64::consts::{PI, SQRT_2, TAU};
 

@@ -1,12 +1,12 @@
 //! What good files mean: defaults, overrides, habits of spreadsheets, round trips.
 
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
-use linkwright::problem::spec::{Limits, Method, RequireSpec, SolveSpec};
-use linkwright::problem_template::problem_template;
-use linkwright::record::Unit;
-use linkwright::schema::{SchemaKind, schema};
-use linkwright::task::AngleOffset;
-use linkwright::{linkage_file, points_file, problem_file};
+use linkwright::internals::files::problem_template::problem_template;
+use linkwright::internals::files::schema::{SchemaKind, schema};
+use linkwright::internals::files::{linkage_file, points_file, problem_file};
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
+use linkwright::internals::task::AngleOffset;
+use linkwright::internals::task::spec::{Limits, Method, RequireSpec, SolveSpec};
 use proptest::prelude::*;
 
 fn parsed(text: &str) -> problem_file::ProblemFile {
@@ -458,7 +458,7 @@ proptest! {
 
 #[test]
 fn how_a_closed_path_is_closed_is_one_way_or_any() {
-    use linkwright::problem::spec::ClosingPolicy;
+    use linkwright::internals::task::spec::ClosingPolicy;
     let with = |tables: &str| parsed(&format!("{PLAIN}{tables}"));
     assert_eq!(with("").spec.require.closing, ClosingPolicy::OneWay);
     assert_eq!(with("[require]\nclosing = \"any\"\n").spec.require.closing, ClosingPolicy::Any);

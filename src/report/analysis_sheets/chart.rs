@@ -1,8 +1,8 @@
 //! A chart of a few series against the crank angle.
 
-use super::super::canvas::{Anchor, Area, Canvas, Spot, palette, px, text_width};
-use super::super::scene::round_length;
-use super::super::text::{brief, xml};
+use crate::report::canvas::{Anchor, Area, Canvas, Spot, palette, px, text_width};
+use crate::report::scene::round_length;
+use crate::report::text::{brief, xml};
 
 /// A series: values at crank angles, in the order of the angles.
 pub(super) struct Series {

@@ -1,12 +1,12 @@
 //! The four configurations (t1, t2) side by side, each with its coupler curve (Romero, figure 3).
 
-use super::super::canvas::{Anchor, Area, Canvas, Spot, View, palette};
-use super::super::figure::{Detail, draw};
-use super::super::labels::Labels;
-use super::super::scene::{Bounds, Pose, Scene, circuits_through, middle_position};
-use super::super::sheet::{FULL, HEAD, INSET, Sheet, scale_bar};
 use super::{as_joints, closed, degrees, pivots, positions_of, sign};
-use crate::analysis::{Analysis, Configuration};
+use crate::mechanism::analysis::{Analysis, Configuration};
+use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette};
+use crate::report::figure::{Detail, draw};
+use crate::report::labels::Labels;
+use crate::report::scene::{Bounds, Pose, Scene, circuits_through, middle_position};
+use crate::report::sheet::{FULL, HEAD, INSET, Sheet, scale_bar};
 
 /// The number of samples of a circuit: a degree of the crank, in a small drawing.
 const SAMPLES: usize = 360;

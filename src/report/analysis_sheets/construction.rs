@@ -1,16 +1,16 @@
 //! The construction of a position with ruler and compasses: C from the crank angle, D as an intersection of the circle
 //! of radius b about C with the circle of radius c about B.
 
-use super::super::canvas::{Anchor, Canvas, Spot, palette};
-use super::super::labels::Labels;
-use super::super::parts::{away, bars, letter, mark_path, plus, stand};
-use super::super::scene::Bounds;
-use super::super::sheet::{Sheet, arc, fitted, scale_bar};
-use super::super::text::brief;
-use super::super::words;
 use super::{between, closed, degrees, sign};
-use crate::analysis::{Analysis, Configuration};
-use crate::linkage::{Complex, cross};
+use crate::mechanism::analysis::{Analysis, Configuration};
+use crate::mechanism::{Complex, cross};
+use crate::report::canvas::{Anchor, Canvas, Spot, palette};
+use crate::report::labels::Labels;
+use crate::report::parts::{away, bars, letter, mark_path, plus, stand};
+use crate::report::scene::Bounds;
+use crate::report::sheet::{Sheet, arc, fitted, scale_bar};
+use crate::report::text::brief;
+use crate::report::words;
 
 /// The part of the crank's circle that is drawn on both sides of C, in radians.
 const CRANK_ARC: f64 = 0.35;
@@ -197,7 +197,7 @@ fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, t
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linkage::{AssemblyMode, FourBar};
+    use crate::mechanism::{AssemblyMode, FourBar};
 
     fn romero() -> FourBar {
         let pivots = [Complex::new(0.0, 0.0), Complex::new(4.0, 1.0)];

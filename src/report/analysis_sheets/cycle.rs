@@ -1,12 +1,12 @@
 //! Charts of the transmission angle, angles, velocities and accelerations against the crank angle.
 
-use super::super::canvas::{Area, Canvas, palette};
-use super::super::sheet::{FULL, HEAD, INSET, Sheet};
 use super::chart::{Abscissa, Chart, Range, Series};
 use super::vectors::per_time;
 use super::{CYCLE_ROWS, degrees};
-use crate::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
-use crate::linkage::transmission::POOR_DEG;
+use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
+use crate::mechanism::four_bar::transmission::POOR_DEG;
+use crate::report::canvas::{Area, Canvas, palette};
+use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;

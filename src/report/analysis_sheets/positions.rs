@@ -1,14 +1,14 @@
 //! The mechanism at several positions and the path of P over its circuit (De Castro, figure 2.2).
 
-use super::super::canvas::{Anchor, Canvas, Spot, View, palette};
-use super::super::figure::{Detail, draw_among};
-use super::super::labels::Labels;
-use super::super::parts::{away, mark_joints, point_mark, triangle};
-use super::super::scene::{Pose, SAMPLES, Scene, circuits_through, middle_position};
-use super::super::sheet::{Sheet, fitted, scale_bar};
 use super::{as_joints, closed, degrees, pivots, positions_of};
-use crate::analysis::{Analysis, Configuration, Row};
-use crate::linkage::Complex;
+use crate::mechanism::Complex;
+use crate::mechanism::analysis::{Analysis, Configuration, Row};
+use crate::report::canvas::{Anchor, Canvas, Spot, View, palette};
+use crate::report::figure::{Detail, draw_among};
+use crate::report::labels::Labels;
+use crate::report::parts::{away, mark_joints, point_mark, triangle};
+use crate::report::scene::{Pose, SAMPLES, Scene, circuits_through, middle_position};
+use crate::report::sheet::{Sheet, fitted, scale_bar};
 
 /// The largest number of positions that are drawn.
 const MOST: usize = 8;

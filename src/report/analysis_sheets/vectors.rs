@@ -1,15 +1,15 @@
 //! Velocities and accelerations of C, D and P at an instant (De Castro, figures 3.2 and 4.1).
 
-use super::super::canvas::{Anchor, Canvas, Spot, View, palette};
-use super::super::figure::{Detail, draw_among};
-use super::super::labels::Labels;
-use super::super::scene::{Bounds, Pose, SAMPLES, Scene, circuits_through, round_length};
-use super::super::sheet::{INSET, Sheet, arrow, fitted, scale_bar};
-use super::super::text::brief;
 use super::{as_joints, closed, degrees};
-use crate::analysis::{Analysis, Configuration, Rates};
-use crate::linkage::{Complex, point};
-use crate::record::Unit;
+use crate::mechanism::Unit;
+use crate::mechanism::analysis::{Analysis, Configuration, Rates};
+use crate::mechanism::{Complex, point};
+use crate::report::canvas::{Anchor, Canvas, Spot, View, palette};
+use crate::report::figure::{Detail, draw_among};
+use crate::report::labels::Labels;
+use crate::report::scene::{Bounds, Pose, SAMPLES, Scene, circuits_through, round_length};
+use crate::report::sheet::{INSET, Sheet, arrow, fitted, scale_bar};
+use crate::report::text::brief;
 
 /// The length of the longest arrow, as a fraction of the drawing's extent without arrows.
 const LONGEST: f64 = 0.5;

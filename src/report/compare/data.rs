@@ -1,7 +1,7 @@
 //! A comparison as CSV and JSON, for spreadsheets and scripts: every number to the last digit.
 
 use super::{Comparison, Ranked, SortKey};
-use crate::linkage::FourBar;
+use crate::mechanism::FourBar;
 use crate::report::csv::{parameters, written};
 use crate::report::text::{cell, exact};
 use crate::report::words;

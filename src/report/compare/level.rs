@@ -6,8 +6,8 @@
 //! computed from levels.
 
 use super::{Entry, SortKey};
-use crate::problem::spec::Measure;
 use crate::record::{EXACT_MEAN_SQ, MET_TOLERANCE};
+use crate::task::spec::Measure;
 
 /// Returns whether two figures of one kind are equal to a reader; `nothing` is the value below which they count as 0.
 pub(super) fn equal(x: f64, y: f64, nothing: f64) -> bool {

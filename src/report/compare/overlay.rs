@@ -1,7 +1,7 @@
 //! The overlay of a comparison: its coupler curves over the target.
 
 use super::{Comparison, Ranked, SortKey, strokes, tables};
-use crate::linkage::{Complex, point};
+use crate::mechanism::{Complex, point};
 use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
 use crate::report::scene::{Bounds, circuits, round_length};
 use crate::report::text::{brief, clean, shortened, shortened_in_front, significant};

@@ -1,10 +1,10 @@
 //! Conversion of the lengths of several results to one unit.
 
 use super::Entry;
-use crate::linkage::{FourBar, LinkageError};
-use crate::problem::spec::Measure;
-use crate::record::Unit;
+use crate::mechanism::Unit;
+use crate::mechanism::{FourBar, LinkageError};
 use crate::report::text::clean;
+use crate::task::spec::Measure;
 
 fn millimetres(unit: Unit) -> f64 {
     match unit {

@@ -1,7 +1,7 @@
 //! The data of the player: the target and the mechanisms, each with its motion, as JSON.
 
 use super::motion::Drive;
-use crate::linkage::{AssemblyMode, FourBar, MAX_MAGNITUDE};
+use crate::mechanism::{AssemblyMode, FourBar, MAX_MAGNITUDE};
 use crate::record::{Candidate, Record};
 use serde::Serialize;
 
@@ -102,7 +102,7 @@ impl<'a> Data<'a> {
         let pick =
             |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
         Data {
-            unit: record.problem.unit.map(crate::record::Unit::label),
+            unit: record.problem.unit.map(crate::mechanism::Unit::label),
             target: Target {
                 points: chosen.iter().map(|i| path.points[*i]).collect(),
                 numbers: (chosen.len() < path.points.len()).then(|| chosen.clone()),

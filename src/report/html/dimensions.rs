@@ -1,9 +1,10 @@
 //! The exact dimensions, as they are written in a linkage file.
 
 use super::page::escaped;
-use crate::linkage::FourBar;
-use crate::linkage_file::to_toml;
-use crate::record::{Candidate, Record, Unit};
+use crate::files::linkage_file::to_toml;
+use crate::mechanism::FourBar;
+use crate::mechanism::Unit;
+use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::words;
 

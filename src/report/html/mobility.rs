@@ -1,12 +1,12 @@
 //! Mobility and defects in words.
 
 use super::page::escaped;
-use crate::linkage::transmission::ForceTransmission;
-use crate::linkage::{InputRange, LinkageType};
-use crate::problem::spec::TransmissionOver;
+use crate::mechanism::four_bar::transmission::ForceTransmission;
+use crate::mechanism::{InputRange, LinkageType};
 use crate::record::{Candidate, Record};
 use crate::report::text::{brief, significant};
 use crate::report::{table, words};
+use crate::task::spec::TransmissionOver;
 
 /// Returns the linkage's mobility and its motion along the points, as a list.
 pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
@@ -66,7 +66,7 @@ fn of_type(c: &Candidate) -> String {
 /// Returns the range of the input.
 fn range(c: &Candidate) -> String {
     let mobility = c.linkage.mobility();
-    let of = |arc: &crate::linkage::InputArc| {
+    let of = |arc: &crate::mechanism::InputArc| {
         let (low, high) = (arc.middle - arc.half_width, arc.middle + arc.half_width);
         format!("between {}° and {}°", brief(low.to_degrees(), 5), brief(high.to_degrees(), 5))
     };

@@ -48,7 +48,7 @@ pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 
 /// Returns the report of a record, with its candidate `first` (counted from 0) shown first: a whole HTML file.
 ///
-/// It is a pure function of the record. It is made for records that [`verify`](crate::verify::verify) accepts and shows
+/// It is a pure function of the record. It is made for records that [`verify`](crate::judge::verify::verify) accepts and shows
 /// any other without harm. Of more than 400 target points the player gets 400; there are drawings for readers without a
 /// script for the first ten candidates.
 pub fn report_html(record: &Record, first: usize) -> String {

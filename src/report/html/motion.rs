@@ -1,6 +1,6 @@
 //! The drive of a mechanism on the page: the input that moves it, its range, and the places of the points in it.
 
-use crate::linkage::{AssemblyMode, FourBar, InputRange};
+use crate::mechanism::{AssemblyMode, FourBar, InputRange};
 use serde::Serialize;
 
 /// What the player's one parameter q, degrees, stands for.
@@ -56,7 +56,7 @@ impl Drive {
                     .any(|(angle, t1)| *t1 != assembly && mobility.branch(*angle, *t1).circuit == circuit);
                 Drive {
                     kind: if both { DriveKind::Through } else { DriveKind::Rock },
-                    middle_deg: crate::linkage::mobility::wrapped(arc.middle).to_degrees(),
+                    middle_deg: crate::mechanism::four_bar::mobility::wrapped(arc.middle).to_degrees(),
                     half_width_deg: arc.half_width.to_degrees(),
                     t1,
                 }

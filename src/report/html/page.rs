@@ -20,7 +20,7 @@ pub(in crate::report) struct Page<'a> {
     pub(in crate::report) modules: &'a [&'a str],
 }
 
-/// The beginning of every page, with the mark of its generator: [`crate::generator`] looks for it.
+/// The beginning of every page, with the mark of its generator: [`crate::files::generator`] looks for it.
 const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
                                                <meta name=\"generator\" content=\"linkwright ";
 

@@ -4,14 +4,14 @@ use super::Extent;
 use super::body::{paragraph, section};
 use super::page::escaped;
 use super::table::{Cell, head, scrolling};
-use crate::practicality::clearance::PivotDistance;
-use crate::practicality::sensitivity::{Dimension, Sensitivity};
-use crate::practicality::{Build, Practicality, millimetre, usual_tolerance};
-use crate::problem::Problem;
+use crate::judge::practicality::clearance::PivotDistance;
+use crate::judge::practicality::sensitivity::{Dimension, Sensitivity};
+use crate::judge::practicality::{Build, Practicality, millimetre, usual_tolerance};
 use crate::record::{Candidate, Record};
 use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
 use crate::report::text::significant;
+use crate::task::Problem;
 
 /// The number of significant digits of distances and of rates.
 const DIGITS: usize = 4;

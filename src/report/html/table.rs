@@ -3,10 +3,10 @@
 use super::body::section;
 use super::data::{BUILDABLE_KEY, candidate_key};
 use super::page::escaped;
-use crate::problem::spec::{Measure, TransmissionOver};
 use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
+use crate::task::spec::{Measure, TransmissionOver};
 
 /// A cell: its text, and the number by which it is sorted.
 pub(super) struct Cell {

@@ -1,8 +1,8 @@
 //! Closed targets: which motions come back to the first point, and how.
 
 use super::{free, names, of_every_type, task, triple_rocker, verdict};
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, InputRange, NaturalCoordinates};
-use linkwright::task::{AngleOffset, Defect, PathOptions, PathTask, Return, Timing};
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, InputRange, NaturalCoordinates};
+use linkwright::internals::task::{AngleOffset, Defect, PathOptions, PathTask, Return, Timing};
 use std::f64::consts::TAU;
 
 /// Closed, with a rule for the way back.

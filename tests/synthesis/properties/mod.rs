@@ -5,12 +5,12 @@ mod plain;
 mod problems;
 
 use crate::common::{bytes, run_on};
-use linkwright::linkage::LinkageType;
-use linkwright::problem::spec::{
+use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::LinkageType;
+use linkwright::internals::record::Candidate;
+use linkwright::internals::task::spec::{
     DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,
 };
-use linkwright::record::Candidate;
-use linkwright::verify::verify;
 use problems::case;
 
 const SEED: u64 = 20_261_121;

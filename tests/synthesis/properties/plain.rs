@@ -2,12 +2,12 @@
 //! comparisons with the numbers in the problem, and the circuit followed step by step. Of the library only the
 //! position kernel is used, and each position that it gives is checked by its distances.
 
-use linkwright::linkage::{AssemblyMode, Complex, FourBar, Joints, LinkageType};
-use linkwright::problem::spec::{
+use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, Joints, LinkageType};
+use linkwright::internals::record::Candidate;
+use linkwright::internals::task::AngleOffset;
+use linkwright::internals::task::spec::{
     ClosingPolicy, DirectionPolicy, Limits, OnePolicy, OrderPolicy, ProblemSpec, TransmissionOver,
 };
-use linkwright::record::Candidate;
-use linkwright::task::AngleOffset;
 use std::f64::consts::TAU;
 
 /// A requirement is met within 1e-7 max(1, |limit|); twice that, since both sides round.

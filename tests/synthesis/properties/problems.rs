@@ -3,10 +3,11 @@
 #![allow(dead_code, reason = "every user takes its own part of it")]
 
 use crate::random::{TYPES, bounding_box, chance, linkage, log_uniform, noisy, one_of, trace};
-use linkwright::linkage::Complex;
-use linkwright::problem::spec::ClosingPolicy;
-use linkwright::problem_file::{self, ProblemFile};
-use linkwright::solve::streams::{Stream, below, stream, uniform, unit};
+use linkwright::internals::files::problem_file;
+use linkwright::internals::files::problem_file::ProblemFile;
+use linkwright::internals::mechanism::Complex;
+use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, uniform, unit};
+use linkwright::internals::task::spec::ClosingPolicy;
 use std::f64::consts::TAU;
 use std::fmt::Write;
 

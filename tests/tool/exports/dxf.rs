@@ -1,8 +1,8 @@
 //! Exported DXF, read back tag by tag.
 
 use super::{mm, plates_of, subjects, text};
-use linkwright::export::Format;
-use linkwright::linkage::{FourBar, NaturalCoordinates};
+use linkwright::internals::mechanism::{FourBar, NaturalCoordinates};
+use linkwright::internals::report::export::Format;
 
 /// Pairs of code and value.
 pub(super) fn tags(dxf: &str) -> Vec<(u16, String)> {

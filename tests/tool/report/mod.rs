@@ -2,16 +2,19 @@
 
 pub mod records;
 
-use linkwright::linkage::AssemblyMode;
-use linkwright::record::{
-    Change, Conflict, Cost, Figure, LimitUnit, Reason, Record, Relaxation, Requirement, TypedValue, Unit,
+use linkwright::internals::mechanism::AssemblyMode;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::record::{
+    Change, Conflict, Cost, Figure, LimitUnit, Reason, Record, Relaxation, Requirement, TypedValue,
 };
-use linkwright::report::compare::{Entry, SortKey, compare};
-use linkwright::report::csv::{candidates_csv, curve_csv};
-use linkwright::report::html::report_html;
-use linkwright::report::plot::{Glyphs, terminal_plot};
-use linkwright::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
-use linkwright::report::{Colour, contact_sheet::contact_sheet_svg, svg::candidate_svg};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::compare::{Entry, SortKey, compare};
+use linkwright::internals::report::contact_sheet::contact_sheet_svg;
+use linkwright::internals::report::csv::{candidates_csv, curve_csv};
+use linkwright::internals::report::html::report_html;
+use linkwright::internals::report::plot::{Glyphs, terminal_plot};
+use linkwright::internals::report::svg::candidate_svg;
+use linkwright::internals::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
 use records::{detail, ellipse, k18, rocking, shapes};
 use std::collections::HashMap;
 
@@ -100,7 +103,7 @@ fn the_best_linkage_can_be_copied_into_a_linkage_file() {
     let start = text.find("linkage = {").unwrap();
     let end = start + text[start..].find('}').unwrap() + 1;
     let copied: toml::Table = text[start..end].parse().unwrap();
-    let linkage: linkwright::linkage::FourBar = copied["linkage"].clone().try_into().unwrap();
+    let linkage: linkwright::internals::mechanism::FourBar = copied["linkage"].clone().try_into().unwrap();
     assert_eq!(linkage, records::k18_optimum());
 }
 
@@ -372,7 +375,7 @@ fn lists_of_the_wrong_length_and_numbers_that_are_none_do_not_panic() {
                     candidate.link_ratio = f64::INFINITY;
                     candidate.accepted = false;
                     path.tolerance = Some(vec![1e-9]);
-                    candidate.defects = vec![linkwright::task::Defect::Order { at: Vec::new() }];
+                    candidate.defects = vec![linkwright::internals::task::Defect::Order { at: Vec::new() }];
                 }
             }
             for (kind, text) in everything(&record) {

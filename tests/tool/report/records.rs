@@ -1,11 +1,12 @@
 //! Records made by hand, with the referee's figures.
 
-use linkwright::linkage::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
-use linkwright::problem::spec::*;
-use linkwright::record::*;
-use linkwright::task::error::rms;
-use linkwright::task::referee::judge;
-use linkwright::task::{AngleOffset, PathTask};
+use linkwright::internals::judge::error::rms;
+use linkwright::internals::judge::referee::judge;
+use linkwright::internals::mechanism::Unit;
+use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+use linkwright::internals::record::*;
+use linkwright::internals::task::spec::*;
+use linkwright::internals::task::{AngleOffset, PathTask};
 
 /// The 18 points of Kunjur and Krishnamurty (1997).
 pub const K18: [[f64; 2]; 18] = [

@@ -1,6 +1,6 @@
 // Positions, velocities and accelerations of a four-bar linkage in natural coordinates.
 //
-// The same equations as the Rust kernel (src/linkage/position.rs, motion.rs, transmission.rs; Romero Nunez 2016,
+// The same equations as the Rust kernel (position.rs, motion.rs, transmission.rs of the four-bar; Romero Nunez 2016,
 // equations 10 to 19; De Castro 8 to 24), in the same order, so that they agree to rounding. tests/browser holds them
 // beside each other. Angles are in radians here, points are [x, y].
 

@@ -1,0 +1,206 @@
+//! `analyze` and `cognates`: what a given linkage does.
+
+use super::arguments::{Analyze, Cognates};
+use super::output::Output;
+use super::{Ended, result, terminal};
+use crate::files::diagnostic::escaped;
+use crate::files::generator::FileKind;
+use crate::files::linkage_file;
+use crate::files::linkage_file::AnyLinkageFile;
+use crate::files::name;
+use crate::mechanism::Linkage;
+use crate::mechanism::analysis::chain::{ChainRequest, analyze_chain};
+use crate::mechanism::analysis::{PositionMethod, Request, analyze, full_turn};
+use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::report::analysis_csv::analysis_csv;
+use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
+use crate::report::analysis_text::{analysis_head, analysis_table};
+use crate::report::chain_sheet::chain_svg;
+use crate::report::chain_text::{chain_csv, chain_head, chain_table};
+use std::path::Path;
+
+/// The crank angles when none are asked for: every 30 degrees.
+const DEFAULT_POSITIONS: usize = 12;
+/// A table of more rows is not printed when it was written to a file.
+const LONG_TABLE: usize = 72;
+
+/// Runs `analyze`.
+pub fn run(options: &Analyze) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner(options: &Analyze) -> Result<Ended, Ended> {
+    let file = result::read_linkage(&options.linkage)?;
+    let crank_deg = match (&options.angle, options.cycle) {
+        (Some(angles), _) => angles.clone(),
+        (None, Some(n)) => full_turn(n as usize),
+        (None, None) => full_turn(DEFAULT_POSITIONS),
+    };
+    let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
+    let input = CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha };
+    let linkage = match file.linkage {
+        Linkage::FourBar(linkage) => linkage,
+        Linkage::Chain(chain) => {
+            if options.all_configurations || !options.method.is_empty() {
+                terminal::complain(
+                    "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
+                );
+                return Err(Ended::Refused);
+            }
+            let request = ChainRequest { name: file.name, unit: file.unit, chain: *chain, crank_deg, input };
+            return of_chain(options, &request);
+        }
+    };
+    let request = Request {
+        name: file.name,
+        unit: file.unit,
+        linkage,
+        crank_deg,
+        input,
+        methods: options.method.clone(),
+        all_configurations: options.all_configurations,
+    };
+    let analysis = analyze(&request);
+    let positions: usize = analysis.configurations.iter().map(|c| c.rows.len()).sum();
+    deliver(
+        options,
+        positions,
+        &analysis,
+        &Forms {
+            csv: &|| analysis_csv(&analysis),
+            svg: &|| analysis_svg(&analysis),
+            table: &|| analysis_table(&analysis, terminal::colour()),
+            head: &|| analysis_head(&analysis, terminal::colour()),
+        },
+    )
+}
+
+fn of_chain(options: &Analyze, request: &ChainRequest) -> Result<Ended, Ended> {
+    let analysis = analyze_chain(request);
+    deliver(
+        options,
+        analysis.rows.len(),
+        &analysis,
+        &Forms {
+            csv: &|| chain_csv(&analysis),
+            svg: &|| chain_svg(&analysis, &request.chain),
+            table: &|| chain_table(&analysis, terminal::colour()),
+            head: &|| chain_head(&analysis, terminal::colour()),
+        },
+    )
+}
+
+/// The forms in which an analysis can be given; each is made only when it is wanted.
+struct Forms<'a> {
+    csv: &'a dyn Fn() -> String,
+    svg: &'a dyn Fn() -> String,
+    table: &'a dyn Fn() -> String,
+    head: &'a dyn Fn() -> String,
+}
+
+/// Writes the files that were asked for and prints JSON, the tables, or (long tables that stand in a file) the
+/// head alone.
+fn deliver(
+    options: &Analyze,
+    positions: usize,
+    analysis: &impl serde::Serialize,
+    forms: &Forms<'_>,
+) -> Result<Ended, Ended> {
+    let asked = [
+        options.csv.as_deref().map(|path| (path, FileKind::Csv, (forms.csv)())),
+        options.svg.as_deref().map(|path| (path, FileKind::Svg, (forms.svg)())),
+    ];
+    let written: Vec<_> =
+        asked.iter().flatten().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
+    Output::new([&options.linkage], options.force).write(&written)?;
+    if options.json {
+        let text = serde_json::to_string_pretty(analysis).map_err(|e| {
+            terminal::complain(&format!("the analysis cannot be written as JSON: {e}"));
+            Ended::Refused
+        })?;
+        terminal::answer(&(text + "\n"));
+        return Ok(Ended::Good);
+    }
+    let files: Vec<String> = [&options.csv, &options.svg]
+        .into_iter()
+        .flatten()
+        .map(|p| escaped(&p.display().to_string()))
+        .collect();
+    let shown = if files.is_empty() || positions <= LONG_TABLE { (forms.table)() } else { (forms.head)() };
+    terminal::answer(&shown);
+    if !files.is_empty() {
+        terminal::answer(&format!("\n  {positions} positions. Written to {}\n", files.join(" and ")));
+    }
+    Ok(Ended::Good)
+}
+
+/// Runs `cognates`.
+pub fn cognates(options: &Cognates) -> Ended {
+    inner_cognates(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
+    let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
+    let Linkage::FourBar(linkage) = linkage else {
+        let shown = escaped(&options.linkage.display().to_string());
+        let why = "it is a chain, and cognates are of four-bars: give a file with [linkage] or [vector_loop]";
+        terminal::complain(&format!("{shown}: {why}"));
+        return Err(Ended::Refused);
+    };
+    let mut found = Vec::new();
+    let mut text = String::new();
+    for (place, cognate) in ["A", "B"].iter().zip(linkage.cognates()) {
+        match cognate {
+            Ok(cognate) => {
+                let n = found.len() + 1;
+                let kind = cognate.linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
+                text.push_str(&format!("  {n}. at {place}: {kind}\n     {}\n", cognate.linkage));
+                found.push(cognate.linkage);
+            }
+            Err(e) => text.push_str(&format!("  at {place}: none ({e})\n")),
+        }
+    }
+    let mut written = Vec::new();
+    for (i, linkage) in found.iter().enumerate() {
+        let name = name::with_suffix(&name, &format!("-cognate-{}", i + 1));
+        let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
+        if path.exists() && !options.force {
+            terminal::complain(&format!(
+                "{} exists already; give another folder with --out, or replace it with --force",
+                path.display()
+            ));
+            return Err(Ended::Refused);
+        }
+        written.push((path, FileKind::Linkage, linkage_file::to_toml(&name, unit, linkage)));
+    }
+    if let Some(path) = &options.svg {
+        written.push((path.clone(), FileKind::Svg, cognates_svg(&name, unit, &linkage, &found)));
+    }
+    let output = Output::new([&options.linkage], options.force);
+    // Looked at before the folder is made.
+    for (path, kind, _) in &written {
+        output.check(path, *kind)?;
+    }
+    if let Some(out) = &options.out {
+        std::fs::create_dir_all(out).map_err(|e| {
+            terminal::complain(&format!("{}: {e}", out.display()));
+            Ended::Refused
+        })?;
+    }
+    let files: Vec<_> =
+        written.iter().map(|(path, kind, text)| (path.as_path(), *kind, text.as_bytes())).collect();
+    output.write(&files)?;
+    for (path, ..) in &written {
+        text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
+    }
+    terminal::answer(&format!(
+        "The Roberts-Chebyshev cognates of {}: other linkages of the same coupler curve\n{text}",
+        crate::report::text::clean(&name)
+    ));
+    Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
+}
+
+/// The methods of a comma-separated list.
+pub fn methods(text: &str) -> Result<PositionMethod, String> {
+    text.parse().map_err(|e: crate::mechanism::analysis::UnknownMethod| e.to_string())
+}

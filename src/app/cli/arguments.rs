@@ -1,0 +1,493 @@
+//! What can be typed.
+
+use crate::files::schema::SchemaKind;
+use crate::mechanism::analysis::PositionMethod;
+use crate::report::compare::SortKey;
+use crate::report::export::Format;
+use crate::synthesis::snap::Length;
+use crate::task::spec::{CertifySpec, MAX_CERTIFY_S};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Finds the four-bar linkage whose coupler point draws the path you ask for.
+#[derive(Debug, Parser)]
+#[command(
+    name = "linkwright",
+    version,
+    after_help = "Start with `linkwright new my-path`, then `linkwright synth my-path.toml`.\n\
+                  Exit codes: 0 something acceptable was found, 1 nothing acceptable, 2 bad input, \
+                  70 a bug, 130 interrupted (best so far saved)."
+)]
+pub struct Arguments {
+    /// The command.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Find linkages for problem files (or bare CSV points and SVG drawings): the main job
+    Synth(Synth),
+    /// Check problem, linkage and points files without running anything
+    Check(Check),
+    /// Write a commented problem file that runs as it is
+    New(New),
+    /// Put results or linkages side by side
+    Compare(Compare),
+    /// Recompute the figures and verdicts of a result, and name what cannot be
+    Verify(Verify),
+    /// Prove that no linkage whose input turns fully is better than a result by more than a gap (prescribed timing)
+    Certify(Certify),
+    /// Write a result as a page to look at, print and mail: one HTML file
+    Report(Report),
+    /// Positions, velocities, accelerations and mobility of a linkage
+    Analyze(Analyze),
+    /// The other two linkages of the same coupler curve
+    Cognates(Cognates),
+    /// What it takes to build a linkage: layers, least distances, sensitivity to each dimension
+    Build(Build),
+    /// Bring the lengths of a linkage to stock sizes and fit the rest again
+    Snap(Snap),
+    /// Run problems whose answer is known from many seeds, beside what was published
+    Suite(Suite),
+    /// Write a linkage as a file to build from: drawings in millimetres, DXF, STL, OpenSCAD, lists
+    Export(Export),
+    /// Open a local page: draw a path, drag its points, watch the best linkages follow
+    #[cfg(feature = "studio")]
+    Studio(Studio),
+    /// Print the JSON Schema of a file, for editors, or a reference of its keys
+    Schema {
+        /// problem, linkage or record
+        #[arg(value_parser = schema_kind)]
+        kind: SchemaKind,
+        /// Print a reference page (Markdown) of its keys instead
+        #[arg(long)]
+        markdown: bool,
+    },
+    /// Print a completion script for a shell
+    Completions {
+        /// Which shell
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, for man: `linkwright man > linkwright.1`
+    Man {
+        /// The page of this command [default: of the program]
+        command: Option<String>,
+    },
+}
+
+/// Options of `synth`.
+#[derive(Debug, Args)]
+pub struct Synth {
+    /// Problem files (TOML), points (CSV), drawings (SVG), or folders of problem files; several make a batch
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the results go (several files: a folder for each in it) [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// auto, least-squares, differential-evolution, genetic or continuation: as `--set solve.method=..`
+    #[arg(long, value_name = "METHOD")]
+    pub method: Option<String>,
+    /// Where every draw comes from: as `--set solve.seed=..`
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    pub seed: Option<u64>,
+    /// Set any key of the problem file, e.g. --set solve.candidates=9
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    pub set: Vec<(String, String)>,
+    /// The answers alone, not what conflicts, what can be built or what limits cost: as `--set solve.advice=false`
+    #[arg(long)]
+    pub no_advice: bool,
+    /// Threads [default: all cores]; they change the time, never a digit
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint that an interrupted run left, skip what is done
+    #[arg(long)]
+    pub resume: bool,
+    /// Keep where a search stands not more often than this; 0: at every boundary, whatever it costs
+    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
+    pub checkpoint_every: Duration,
+    /// Nine precision points: print every real linkage through them, not the best ones alone
+    #[arg(long)]
+    pub all: bool,
+    /// Print the record (several files: an array of records) instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// No progress and no picture on the terminal
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Options of `check`.
+#[derive(Debug, Args)]
+pub struct Check {
+    /// Problem or linkage files (TOML), points (CSV) or drawings (SVG)
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+}
+
+/// Options of `new`.
+#[derive(Debug, Args)]
+pub struct New {
+    /// The problem's name; NAME.toml is written here
+    pub name: String,
+    /// Take the target from these points (CSV) or this drawing (SVG)
+    #[arg(long, value_name = "FILE")]
+    pub from: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `compare`.
+#[derive(Debug, Args)]
+pub struct Compare {
+    /// Results: a folder, a record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+    /// Measure everything on the target of this problem [default: runs on their own]
+    #[arg(long, value_name = "PROBLEM")]
+    pub target: Option<PathBuf>,
+    /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size, objective
+    /// [default: what the problem minimises, sum_sq where there are several]
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = sort_key)]
+    pub sort: Vec<SortKey>,
+    /// Print by how many per cent each figure is above that of this RESULT
+    #[arg(long, value_name = "RESULT")]
+    pub reference: Option<PathBuf>,
+    /// Write the tables as CSV too
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Write the curves over the target as a drawing too
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Write a page with curves and tables too: one file, needs no network
+    #[arg(long, value_name = "FILE")]
+    pub html: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `verify`.
+#[derive(Debug, Args)]
+pub struct Verify {
+    /// A result's folder or record.json
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
+    /// Work out the certificates again, box by box: as long as `certify` took
+    #[arg(long)]
+    pub certificate: bool,
+    /// Check the leaves of the certificates (certify --leaves) with arithmetic of their own: some minutes
+    #[arg(long)]
+    pub leaves: bool,
+}
+
+/// Options of `certify`.
+#[derive(Debug, Args)]
+pub struct Certify {
+    /// A result's folder
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// How far below the best candidate the proved bound may be, relative
+    #[arg(long, value_name = "G", default_value_t = CertifySpec::default().gap, allow_negative_numbers = true, value_parser = gap)]
+    pub gap: f64,
+    /// certify.time_limit_s=S: end after S seconds with what is proved by then [default: 300]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = certify_key)]
+    pub set: Vec<(String, f64)>,
+    /// Go on from certificate.checkpoint where a run that was stopped left one
+    #[arg(long)]
+    pub resume: bool,
+    /// Keep the decided boxes too, as certificate.leaves, for verify --leaves
+    #[arg(long)]
+    pub leaves: bool,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Options of `report`.
+#[derive(Debug, Args)]
+pub struct Report {
+    /// A result's folder or record.json; `:2` shows its second candidate first
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// Where the page goes [default: report.html in the folder, or beside a record under another name]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `analyze`.
+#[derive(Debug, Args)]
+pub struct Analyze {
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
+    #[arg(value_name = "LINKAGE")]
+    pub linkage: PathBuf,
+    /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
+    #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
+    pub angle: Option<Vec<f64>>,
+    /// This many crank angles, evenly over a full turn
+    #[arg(long, value_name = "N", conflicts_with = "angle", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub cycle: Option<u32>,
+    /// Speed of the crank, rad/s
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
+    pub omega: Option<f64>,
+    /// Speed of the crank, turns a minute
+    #[arg(long, value_name = "N", conflicts_with = "omega", allow_negative_numbers = true, value_parser = finite)]
+    pub rpm: Option<f64>,
+    /// Acceleration of the crank, rad/s^2
+    #[arg(long, value_name = "A", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
+    pub alpha: f64,
+    /// Methods side by side: natural, algebraic, complex, fixed-point
+    #[arg(long, value_name = "METHOD,..", value_delimiter = ',', value_parser = super::analyze::methods)]
+    pub method: Vec<PositionMethod>,
+    /// All four configurations (t1, t2), not the file's alone
+    #[arg(long)]
+    pub all_configurations: bool,
+    /// Write every row as CSV
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+    /// Draw the sheets into one SVG file
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `cognates`.
+#[derive(Debug, Args)]
+pub struct Cognates {
+    /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
+    #[arg(value_name = "LINKAGE")]
+    pub linkage: PathBuf,
+    /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Draw all three together
+    #[arg(long, value_name = "FILE")]
+    pub svg: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `build`.
+#[derive(Debug, Args)]
+pub struct Build {
+    /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
+    #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
+    pub hole: Option<f64>,
+    /// Material around a hole [default: as much as its diameter]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = positive)]
+    pub margin: Option<f64>,
+    /// The standard deviation of every dimension [default: 0.1 mm, without a unit a thousandth of the longest link]
+    #[arg(long, value_name = "T", allow_negative_numbers = true, value_parser = positive)]
+    pub tolerance: Option<f64>,
+}
+
+/// Options of `snap`.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("stock").required(true).args(["grid", "lengths", "pitches"]))]
+pub struct Snap {
+    /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// The stock: multiples of this, in the file's unit
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
+    pub grid: Option<f64>,
+    /// The stock: these lengths, separated by commas
+    #[arg(long, value_name = "L,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = positive)]
+    pub lengths: Option<Vec<f64>>,
+    /// The stock: the lengths in this text file, one a line or separated by commas
+    #[arg(long, value_name = "FILE")]
+    pub pitches: Option<PathBuf>,
+    /// Which hole distances are snapped
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', default_value = "ground,a,b,c,d,e", value_parser = length)]
+    pub snap: Vec<Length>,
+    /// What stays exactly as it is: ground, a, b, c, d, e, A, B, ground_angle_deg
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = kept)]
+    pub keep: Vec<String>,
+    /// Put a dimension at a value of its own: ground, a, b, c, d, e, ground_angle_deg
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = dimension)]
+    pub set: Vec<(String, f64)>,
+    /// Where the result goes: a folder, or FILE.toml for the best linkage alone [default: results/NAME-snapped]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `suite`.
+#[derive(Debug, Args)]
+pub struct Suite {
+    /// Only problems whose name or file name holds this
+    #[arg(value_name = "FILTER")]
+    pub filter: Option<String>,
+    /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
+    /// problems/literature where it is here, else the same files, which linkwright holds]
+    #[arg(long, value_name = "DIR")]
+    pub problems: Option<PathBuf>,
+    /// Seeds 1 to N for each problem
+    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: u64,
+    /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
+    #[arg(long)]
+    pub certify: bool,
+    /// Print JSON instead of the tables
+    #[arg(long)]
+    pub json: bool,
+    /// Write results/literature.md and results/literature.json too (all problems, no FILTER): for linkwright's repository
+    #[arg(long, conflicts_with = "filter")]
+    pub write: bool,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Options of `studio`.
+#[cfg(feature = "studio")]
+#[derive(Debug, Args)]
+pub struct Studio {
+    /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
+    #[arg(value_name = "PROBLEM")]
+    pub problem: Option<PathBuf>,
+    /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
+    #[arg(long, value_name = "N")]
+    pub port: Option<u16>,
+    /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Open no browser: print the address alone
+    #[arg(long)]
+    pub no_open: bool,
+}
+
+/// Options of `export`.
+#[derive(Debug, Args)]
+pub struct Export {
+    /// A result's folder or record.json (its first candidate), either with `:2` for another, or a linkage file
+    #[arg(value_name = "RESULT")]
+    pub result: PathBuf,
+    /// svg, svg-plates, dxf, dxf-plates, stl, scad, csv, toml, json, cut-list or cut-list-csv
+    #[arg(long, value_name = "FORMAT", value_parser = export_format)]
+    pub format: Format,
+    /// Set a size or the scale, e.g. --set hole_mm=4
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    pub set: Vec<(String, String)>,
+    /// Write it to this file [default: to standard output]
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Replace a file that is there even where linkwright did not write it, or where this command reads it
+    #[arg(long)]
+    pub force: bool,
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.abs() <= crate::mechanism::MAX_MAGNITUDE => Ok(number),
+        Ok(_) => {
+            Err(format!("a finite number below {:e} in magnitude is needed", crate::mechanism::MAX_MAGNITUDE))
+        }
+        Err(_) => Err("this is not a number".into()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match finite(text)? {
+        number if number > 0.0 => Ok(number),
+        _ => Err("a number above 0 is needed".into()),
+    }
+}
+
+fn gap(text: &str) -> Result<f64, String> {
+    match positive(text)? {
+        number if number < 1.0 => Ok(number),
+        _ => Err("a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent".into()),
+    }
+}
+
+fn certify_key(text: &str) -> Result<(String, f64), String> {
+    let (key, value) = key_value(text)?;
+    match key.as_str() {
+        "certify.time_limit_s" => match positive(&value)? {
+            seconds if seconds <= MAX_CERTIFY_S => Ok((key, seconds)),
+            _ => Err(format!("at most {MAX_CERTIFY_S:e} seconds")),
+        },
+        _ => Err("what can be set is certify.time_limit_s".into()),
+    }
+}
+
+fn length(text: &str) -> Result<Length, String> {
+    Length::named(text.trim()).ok_or_else(|| "a hole distance is one of ground, a, b, c, d, e".into())
+}
+
+fn kept(text: &str) -> Result<String, String> {
+    let key = text.trim();
+    match Length::named(key).is_some() || ["A", "B", "ground_angle_deg"].contains(&key) {
+        true => Ok(key.into()),
+        false => Err("what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg".into()),
+    }
+}
+
+fn dimension(text: &str) -> Result<(String, f64), String> {
+    let (key, value) = key_value(text)?;
+    if Length::named(&key).is_some() {
+        return Ok((key, positive(&value)?));
+    }
+    match key.as_str() {
+        "ground_angle_deg" => Ok((key, finite(&value)?)),
+        _ => Err("what can be set is one of ground, a, b, c, d, e, ground_angle_deg".into()),
+    }
+}
+
+fn key_value(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("write KEY=VALUE, for example solve.candidates=9".into()),
+    }
+}
+
+fn setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
+        _ => Err("write KEY=VALUE, for example hole_mm=4".into()),
+    }
+}
+
+fn export_format(text: &str) -> Result<Format, String> {
+    text.parse().map_err(|e: crate::report::export::UnknownFormat| e.to_string())
+}
+
+fn sort_key(text: &str) -> Result<SortKey, String> {
+    text.parse().map_err(|e: crate::report::compare::UnknownKey| e.to_string())
+}
+
+fn schema_kind(text: &str) -> Result<SchemaKind, String> {
+    text.parse().map_err(|e: crate::files::schema::UnknownKind| e.to_string())
+}
+
+/// A time of at most a day.
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 =
+        text.parse().map_err(|_| "a number of seconds is wanted, such as 0.5 or 60".to_string())?;
+    if (0.0..=86400.0).contains(&seconds) {
+        Ok(Duration::from_secs_f64(seconds))
+    } else {
+        Err("it is from 0 to 86400 seconds".into())
+    }
+}

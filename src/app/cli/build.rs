@@ -1,0 +1,50 @@
+//! `build`: what stands between a linkage and a workshop.
+
+use super::arguments::Build as Options;
+use super::result;
+use super::result::Given;
+use super::{Ended, terminal};
+use crate::files::diagnostic::escaped;
+use crate::judge::practicality::Practicality;
+pub use crate::judge::practicality::{Build, millimetre, usual_tolerance};
+use crate::mechanism::FourBar;
+use crate::mechanism::Unit;
+use crate::report::practicality::practicality_text;
+use crate::report::text::clean;
+use crate::task::Problem;
+
+/// Runs the command.
+pub fn run(options: &Options) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner(options: &Options) -> Result<Ended, Ended> {
+    let made = |linkage: &FourBar, unit: Option<Unit>| {
+        let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit.map(millimetre)));
+        Build::new(hole, options.margin.unwrap_or(hole))
+    };
+    let (title, linkage, unit, practicality) = match result::read(&options.result)? {
+        Given::Linkage(file) => {
+            let found = Practicality::of_linkage(&file.linkage, made(&file.linkage, file.unit));
+            (clean(&file.name), file.linkage, file.unit, found)
+        }
+        Given::Run(run) => {
+            let chosen = run.one()?;
+            let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| {
+                terminal::complain(&e.to_string());
+                Ended::Refused
+            })?;
+            let (linkage, unit) = (chosen.candidate.linkage, run.record.problem.unit);
+            let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
+            (escaped(&chosen.label), linkage, unit, found)
+        }
+    };
+    let Some(practicality) = practicality else {
+        terminal::complain(&format!("{title} cannot be assembled, so there is nothing to build"));
+        return Err(Ended::Bad);
+    };
+    let tolerance = options.tolerance.unwrap_or_else(|| usual_tolerance(&linkage, unit));
+    terminal::answer(&format!("{title}\n  {linkage}\n\n"));
+    terminal::answer(&practicality_text(&practicality, unit, tolerance, terminal::colour()));
+    Ok(Ended::Good)
+}

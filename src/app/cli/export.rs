@@ -1,0 +1,58 @@
+//! `export`: a linkage as a file to build from.
+
+use super::arguments::Export;
+use super::output::Output;
+use super::result;
+use super::result::Given;
+use super::{Ended, terminal};
+use crate::files::diagnostic::{Diagnostic, escaped};
+use crate::report::export::{Refusal, Settings, Subject, export};
+use ariadne::ReportKind;
+
+/// Runs the command.
+pub fn run(options: &Export) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn inner(options: &Export) -> Result<Ended, Ended> {
+    let settings = Settings::parse(options.format, &options.set).map_err(|e| refused(options, e))?;
+    if options.out.is_none() && !options.format.is_text() {
+        let name = options.format.name();
+        terminal::complain(&format!("{name} is not text: say where it goes with --out FILE.{name}"));
+        return Err(Ended::Refused);
+    }
+    let subject = match result::read(&options.result)? {
+        Given::Linkage(file) => Subject::of_linkage(&file),
+        Given::Run(run) => Subject::of_candidate(&run.record, run.one()?.candidate),
+    };
+    let exported = export(&subject, options.format, &settings).map_err(|e| refused(options, e))?;
+    for note in &exported.notes {
+        terminal::tell(&format!("note: {}", escaped(note)));
+    }
+    let Some(path) = &options.out else {
+        terminal::answer(&String::from_utf8_lossy(&exported.bytes));
+        return Ok(Ended::Good);
+    };
+    let output = Output::new([&options.result], options.force);
+    output.write(&[(path, options.format.kind(), &exported.bytes)])?;
+    terminal::answer(&format!(
+        "Wrote {}: {}, {}\n",
+        escaped(&path.display().to_string()),
+        subject.title(),
+        subject.standing
+    ));
+    Ok(Ended::Good)
+}
+
+/// Shows a refusal as every other error of an input, with the setting that it is about.
+fn refused(options: &Export, refusal: Refusal) -> Ended {
+    let mut file = options.result.display().to_string();
+    if let Some((key, value)) = &refusal.setting {
+        file.push_str(&format!(" with --set {key}={value}"));
+    }
+    terminal::diagnose(
+        ReportKind::Error,
+        &Diagnostic::new(file, "", refusal.message).with_help(refusal.help),
+    );
+    Ended::Refused
+}

@@ -1,0 +1,110 @@
+//! The command line: arguments, commands, exit codes.
+//!
+//! stdout carries the answer, stderr progress and diagnostics. Exit codes: 0 done, 1 ran but nothing is
+//! acceptable (or a check failed), 2 bad input or usage, 70 a bug of ours, 130 interrupted.
+
+mod analyze;
+mod arguments;
+mod build;
+mod certify;
+mod check;
+mod compare;
+mod export;
+mod inputs;
+mod interrupt;
+mod man;
+mod new;
+mod output;
+mod progress;
+mod report;
+mod result;
+mod snap;
+#[cfg(feature = "studio")]
+mod studio;
+mod suite;
+mod synth;
+mod terminal;
+mod verify;
+
+use arguments::{Arguments, Command};
+use clap::{CommandFactory, Parser};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// How a command ended, the gravest last: of several inputs the gravest is that of the command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Ended {
+    /// Done, and something acceptable was found or the check passed.
+    Good,
+    /// It ran, but nothing is acceptable or the check failed.
+    Bad,
+    /// Bad input or usage.
+    Refused,
+    /// A part of a batch met a bug of ours; the others ran.
+    Bug,
+    /// Interrupted; the best so far is saved.
+    Interrupted,
+}
+
+impl From<Ended> for ExitCode {
+    fn from(ended: Ended) -> ExitCode {
+        ExitCode::from(match ended {
+            Ended::Good => 0,
+            Ended::Bad => 1,
+            Ended::Refused => 2,
+            Ended::Bug => BUG,
+            Ended::Interrupted => 130,
+        })
+    }
+}
+
+/// The exit code of a panic: a bug of ours.
+const BUG: u8 = 70;
+
+/// Runs the command that the process was called with.
+pub fn main() -> ExitCode {
+    interrupt::outlive_large_files();
+    let arguments = Arguments::parse();
+    match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
+        Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),
+        Ok(ended) => ended.into(),
+        Err(_) => {
+            terminal::complain("this is a bug of linkwright: please report it with the input that shows it");
+            ExitCode::from(BUG)
+        }
+    }
+}
+
+fn dispatch(command: Command) -> Ended {
+    match command {
+        Command::Synth(options) => synth::run(&options),
+        Command::Check(options) => check::run(&options),
+        Command::New(options) => new::run(&options),
+        Command::Compare(options) => compare::run(&options),
+        Command::Verify(options) => verify::run(&options),
+        Command::Analyze(options) => analyze::run(&options),
+        Command::Cognates(options) => analyze::cognates(&options),
+        Command::Certify(options) => certify::run(&options),
+        Command::Report(options) => report::run(&options),
+        Command::Build(options) => build::run(&options),
+        Command::Snap(options) => snap::run(&options),
+        Command::Suite(options) => suite::run(&options),
+        Command::Export(options) => export::run(&options),
+        #[cfg(feature = "studio")]
+        Command::Studio(options) => studio::run(&options),
+        Command::Schema { kind, markdown } => {
+            terminal::answer(&match markdown {
+                true => crate::files::schema::reference(kind),
+                false => format!("{:#}\n", crate::files::schema::schema(kind)),
+            });
+            Ended::Good
+        }
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Arguments::command(), "linkwright", &mut script);
+            terminal::answer(&String::from_utf8_lossy(&script));
+            Ended::Good
+        }
+        Command::Man { command } => man::run(command.as_deref()),
+    }
+}

@@ -1,0 +1,48 @@
+//! Files that a command writes where its user says: what is there and is not ours stays, unless `--force`.
+
+use super::{Ended, result, terminal};
+use crate::app::results_folder::{FolderError, OutputFile, Replace, check_files, write_files};
+use crate::files::generator::FileKind;
+use std::path::{Path, PathBuf};
+
+/// The rule by which a command's files replace others.
+pub struct Output {
+    /// The files that the command reads; they are replaced with `--force` alone.
+    inputs: Vec<PathBuf>,
+    force: bool,
+}
+
+impl Output {
+    /// The rule for a command that reads these files or RESULTs.
+    pub fn new<'p>(inputs: impl IntoIterator<Item = &'p PathBuf>, force: bool) -> Self {
+        Output { inputs: inputs.into_iter().map(|input| result::file_of(input)).collect(), force }
+    }
+
+    /// Refuses a place that may not be written to, before the work. The header row of a table is not known then: for
+    /// tables this is left to [`Output::write`].
+    ///
+    /// # Errors
+    /// [`Ended::Refused`]; the reason has been told.
+    pub fn check(&self, path: &Path, kind: FileKind) -> Result<(), Ended> {
+        self.with(|replace| check_files(&[OutputFile { path, kind, bytes: b"" }], replace))
+    }
+
+    /// Writes all the files, or refuses before the first.
+    ///
+    /// # Errors
+    /// [`Ended::Refused`]; the reason has been told.
+    pub fn write(&self, files: &[(&Path, FileKind, &[u8])]) -> Result<(), Ended> {
+        let files: Vec<OutputFile<'_>> =
+            files.iter().map(|(path, kind, bytes)| OutputFile { path, kind: *kind, bytes }).collect();
+        self.with(|replace| write_files(&files, replace))
+    }
+
+    fn with(&self, act: impl Fn(Replace<'_>) -> Result<(), FolderError>) -> Result<(), Ended> {
+        let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
+        let replace = if self.force { Replace::Anything } else { Replace::Ours(&inputs) };
+        act(replace).map_err(|e| {
+            terminal::complain(&e.to_string());
+            Ended::Refused
+        })
+    }
+}

@@ -1,0 +1,340 @@
+//! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
+
+use crate::app::suite::Step;
+use crate::judge::certificate;
+use crate::report::text::{at_most, percent_up};
+use crate::synthesis::Progress;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::sync::Mutex;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// Searches shorter than this show no progress.
+const QUIET_FOR: Duration = Duration::from_millis(700);
+/// Plain lines come at most this often.
+pub const LINE_EVERY: Duration = Duration::from_secs(5);
+/// The bar of a suite moves at most this often.
+const BAR_EVERY: Duration = Duration::from_millis(100);
+
+/// Shows where a suite stands.
+pub struct SuiteShown {
+    start: Instant,
+    bar: Option<ProgressBar>,
+    last: Mutex<Instant>,
+}
+
+impl SuiteShown {
+    /// Progress from now on.
+    pub fn new() -> Self {
+        let bar = stderr().is_terminal().then(|| {
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr_with_hz(10));
+            let style = "[{bar:24}] {pos} of {len} runs, {msg}";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        SuiteShown { start: Instant::now(), bar, last: Mutex::new(Instant::now()) }
+    }
+
+    /// Takes a word from the suite.
+    pub fn update(&self, step: &Step<'_>) {
+        if self.start.elapsed() < QUIET_FOR {
+            return;
+        }
+        // A word comes many times during a run whose time is measured: most are dropped at once.
+        let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
+        let Ok(mut last) = self.last.lock() else { return };
+        if last.elapsed() < every {
+            return;
+        }
+        *last = Instant::now();
+        let name = crate::report::text::clean(step.problem);
+        let what = format!("{name}: {}, seed {}", step.method.name(), step.seed);
+        let Some(bar) = &self.bar else {
+            super::terminal::tell(&format!("{what}, {} of {} runs done", step.done, step.total));
+            return;
+        };
+        bar.set_length(step.total);
+        bar.set_position(step.done);
+        bar.set_message(what);
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how many jobs of a batch are done, where they run side by side.
+pub struct BatchShown {
+    start: Instant,
+    total: usize,
+    done: AtomicUsize,
+    bar: Option<ProgressBar>,
+    last_line: Mutex<Instant>,
+    silent: bool,
+}
+
+impl BatchShown {
+    /// Progress of so many jobs.
+    pub fn new(total: usize, silent: bool) -> Self {
+        let bar = (stderr().is_terminal() && !silent).then(|| {
+            let bar =
+                ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr_with_hz(10));
+            let style = "[{bar:24}] {pos} of {len} jobs, {per_sec}, {eta} left";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar
+        });
+        let (done, last_line) = (AtomicUsize::new(0), Mutex::new(Instant::now()));
+        BatchShown { start: Instant::now(), total, done, bar, last_line, silent }
+    }
+
+    /// One more is done.
+    pub fn one_more(&self) {
+        let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
+        if let Some(bar) = &self.bar {
+            bar.set_position(done as u64);
+            return;
+        }
+        let Ok(mut last) = self.last_line.lock() else { return };
+        if !self.silent && last.elapsed() >= LINE_EVERY {
+            *last = Instant::now();
+            let left = self.start.elapsed().as_secs_f64() * (self.total - done) as f64 / done as f64;
+            let total = self.total;
+            super::terminal::tell(&format!("{done} of {total} jobs done, about {} left", duration(left)));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// A time as one says it: `40 s`, `12 min`, `3.4 h`.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Shows where a search stands.
+pub struct Shown {
+    name: String,
+    start: Instant,
+    bar: Option<ProgressBar>,
+    last_line: Mutex<Instant>,
+    silent: bool,
+    /// Whether the bar has been put on the terminal.
+    drawn: AtomicBool,
+    /// Evaluations at the first word: those of an earlier run whose checkpoint this one goes on from.
+    before: OnceLock<u64>,
+}
+
+impl Shown {
+    /// Progress of the problem `name`.
+    pub fn new(name: &str, silent: bool) -> Self {
+        let bar = (stderr().is_terminal() && !silent).then(|| {
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
+            let style = "{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}";
+            bar.set_style(
+                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
+            );
+            bar.set_prefix(crate::report::text::clean(name));
+            bar
+        });
+        Shown {
+            name: name.into(),
+            start: Instant::now(),
+            bar,
+            last_line: Mutex::new(Instant::now()),
+            silent,
+            drawn: AtomicBool::new(false),
+            before: OnceLock::new(),
+        }
+    }
+
+    /// Whether nothing is to be shown.
+    pub fn is_silent(&self) -> bool {
+        self.silent
+    }
+
+    /// Takes a word from the search.
+    pub fn update(&self, progress: &Progress) {
+        let before = *self.before.get_or_init(|| progress.evaluations);
+        if self.silent || self.start.elapsed() < QUIET_FOR {
+            return;
+        }
+        let words = Words::of(progress, before, self.start.elapsed());
+        if let Some(bar) = &self.bar {
+            if !self.drawn.swap(true, Ordering::Relaxed) {
+                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
+            }
+            bar.set_length(progress.budget);
+            bar.set_position(progress.evaluations.min(progress.budget));
+            bar.set_message(words.beside_the_bar());
+            return;
+        }
+        let Ok(mut last) = self.last_line.lock() else { return };
+        if last.elapsed() >= LINE_EVERY {
+            *last = Instant::now();
+            super::terminal::tell(&words.line(&self.name, progress));
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows in plain lines how far a certificate is.
+pub struct Proving {
+    name: String,
+    start: Instant,
+    last: Instant,
+    silent: bool,
+}
+
+impl Proving {
+    /// Progress of the certificate of a problem.
+    pub fn new(name: &str, silent: bool) -> Self {
+        let now = Instant::now();
+        Proving { name: crate::report::text::clean(name), start: now, last: now, silent }
+    }
+
+    /// Takes a word from it.
+    pub fn update(&mut self, progress: &certificate::Progress) {
+        if !self.silent && self.last.elapsed() >= LINE_EVERY {
+            self.last = Instant::now();
+            super::terminal::tell(&proved(&self.name, self.start.elapsed(), progress));
+        }
+    }
+}
+
+/// What is proved by now.
+fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
+    format!(
+        "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {} (gap {} %)",
+        elapsed.as_secs_f64(),
+        progress.boxes,
+        100.0 * progress.decided,
+        at_most(progress.lower_bound, 7),
+        percent_up(progress.gap),
+    )
+}
+
+/// What is said of a search: its best answer, its rate, the time that its budget leaves it at most.
+struct Words {
+    best: String,
+    rate: String,
+    left: Option<String>,
+}
+
+impl Words {
+    /// Of a search that has run for `elapsed` here, and had made `before` evaluations when it began.
+    fn of(progress: &Progress, before: u64, elapsed: Duration) -> Self {
+        let best = match progress.best_sum_sq {
+            Some(sum) if progress.accepted => format!("best {sum:.4e}"),
+            Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
+            None => "nothing acceptable yet".into(),
+        };
+        let rate = progress.evaluations.saturating_sub(before) as f64 / elapsed.as_secs_f64();
+        let left_s = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
+        let left = left_s.is_finite().then(|| duration(left_s));
+        Words { best, rate: format!("{}/s", crate::report::text::grouped(rate as u64)), left }
+    }
+
+    /// The bar itself shows the share and the time left.
+    fn beside_the_bar(&self) -> String {
+        format!("{}, {}", self.rate, self.best)
+    }
+
+    /// Where there is no bar.
+    fn line(&self, name: &str, progress: &Progress) -> String {
+        let left = self.left.as_ref().map_or(String::new(), |left| format!("at most {left} left, "));
+        let Progress { phase, evaluations, budget, .. } = progress;
+        let (name, Words { best, rate, .. }) = (crate::report::text::clean(name), self);
+        format!("{name}: {phase} {evaluations} of {budget} evaluations, {rate}, {left}{best}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(evaluations: u64, best_sum_sq: Option<f64>, accepted: bool) -> Progress {
+        Progress { phase: "least-squares", evaluations, budget: 1_000_000, best_sum_sq, accepted, hits: None }
+    }
+
+    fn line(progress: &Progress, before: u64, seconds: u64) -> String {
+        Words::of(progress, before, Duration::from_secs(seconds)).line("leg", progress)
+    }
+
+    #[test]
+    fn a_line_says_the_best_the_rate_and_the_time_left() {
+        assert_eq!(
+            line(&at(200_000, Some(0.0123456), true), 0, 10),
+            "leg: least-squares 200000 of 1000000 evaluations, 20,000/s, at most 40 s left, best 1.2346e-2"
+        );
+        let words = Words::of(&at(200_000, Some(0.5), true), 0, Duration::from_secs(10));
+        assert_eq!(words.beside_the_bar(), "20,000/s, best 5.0000e-1");
+    }
+
+    #[test]
+    fn an_answer_that_is_not_acceptable_is_told_apart_from_one_that_is_and_from_none() {
+        let told = |best, accepted| Words::of(&at(10, best, accepted), 0, Duration::from_secs(1)).best;
+        assert_eq!(told(Some(2.0), true), "best 2.0000e0");
+        assert_eq!(told(Some(2.0), false), "best 2.0000e0 (not acceptable yet)");
+        assert_eq!(told(None, false), "nothing acceptable yet");
+    }
+
+    #[test]
+    fn the_rate_counts_what_was_done_here_and_not_what_a_checkpoint_brought() {
+        let text = line(&at(600_000, None, false), 500_000, 100);
+        assert!(text.contains("600000 of 1000000 evaluations, 1,000/s, at most 7 min left"), "{text}");
+    }
+
+    #[test]
+    fn nothing_is_foretold_before_anything_was_done_and_nothing_is_left_beyond_the_budget() {
+        let text = line(&at(500_000, None, false), 500_000, 3);
+        assert!(text.ends_with("evaluations, 0/s, nothing acceptable yet"), "{text}");
+        let text = line(&at(1_000_001, None, false), 0, 1);
+        assert!(text.contains("at most 0 s left"), "{text}");
+    }
+
+    #[test]
+    fn a_certificate_says_what_is_proved_by_now() {
+        let progress = certificate::Progress { boxes: 1200, decided: 0.25, lower_bound: 0.009, gap: 0.05 };
+        assert_eq!(
+            proved("leg", Duration::from_secs(10), &progress),
+            "leg: certificate, 10 s: 1200 boxes, 25.000 % of the linkages decided, no sum below 0.009000000 (gap 5 %)"
+        );
+    }
+
+    #[test]
+    fn a_name_cannot_move_the_cursor() {
+        let progress = at(10, None, false);
+        let text = Words::of(&progress, 0, Duration::from_secs(1)).line("\u{1b}[2Jleg", &progress);
+        assert!(!text.contains('\u{1b}'), "{text:?}");
+    }
+
+    #[test]
+    fn times_are_said_in_the_unit_one_would_use() {
+        let said = [0.2, 99.0, 100.0, 5999.0, 6000.0, 86_400.0].map(duration);
+        assert_eq!(said, ["0 s", "99 s", "2 min", "100 min", "1.7 h", "24.0 h"]);
+    }
+}

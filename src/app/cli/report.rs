@@ -1,0 +1,70 @@
+//! `report`: a result as a page, from its record alone.
+
+use super::arguments::Report;
+use super::output::Output;
+use super::result::{Run, Which, read_run_of};
+use super::{Ended, terminal};
+use crate::files::diagnostic::escaped;
+use crate::files::generator::FileKind;
+use crate::report::html::report_html;
+use std::path::{Path, PathBuf};
+
+/// So many of the figures that are not so are named.
+const NAMED: usize = 5;
+
+/// Runs the command.
+pub fn run(options: &Report) -> Ended {
+    let run = match read_run_of(&options.result, "report") {
+        Ok(run) => run,
+        Err(ended) => return ended,
+    };
+    if let Err(ended) = is_true(&run) {
+        return ended;
+    }
+    let first = match run.which {
+        Which::All => 0,
+        Which::Rank(rank) => rank - 1,
+        // Where it is one of the candidates, that one; else it stands after them.
+        Which::Buildable => run.record.buildable.as_ref().map_or(0, |c| match c.rank {
+            0 => run.record.candidates.len(),
+            rank => rank - 1,
+        }),
+    };
+    let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
+    let page = report_html(&run.record, first);
+    let output = Output::new([&options.result], options.force);
+    if let Err(ended) = output.write(&[(&place, FileKind::Html, page.as_bytes())]) {
+        return ended;
+    }
+    terminal::answer(&format!("{}\n", escaped(&place.display().to_string())));
+    Ended::Good
+}
+
+/// A report shows figures as they were proved by the record: one that is not true gets none.
+fn is_true(run: &Run) -> Result<(), Ended> {
+    let shown = escaped(&run.named);
+    let mismatches = crate::judge::verify::verify(&run.record).map_err(|e| {
+        terminal::complain(&format!("{shown}: the recorded problem is none: {e}"));
+        Ended::Refused
+    })?;
+    if mismatches.is_empty() {
+        return Ok(());
+    }
+    terminal::complain(&format!(
+        "{shown}: this record is not true, so a report would show figures that are not so:"
+    ));
+    for mismatch in mismatches.iter().take(NAMED) {
+        terminal::tell(&format!("  {}", escaped(&mismatch.to_string())));
+    }
+    if mismatches.len() > NAMED {
+        let more = mismatches.len() - NAMED;
+        terminal::tell(&format!("  and {more} more: linkwright verify names them all"));
+    }
+    terminal::tell("run the problem again to have a true record");
+    Err(Ended::Bad)
+}
+
+/// `report.html` in the result's folder; beside a record that was named by its file, `NAME.html`.
+fn beside(named: &Path) -> PathBuf {
+    if named.is_file() { named.with_extension("html") } else { named.join("report.html") }
+}

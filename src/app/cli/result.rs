@@ -1,0 +1,123 @@
+//! RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate,
+//! or a linkage file. Every command that takes one reads it here.
+
+use super::{Ended, terminal};
+pub use crate::app::given::{Given, NoCandidate, Run, Which};
+use crate::app::result_files;
+use crate::app::results_folder::{BUILDABLE, RECORD, read_record};
+use crate::files::diagnostic::escaped;
+use crate::files::linkage_file;
+use crate::files::linkage_file::AnyLinkageFile;
+use crate::mechanism::Linkage;
+use ariadne::ReportKind;
+use std::path::{Path, PathBuf};
+
+impl From<NoCandidate> for Ended {
+    fn from(none: NoCandidate) -> Ended {
+        terminal::complain(&none.to_string());
+        Ended::Bad
+    }
+}
+
+fn refuse(text: &str) -> Ended {
+    terminal::complain(text);
+    Ended::Refused
+}
+
+/// Reads what was given.
+///
+/// # Errors
+/// [`Ended::Refused`]; what is wrong has been told.
+pub fn read(argument: &Path) -> Result<Given, Ended> {
+    if is_linkage_file(argument) {
+        let file = linkage_file::load(argument).map_err(|diagnostic| {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            Ended::Refused
+        })?;
+        return Ok(Given::Linkage(Box::new(file)));
+    }
+    read_run(argument).map(|run| Given::Run(Box::new(run)))
+}
+
+/// As [`read`], for a command that needs the record of a run: a linkage file is refused.
+///
+/// # Errors
+/// [`Ended::Refused`]; what is wrong has been told.
+pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
+    match read(argument)? {
+        Given::Run(run) => Ok(*run),
+        Given::Linkage(_) => Err(refuse(&format!(
+            "{} is a linkage without a run; {command} needs a result: a folder such as results/my-path, or its record.json",
+            argument.display()
+        ))),
+    }
+}
+
+/// As [`read`], for a command that is about one linkage alone, a chain or a four-bar: of a result it is the candidate
+/// that is named, else the first.
+///
+/// # Errors
+/// [`Ended::Refused`]; what is wrong has been told. [`Ended::Bad`] for a result without any candidate.
+pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
+    if is_linkage_file(argument) {
+        return linkage_file::load_any(argument).map_err(|diagnostic| {
+            terminal::diagnose(ReportKind::Error, &diagnostic);
+            Ended::Refused
+        });
+    }
+    let run = read_run(argument)?;
+    let chosen = run.one()?;
+    let problem = &run.record.problem;
+    Ok(AnyLinkageFile {
+        // The name that its linkage file has.
+        name: result_files::linkage_name(&run.record, &chosen.suffix),
+        unit: problem.unit,
+        linkage: Linkage::FourBar(chosen.candidate.linkage),
+    })
+}
+
+/// The file that a RESULT is read from: the record in a folder, whatever candidate is named.
+pub fn file_of(argument: &Path) -> PathBuf {
+    let named = match argument.to_str().and_then(|text| text.rsplit_once(':')) {
+        Some((folder, _)) if !argument.exists() => Path::new(folder),
+        _ => argument,
+    };
+    if named.is_dir() { named.join(RECORD) } else { named.to_path_buf() }
+}
+
+/// Whether an argument is the file of a linkage without a run.
+fn is_linkage_file(argument: &Path) -> bool {
+    argument.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !argument.is_dir()
+}
+
+fn read_run(argument: &Path) -> Result<Run, Ended> {
+    let shown = escaped(&argument.display().to_string());
+    let (folder, which) = match argument.to_str().and_then(|text| text.rsplit_once(':')) {
+        Some((folder, name)) if !argument.exists() => match name.parse::<usize>() {
+            Ok(rank) if rank >= 1 => (Path::new(folder), Which::Rank(rank)),
+            _ if name == BUILDABLE => (Path::new(folder), Which::Buildable),
+            _ => {
+                return Err(refuse(&format!(
+                    "{shown}: after the colon stands a candidate's rank, from 1, or the word {BUILDABLE}"
+                )));
+            }
+        },
+        _ => (argument, Which::All),
+    };
+    let record = read_record(folder).map_err(|e| refuse(&e.to_string()))?;
+    let n = record.candidates.len();
+    match which {
+        Which::Rank(rank) if rank > n => {
+            return Err(refuse(&format!("{shown}: there is no candidate {rank}, the result has {n}")));
+        }
+        Which::Buildable if record.buildable.is_none() => {
+            return Err(refuse(&format!(
+                "{shown}: the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
+            )));
+        }
+        _ => {}
+    }
+    let folder = folder.display().to_string();
+    let named = folder.trim_end_matches("/record.json").trim_end_matches('/').to_owned();
+    Ok(Run { named, record, which })
+}

@@ -1,0 +1,208 @@
+//! `snap`: lengths brought to stock sizes.
+
+use super::arguments::Snap as Options;
+use super::output::Output;
+use super::result;
+use super::result::Given;
+use super::{Ended, build, interrupt, synth, terminal};
+use crate::app::results_folder::ResultsFolder;
+use crate::files::diagnostic::{Diagnostic, escaped};
+use crate::files::generator::FileKind;
+use crate::files::linkage_file;
+use crate::files::name;
+use crate::judge::practicality::{Build, Practicality};
+use crate::mechanism::Unit;
+use crate::mechanism::{FourBar, xy};
+use crate::record::{Candidate, Reason, Record};
+use crate::report::practicality::practicality_text;
+use crate::report::snap::snap_text;
+use crate::report::text::clean;
+use crate::synthesis::Budget;
+use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, StockError, own_curve, record, snap};
+use crate::task::Problem;
+use ariadne::ReportKind;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// The longest text of a list of pitches.
+const MAX_PITCHES: u64 = 1 << 20;
+/// What is added to the name of what was snapped.
+const SUFFIX: &str = "-snapped";
+
+/// Runs the command.
+pub fn run(options: &Options) -> Ended {
+    inner(options).unwrap_or_else(|ended| ended)
+}
+
+fn refuse(text: &str) -> Ended {
+    terminal::complain(text);
+    Ended::Refused
+}
+
+/// What is to be snapped, with its problem.
+struct Subject {
+    label: String,
+    name: String,
+    source: Option<String>,
+    unit: Option<Unit>,
+    problem: Problem,
+    candidate: Candidate,
+}
+
+fn inner(options: &Options) -> Result<Ended, Ended> {
+    let begun = Instant::now();
+    let stock = stock(options)?;
+    let subject = subject(&options.result)?;
+    // Told before the work, not after it.
+    if let Some(path) = linkage_place(options) {
+        output(options).check(path, FileKind::Linkage)?;
+    }
+    let request = Request {
+        stock,
+        lengths: options.snap.clone(),
+        fixed: fixed(options, &subject.candidate.linkage),
+        wanted: subject.problem.spec().solve.candidates,
+    };
+    let cancel = interrupt::watch("saving the best so far");
+    let budget = Budget::new(cancel, None);
+    let snapped = match snap(&subject.problem, &subject.candidate, &request, &budget) {
+        Ok(snapped) => snapped,
+        Err(e @ SnapError::NoneFits) => {
+            terminal::complain(&e.to_string());
+            return Err(Ended::Bad);
+        }
+        Err(e @ SnapError::Interrupted) => {
+            terminal::complain(&format!("{e}: nothing was written"));
+            return Err(Ended::Interrupted);
+        }
+        Err(e) => return Err(refuse(&e.to_string())),
+    };
+    let Some(best) = snapped.candidates.first() else { return Err(Ended::Bad) };
+    let name = name::with_suffix(&name::legal(&subject.name, "linkage"), SUFFIX);
+    let search_s = begun.elapsed().as_secs_f64();
+    let record = record(&subject.problem, &name, subject.source, subject.unit, &request, &snapped)
+        .map_err(|e| refuse(&e.to_string()))?;
+    let written = write(options, &record, begun, search_s)?;
+    terminal::answer(&format!("{}\n", subject.label));
+    terminal::answer(&snap_text(&subject.candidate, &request, &snapped, subject.unit, terminal::colour()));
+    let hole = Build::usual_hole(&best.linkage, subject.unit.map(build::millimetre));
+    if let Some(found) = Practicality::of_candidate(&subject.problem, best, Build::new(hole, hole)) {
+        let tolerance = build::usual_tolerance(&best.linkage, subject.unit);
+        terminal::answer("\n");
+        terminal::answer(&practicality_text(&found, subject.unit, tolerance, terminal::colour()));
+    }
+    terminal::answer(&format!("\n  Wrote {}\n", escaped(&written.display().to_string())));
+    Ok(match snapped.reason {
+        Reason::Cancelled => Ended::Interrupted,
+        _ if best.accepted => Ended::Good,
+        _ => Ended::Bad,
+    })
+}
+
+fn stock(options: &Options) -> Result<Stock, Ended> {
+    let flag = |e: StockError| refuse(&e.to_string());
+    if let Some(step) = options.grid {
+        return Stock::grid(step).map_err(flag);
+    }
+    if let Some(lengths) = &options.lengths {
+        return Stock::list(lengths).map_err(flag);
+    }
+    let Some(path) = &options.pitches else { return Err(refuse("give --grid, --lengths or --pitches")) };
+    let shown = path.display().to_string();
+    let unread = |e: &dyn std::fmt::Display| refuse(&format!("{}: {e}", escaped(&shown)));
+    if std::fs::metadata(path).map_err(|e| unread(&e))?.len() > MAX_PITCHES {
+        return Err(unread(&"a list of lengths of more than 1 MB is refused"));
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| unread(&e))?;
+    Stock::parse(&text).map_err(|e| {
+        terminal::diagnose(ReportKind::Error, &Diagnostic::new(shown.clone(), "", e.to_string()));
+        Ended::Refused
+    })
+}
+
+fn subject(path: &Path) -> Result<Subject, Ended> {
+    match result::read(path)? {
+        Given::Linkage(file) => {
+            let (problem, candidate) = own_curve(&file.linkage).ok_or_else(|| {
+                refuse(&format!(
+                    "{} cannot be assembled, so it has no curve to keep",
+                    escaped(&path.display().to_string())
+                ))
+            })?;
+            let label = format!("{}, measured on its own coupler curve", clean(&file.name));
+            Ok(Subject { label, name: file.name, source: None, unit: file.unit, problem, candidate })
+        }
+        Given::Run(run) => {
+            let chosen = run.one()?;
+            let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
+            let asked = run.record.problem;
+            let problem = Problem::new(asked.resolved).map_err(|e| refuse(&e.to_string()))?;
+            if candidate.crank_deg.len() != problem.task().len()
+                || candidate.t1_at.len() != problem.task().len()
+            {
+                return Err(refuse(&format!("{label} has no position for each of the target's points")));
+            }
+            Ok(Subject {
+                label,
+                name: asked.name,
+                source: asked.source,
+                unit: asked.unit,
+                problem,
+                candidate,
+            })
+        }
+    }
+}
+
+fn fixed(options: &Options, linkage: &FourBar) -> Fixed {
+    let mut fixed = Fixed::default();
+    let angle = linkage.ground_angle().to_degrees();
+    for key in &options.keep {
+        match (Length::named(key), key.as_str()) {
+            (Some(length), _) => fixed = fixed.with(length, length.of(linkage)),
+            (None, "A") => fixed.crank_pivot = Some(xy(linkage.crank_pivot())),
+            (None, "B") => fixed.follower_pivot = Some(xy(linkage.follower_pivot())),
+            (None, _) => fixed.ground_angle_deg = Some(angle),
+        }
+    }
+    for (key, value) in &options.set {
+        match Length::named(key) {
+            Some(length) => fixed = fixed.with(length, *value),
+            None => fixed.ground_angle_deg = Some(*value),
+        }
+    }
+    fixed
+}
+
+/// The file for the best linkage alone, where one was named.
+fn linkage_place(options: &Options) -> Option<&Path> {
+    options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
+}
+
+fn output(options: &Options) -> Output {
+    Output::new([&options.result].into_iter().chain(&options.pitches), options.force)
+}
+
+/// Writes the record with everything that stands beside it, or the best linkage alone; where it is now.
+fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
+    let told = |e: &dyn std::fmt::Display| refuse(&e.to_string());
+    if let Some(path) = linkage_place(options) {
+        let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
+        let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
+        output(options).write(&[(path, FileKind::Linkage, text.as_bytes())])?;
+        return Ok(path.to_path_buf());
+    }
+    let place = options.out.clone().unwrap_or_else(|| Path::new("results").join(&record.problem.name));
+    let mut folder = ResultsFolder::take(&place).map_err(|e| told(&e))?;
+    let total_s = begun.elapsed().as_secs_f64();
+    let timing = synth::Timing {
+        search_s,
+        beside_s: total_s - search_s,
+        advice_s: None,
+        total_s,
+        threads: rayon::current_num_threads(),
+    };
+    let files = synth::files(record, &timing).map_err(|e| told(&e))?;
+    folder.replace(&files).map_err(|e| told(&e))?;
+    Ok(place)
+}

@@ -1,0 +1,80 @@
+//! Inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a
+//! run.
+
+use crate::app::results_folder::BUILDABLE;
+use crate::files::linkage_file::LinkageFile;
+use crate::record::{Candidate, Record};
+
+/// An input of the export, comparison and report commands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Given {
+    /// A result of a run.
+    Run(Box<Run>),
+    /// A linkage without a run.
+    Linkage(Box<LinkageFile>),
+}
+
+/// A result of a run, with the choice of its candidates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// The result's path as it was typed, without the candidate and without record.json: `results/k18`.
+    pub named: String,
+    /// The record. It contains the problem that was run, and so the target.
+    pub record: Record,
+    /// The choice of its candidates.
+    pub which: Which,
+}
+
+/// A choice among the candidates of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// All candidates: none was named.
+    All,
+    /// The candidate of this rank, as in `:2`. It exists.
+    Rank(usize),
+    /// The buildable candidate, `:buildable`, which a run offers if its first candidate has warnings. It exists.
+    Buildable,
+}
+
+/// The error that a result has no candidate.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} has no candidate: the run found none")]
+pub struct NoCandidate(pub String);
+
+/// A candidate that was chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen<'a> {
+    /// Its label: `results/k18:2`.
+    pub label: String,
+    /// Its part in the names of its files: `2` or `buildable`.
+    pub suffix: String,
+    /// The candidate, as the record has it.
+    pub candidate: &'a Candidate,
+}
+
+impl Run {
+    /// Returns the chosen candidates, best first; an empty list if the result has no candidate.
+    pub fn chosen(&self) -> Vec<Chosen<'_>> {
+        let chosen = |suffix: String, candidate| Chosen {
+            label: format!("{}:{suffix}", self.named),
+            suffix,
+            candidate,
+        };
+        let ranked = self.record.candidates.iter().enumerate().map(|(i, c)| ((i + 1).to_string(), c));
+        match self.which {
+            Which::All => ranked.map(|(suffix, c)| chosen(suffix, c)).collect(),
+            Which::Rank(rank) => ranked.skip(rank - 1).take(1).map(|(suffix, c)| chosen(suffix, c)).collect(),
+            Which::Buildable => {
+                self.record.buildable.iter().map(|c| chosen(BUILDABLE.to_owned(), c)).collect()
+            }
+        }
+    }
+
+    /// Returns the candidate that was named, otherwise the first.
+    ///
+    /// # Errors
+    /// [`NoCandidate`] if the result has none.
+    pub fn one(&self) -> Result<Chosen<'_>, NoCandidate> {
+        self.chosen().into_iter().next().ok_or_else(|| NoCandidate(self.named.clone()))
+    }
+}

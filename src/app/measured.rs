@@ -1,0 +1,265 @@
+//! Measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked.
+
+use crate::app::given::{Chosen, Given, Run};
+use crate::files::diagnostic::escaped;
+use crate::files::linkage_file::LinkageFile;
+use crate::files::problem_file::ProblemFile;
+use crate::judge::assess::assess;
+use crate::judge::verify::verify_candidate;
+use crate::mechanism::Unit;
+use crate::mechanism::{AssemblyMode, FourBar};
+use crate::record::Candidate;
+use crate::record::digest::digest;
+use crate::report::certificate::headline;
+use crate::report::compare::{
+    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, scaled, times, unit_remarks,
+};
+use crate::synthesis::nearest::nearest_positions;
+use crate::task::Problem;
+use crate::task::TaskError;
+use std::path::Path;
+
+/// The target that errors are measured against, with the problem that it belongs to.
+#[derive(Clone)]
+pub struct Target {
+    /// The name of the problem.
+    pub name: String,
+    problem: Problem,
+    /// The unit of the problem's lengths.
+    pub unit: Option<Unit>,
+}
+
+impl Target {
+    /// Returns the target of a problem file.
+    ///
+    /// # Errors
+    /// The reason why the file states no valid problem.
+    pub fn new(file: ProblemFile) -> Result<Self, TaskError> {
+        let problem = Problem::new(file.spec.clone())?;
+        Ok(Target { name: file.name, problem, unit: file.unit })
+    }
+
+    /// Returns the target of a run.
+    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, String> {
+        let asked = &run.record.problem;
+        let problem = Problem::new(asked.resolved.clone())
+            .map_err(|e| format!("{}: the recorded problem is none: {e}", run.named))?;
+        Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
+    }
+
+    /// Returns whether points, timing and unit are the same, so that positions on one target are positions on the
+    /// other.
+    fn is(&self, other: &Target) -> bool {
+        let (one, other_path) = (&self.problem.spec().task.path, &other.problem.spec().task.path);
+        let one_unit = self.unit.zip(other.unit).is_none_or(|(one, other)| one == other);
+        one_unit && same_points(&one.points, &other_path.points) && one.timing == other_path.timing
+    }
+
+    fn entry(&self, label: String, candidate: Candidate, unit: Option<Unit>, of_run: bool) -> Entry {
+        let path = &self.problem.spec().task.path;
+        Entry {
+            label,
+            candidate,
+            target_name: self.name.clone(),
+            target: path.points.clone(),
+            closed: path.closed,
+            unit: self.unit.or(unit),
+            measure: self.problem.spec().measure(),
+            of_run,
+            untrue: Vec::new(),
+        }
+    }
+
+    /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
+    fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, String> {
+        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
+        let linkage = scaled(linkage, factor).map_err(|e| e.to_string())?;
+        nearest_positions(&self.problem, &linkage)
+            .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
+            .ok_or_else(|| format!("it cannot be assembled at every point of {}", self.name))
+    }
+
+    fn at(&self, linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Option<Candidate> {
+        let n = self.problem.task().len();
+        let positions = crank_deg.len() == n && t1_at.len() == n;
+        if positions { assess(&self.problem, linkage, crank_deg, t1_at) } else { None }
+    }
+}
+
+/// The inputs of a comparison, measured.
+#[derive(Default)]
+pub struct Measured {
+    /// The entries with figures.
+    pub entries: Vec<Entry>,
+    /// The inputs without figures.
+    pub left_out: Vec<LeftOut>,
+    /// The label of each input with the unit of its file.
+    pub units: Vec<(String, Option<Unit>)>,
+    /// Remarks on how the figures were measured, in sentences.
+    pub remarks: Vec<String>,
+}
+
+/// The reason why there is no comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotCompared {
+    /// No input has figures; the reason for each.
+    Nothing(Vec<LeftOut>),
+    /// The comparison is refused; the message for the user.
+    Refused(String),
+}
+
+/// Compares the inputs side by side: in the unit of the target, otherwise of the first input that has a unit, ranked by
+/// `keys`. `reference` is the label of the entry from which differences are taken.
+///
+/// # Errors
+/// [`NotCompared`].
+pub fn compared(
+    given: &[(&Path, Given)],
+    target: Option<&Target>,
+    keys: &[SortKey],
+    reference: Option<&str>,
+) -> Result<Comparison, NotCompared> {
+    let named = target.map(|target| (target.name.clone(), target.unit));
+    let unit = named.as_ref().and_then(|(_, unit)| *unit);
+    let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
+    let measured = Measured::of(given, target, unit).map_err(NotCompared::Refused)?;
+    if measured.entries.is_empty() {
+        return Err(NotCompared::Nothing(measured.left_out));
+    }
+    let reference = match reference {
+        Some(label) => Some(measured.entries.iter().position(|e| e.label == label).ok_or_else(|| {
+            NotCompared::Refused(format!("{label} has no figures that others could be compared with"))
+        })?),
+        None => None,
+    };
+    let entries = in_one_unit(&measured.entries, unit)
+        .map_err(|e| NotCompared::Refused(format!("a linkage cannot be converted to another unit: {e}")))?;
+    let mut comparison = compare(&entries, keys, reference);
+    comparison.remarks.extend(measured.remarks);
+    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
+    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
+    comparison.left_out = measured.left_out;
+    Ok(comparison)
+}
+
+fn unit_of(given: &Given) -> Option<Unit> {
+    match given {
+        Given::Run(run) => run.record.problem.unit,
+        Given::Linkage(file) => file.unit,
+    }
+}
+
+/// Returns the label of a linkage file: its name, or its path if another file has the same name.
+pub fn label_of_file(given: &[(&Path, Given)], index: usize) -> String {
+    let (path, Given::Linkage(file)) = &given[index] else { return String::new() };
+    let same = |other: &Given| matches!(other, Given::Linkage(other) if other.name == file.name);
+    let alone = given.iter().enumerate().all(|(i, (_, other))| i == index || !same(other));
+    if alone { file.name.clone() } else { escaped(&path.display().to_string()) }
+}
+
+impl Measured {
+    /// Measures the inputs: candidates of runs on their own problems, or everything on `target`. Linkage files without
+    /// a target are measured on the problem of the runs beside them, if these have the same problem. Lengths without a
+    /// unit, also those of a target, are taken to be in `unit`.
+    ///
+    /// # Errors
+    /// The message for the user.
+    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, String> {
+        let mut measured = Measured::default();
+        let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
+        let target = target.as_ref();
+        let mut of_runs: Vec<Option<Target>> = Vec::new();
+        for (_, one) in given {
+            of_runs.push(match one {
+                Given::Run(run) => Some(Target::of_run(run, unit)?),
+                Given::Linkage(_) => None,
+            });
+        }
+        let mut runs = of_runs.iter().flatten();
+        let first = runs.next();
+        let common = target.or(first.filter(|first| runs.all(|other| first.is(other))));
+        for (i, ((path, one), own)) in given.iter().zip(&of_runs).enumerate() {
+            match (one, own) {
+                (Given::Run(run), Some(own)) => {
+                    let untrue = digest_of(run);
+                    let proved = run.record.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
+                    if let (Some(proof), None, true) = (proved, target, untrue.is_empty()) {
+                        let named = escaped(&run.named);
+                        measured.remarks.push(format!("{named}, as its record says: {}.", headline(proof)));
+                    }
+                    for chosen in run.chosen() {
+                        measured.units.push((chosen.label.clone(), run.record.problem.unit));
+                        measured.candidate(&chosen, own, target, &untrue);
+                    }
+                }
+                (Given::Linkage(file), _) => {
+                    let on = common.ok_or_else(|| {
+                        let shown = escaped(&path.display().to_string());
+                        format!("{shown} is a linkage without a target: say which with --target PROBLEM.toml")
+                    })?;
+                    let label = label_of_file(given, i);
+                    measured.units.push((label.clone(), file.unit));
+                    measured.file(label, file, on);
+                }
+                (Given::Run(_), None) => {}
+            }
+        }
+        if target.is_none()
+            && let Some(common) = common
+            && measured.entries.iter().any(|entry| !entry.of_run)
+        {
+            measured
+                .remarks
+                .push(format!("Linkage files are measured on {}, the problem of the runs.", common.name));
+        }
+        Ok(measured)
+    }
+
+    fn put(&mut self, label: String, entry: Result<Entry, String>) {
+        match entry {
+            Ok(entry) => self.entries.push(entry),
+            Err(why) => self.left_out.push(LeftOut { label, why }),
+        }
+    }
+
+    /// Measures a linkage without a run.
+    fn file(&mut self, label: String, file: &LinkageFile, on: &Target) {
+        let entry = on
+            .nearest(&file.linkage, file.unit)
+            .map(|candidate| on.entry(label.clone(), candidate, file.unit, false));
+        self.put(label, entry);
+    }
+
+    /// Measures a candidate of a run: at its own positions if the target is its own, otherwise as a linkage without a
+    /// run.
+    fn candidate(&mut self, chosen: &Chosen<'_>, own: &Target, target: Option<&Target>, untrue: &[String]) {
+        let (label, recorded) = (chosen.label.clone(), chosen.candidate);
+        let on = target.unwrap_or(own);
+        let mut found: Vec<String> = untrue.to_vec();
+        found.extend(verify_candidate(&own.problem, recorded).into_iter().map(|mismatch| {
+            let as_recorded = format!("{} is recorded as {}", mismatch.what, mismatch.recorded);
+            format!("{as_recorded}, but it is {}", mismatch.found)
+        }));
+        let same = on.is(own);
+        let measured = if same && found.is_empty() && target.is_none() {
+            // Checked a moment ago. If a verdict depends on rounding, the recorded one is kept.
+            Ok(recorded.clone())
+        } else {
+            let there =
+                same.then(|| on.at(&recorded.linkage, &recorded.crank_deg, &recorded.t1_at)).flatten();
+            there.map_or_else(|| on.nearest(&recorded.linkage, own.unit), Ok)
+        };
+        let entry = measured
+            .map(|candidate| Entry { untrue: found, ..on.entry(label.clone(), candidate, own.unit, true) });
+        self.put(label, entry);
+    }
+}
+
+/// Returns a message if the problem was changed after the run.
+fn digest_of(run: &Run) -> Vec<String> {
+    let asked = &run.record.problem;
+    match digest(&asked.resolved) {
+        Ok(found) if found == asked.digest => Vec::new(),
+        _ => vec!["the problem is not the one that was run (problem.digest)".to_owned()],
+    }
+}

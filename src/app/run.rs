@@ -1,0 +1,272 @@
+//! One run: from a problem to its record. It joins the other modules.
+
+use crate::files::problem_file::ProblemFile;
+use crate::judge::assess::to_raw;
+use crate::judge::certificate;
+use crate::judge::rank::holds_an_exact;
+use crate::mechanism::Unit;
+use crate::numbers::optimise::population::PopulationError;
+use crate::record::digest::{NotWritten, digest};
+use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool};
+use crate::synthesis::conflicts::Explained;
+use crate::synthesis::keeper::Keeper;
+use crate::synthesis::{Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
+use crate::synthesis::{errors_without, offered_cognates};
+use crate::task::Problem;
+use crate::task::TaskError;
+use crate::task::forms::precision::{Refusal, precision_points};
+use crate::task::spec::{Method, ProblemSpec};
+use serde::Serialize;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// A job to run: a problem with its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// The problem's name.
+    pub name: String,
+    /// The source of the problem, in words.
+    pub source: Option<String>,
+    /// The label of lengths.
+    pub unit: Option<Unit>,
+    /// The problem with every default filled in.
+    pub spec: ProblemSpec,
+}
+
+impl From<ProblemFile> for Job {
+    fn from(ProblemFile { name, source, unit, spec, .. }: ProblemFile) -> Self {
+        Job { name, source, unit, spec }
+    }
+}
+
+/// The inputs of a run from its caller.
+#[derive(Clone, Copy)]
+pub struct Context<'a> {
+    /// The cancellation flag; setting it ends the run with its best answer so far.
+    pub cancel: &'a AtomicBool,
+    /// The callback that receives the progress of the search.
+    pub observer: &'a Observer<'a>,
+}
+
+/// The reason why a job cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The task is invalid.
+    #[error(transparent)]
+    Task(#[from] TaskError),
+    /// Exact linkages are asked for although there are none to list.
+    #[error(transparent)]
+    Precision(#[from] Refusal),
+    /// A population search cannot be set up.
+    #[error(transparent)]
+    Population(#[from] PopulationError),
+    /// The problem cannot be written as data.
+    #[error(transparent)]
+    NotWritten(#[from] NotWritten),
+}
+
+/// The seconds spent on each part of the advice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AdviceSeconds {
+    /// Costs of the limits on which candidates lie.
+    pub costs: f64,
+    /// Conflicts of requirements, and the relaxations that help.
+    pub conflicts: f64,
+    /// Warnings, a family, and a buildable candidate.
+    pub buildable: f64,
+}
+
+/// A record with the time that its search took.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    /// The record.
+    pub record: Record,
+    /// Seconds from the checked problem to ranked, refereed candidates.
+    pub search_s: f64,
+    /// Further seconds for everything computed beside them.
+    pub beside_s: f64,
+    /// The seconds of each part of `beside_s`.
+    pub advice_s: AdviceSeconds,
+}
+
+/// Runs a job on the current rayon thread pool; a certificate that its problem asks for is left to [`prove`].
+///
+/// # Errors
+/// [`RunError`] if the job cannot be searched; a search that finds nothing is a record with no accepted candidate, not
+/// an error.
+pub fn run(job: &Job, context: &Context<'_>) -> Result<Finished, RunError> {
+    run_kept(job, context, None)
+}
+
+/// Computes the certificate that a record's problem asks for, within its time limit, and puts it into the record, or
+/// the reason why there is none. Does nothing if no certificate is asked for or the search was cancelled.
+pub fn prove(record: &mut Record, cancel: &AtomicBool, progress: &mut dyn FnMut(&certificate::Progress)) {
+    let Some(asked) = record.problem.resolved.solve.certify else { return };
+    if record.termination.reason == Reason::Cancelled {
+        return;
+    }
+    let limit = Duration::try_from_secs_f64(asked.time_limit_s).ok();
+    let deadline = limit.and_then(|limit| Instant::now().checked_add(limit));
+    let request = certificate::Request { gap: asked.gap };
+    match certificate::certify(record, &request, cancel, deadline, progress) {
+        Ok(certificate) => record.certificate = Some(certificate),
+        Err(why) => record.no_certificate = Some(why.to_string()),
+    }
+}
+
+/// As [`run`], with a keeper of the state of its search: the search resumes from there, and ends in the same record as
+/// one from the beginning.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -> Result<Finished, RunError> {
+    let start = Instant::now();
+    let problem = Problem::new(job.spec.clone())?;
+    if job.spec.solve.method == Method::Continuation {
+        precision_points(&problem)?;
+    }
+    let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
+    let mut outcome = plan::search_kept(&problem, &budget, context.observer, keeper)?;
+    offered_cognates::offer(&problem, &mut outcome.candidates, &budget);
+    let search_s = start.elapsed().as_secs_f64();
+    let mut advice_s = AdviceSeconds::default();
+    let mut so_far = search_s;
+    let mut lap = |part: &mut f64| {
+        let now = start.elapsed().as_secs_f64();
+        (*part, so_far) = (now - so_far, now);
+    };
+    let explained = explained(&problem, &mut outcome, &budget, context.observer)?;
+    // After it: the list of candidates is final, and ranks refer to it.
+    continuation::finish(&problem, &mut outcome);
+    lap(&mut advice_s.conflicts);
+    // After the conflicts: the search for relaxations may have met an acceptable design.
+    errors_without::attach(&problem, &mut outcome, &budget);
+    lap(&mut advice_s.costs);
+    let mut beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    lap(&mut advice_s.buildable);
+    for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
+        candidate.error.to_raw = to_raw(&problem, candidate);
+    }
+    outcome.reason = reached(&problem, &outcome);
+    let beside_s = start.elapsed().as_secs_f64() - search_s;
+    let reproducible = outcome.reason.is_repeatable();
+    let record = Record {
+        format: FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        problem: ProblemRecord {
+            name: job.name.clone(),
+            source: job.source.clone(),
+            unit: job.unit,
+            digest: digest(&job.spec)?,
+            resolved: job.spec.clone(),
+        },
+        seed: job.spec.solve.seed,
+        method: MethodRecord { asked: job.spec.solve.method, used: outcome.used },
+        termination: Termination { reason: outcome.reason, reproducible },
+        evaluations: outcome.evaluations,
+        family: beside.family,
+        buildable: beside.buildable,
+        candidates: outcome.candidates,
+        conflict: explained.conflict,
+        relaxations: explained.relaxations,
+        certificate: None,
+        no_certificate: None,
+        repeats: outcome.repeats,
+        exact: outcome.exact,
+    };
+    Ok(Finished { record, search_s, beside_s, advice_s })
+}
+
+/// Returns the reason why a search ended, consistent with its list: a target is reached only if an accepted candidate of
+/// the list is exact. A search far from the origin, or one whose best gave way to a cognate, may have found an exact one
+/// that is not in the list: then it converged if its best came back, else it stalled.
+fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
+    if outcome.reason == Reason::TargetReached && !holds_an_exact(problem, &outcome.candidates) {
+        let came_back = outcome.repeats.as_ref().is_some_and(|repeats| repeats.hits > 1);
+        return if came_back { Reason::Converged } else { Reason::Stalled };
+    }
+    outcome.reason
+}
+
+/// Returns the explanation why nothing is acceptable, if that is so and advice is asked for. If the budget leaves no
+/// time for it, the record shows that by its reason: with more time it would hold more.
+fn explained(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<Explained, PopulationError> {
+    let solve = &problem.spec().solve;
+    let listed = solve.method == Method::Continuation;
+    if !solve.advice || listed || outcome.candidates.iter().any(|c| c.accepted) {
+        return Ok(Explained::default());
+    }
+    if let Some(reason) = budget.stop_reason() {
+        outcome.reason = reason;
+        return Ok(Explained::default());
+    }
+    conflicts::explain(problem, outcome, budget, observer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Evaluations;
+
+    #[test]
+    fn a_target_is_reached_only_if_a_listed_accepted_candidate_is_exact() {
+        let text =
+            "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\n[solve]\ncandidates = 1\n";
+        let file = crate::files::problem_file::parse("it.toml", text, None, &[]).expect("a problem");
+        let problem = Problem::new(file.spec.clone()).expect("a problem");
+        let job = Job::from(file);
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&job, &context).expect("it runs").record;
+        assert_eq!(record.termination.reason, Reason::TargetReached);
+        let mut outcome = SearchOutcome {
+            candidates: record.candidates,
+            others: Vec::new(),
+            used: Vec::new(),
+            reason: Reason::TargetReached,
+            evaluations: Evaluations::default(),
+            exact: None,
+            repeats: None,
+        };
+        assert_eq!(reached(&problem, &outcome), Reason::TargetReached);
+        outcome.candidates[0].accepted = false;
+        assert_eq!(reached(&problem, &outcome), Reason::Stalled);
+        (outcome.candidates[0].accepted, outcome.candidates[0].error.sum_sq) = (true, 1e-9);
+        assert_eq!(reached(&problem, &outcome), Reason::Stalled);
+        outcome.repeats = Some(crate::record::Repeats::new(9, 2, 2));
+        assert_eq!(reached(&problem, &outcome), Reason::Converged);
+        outcome.candidates.clear();
+        assert_eq!(reached(&problem, &outcome), Reason::Converged);
+        outcome.reason = Reason::Cancelled;
+        assert_eq!(reached(&problem, &outcome), Reason::Cancelled);
+    }
+
+    #[test]
+    fn a_record_whose_explanation_found_no_time_says_that_it_cannot_be_repeated() {
+        let points = "[[0, 0], [1, 1], [2, 1.5], [3, 1], [4, 0]]";
+        for (advice, reason) in [(true, Reason::Cancelled), (false, Reason::Stalled)] {
+            let text = format!(
+                "format = 1\n[task.path]\npoints = {points}\ntolerance = 1e-9\n[solve]\nadvice = {advice}\n"
+            );
+            let file = crate::files::problem_file::parse("it.toml", &text, None, &[]).expect("a problem");
+            let problem = Problem::new(file.spec).expect("a problem");
+            let mut outcome = SearchOutcome {
+                candidates: Vec::new(),
+                others: Vec::new(),
+                used: Vec::new(),
+                reason: Reason::Stalled,
+                evaluations: Evaluations::default(),
+                exact: None,
+                repeats: None,
+            };
+            let flag = AtomicBool::new(true);
+            let budget = Budget { cancel: &flag, deadline: None };
+            let found = explained(&problem, &mut outcome, &budget, &|_| {}).expect("no error");
+            assert_eq!((found, outcome.reason), (Explained::default(), reason));
+        }
+    }
+}

@@ -1,0 +1,395 @@
+//! Everything that is known of one linkage: of a saved result, or as it stands under the hand. Details, files and
+//! comparisons are made from the record that it belongs to, by the functions that the command line calls.
+
+use super::messages::{Ask, Shown};
+use crate::app::given::{Given, Run, Which};
+use crate::app::measured::{NotCompared, compared};
+use crate::app::studio::shelf::Shelf;
+use crate::files::problem_file::ProblemFile;
+use crate::judge::assess::{assess, to_raw};
+use crate::judge::verify::verify;
+use crate::mechanism::Unit;
+use crate::mechanism::{AssemblyMode, FourBar, NaturalCoordinates};
+use crate::record::digest::digest;
+use crate::record::{Candidate, Evaluations, FORMAT, MethodRecord, ProblemRecord, Reason, Record};
+use crate::record::{Termination, Tool};
+use crate::report::compare::SortKey;
+use crate::report::export::{Format, Settings, Subject, export};
+use crate::report::{csv, html, svg};
+use crate::synthesis::answers::annotate;
+use crate::synthesis::errors_without;
+use crate::synthesis::{Budget, SearchOutcome};
+use crate::task::Problem;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, VecDeque};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Records of ended searches that are kept.
+const KEPT: usize = 16;
+/// What costs of a linkage under the hand may take, seconds.
+const PATIENCE_S: f64 = 1.5;
+/// The budget from which they are looked for, evaluations.
+const EFFORT: u64 = 40_000;
+/// The most linkages of a comparison.
+pub(super) const MOST_COMPARED: usize = 20;
+
+/// Which linkage is meant.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Source {
+    /// A candidate of a saved result.
+    Job(OfJob),
+    /// A linkage that the studio has shown for an edit.
+    Drawn(Box<Drawn>),
+}
+
+/// A candidate of a saved result.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OfJob {
+    /// The result.
+    pub name: String,
+    /// The candidate's rank, from 1.
+    pub rank: usize,
+}
+
+/// A linkage as it stands under the hand: what of an answer's `Shown` decides it.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Drawn {
+    /// The edit that it answers.
+    pub ask: Ask,
+    /// The linkage.
+    pub linkage: NaturalCoordinates,
+    /// The crank angle at each target point, degrees.
+    pub crank_deg: Vec<f64>,
+    /// The assembly (1 or -1) at each point.
+    pub t1_at: Vec<i64>,
+}
+
+/// A linkage whose details are wanted.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct DetailsAsk {
+    /// Which one.
+    pub of: Source,
+}
+
+/// What the report says of a linkage.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Details {
+    /// The problem's name.
+    pub name: String,
+    /// The label of lengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// The tolerance at each point.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<Vec<f64>>,
+    /// The least transmission angle that was asked for, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transmission_deg_min: Option<f64>,
+    /// How many candidates the result has.
+    pub candidates: usize,
+    /// The linkage.
+    pub shown: Shown,
+    /// What came of the search, as markup without scripts.
+    pub summary: String,
+    /// Figures, mobility, warnings, requirements with what they cost, dimensions: as markup without scripts.
+    pub words: String,
+}
+
+/// A linkage that is wanted as a file.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ExportAsk {
+    /// Which one.
+    pub of: Source,
+    /// A format of `linkwright export`, or `html` (the report), `sheet` (its drawing), `points` (CSV along the
+    /// points).
+    pub format: String,
+    /// Settings, as `linkwright export --set` takes them: `{"hole_mm": "4"}`.
+    #[serde(default)]
+    pub set: BTreeMap<String, String>,
+}
+
+/// Linkages that are to be compared.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CompareAsk {
+    /// Which ones: 1 to 20.
+    pub of: Vec<Source>,
+    /// What they are ranked by, as `linkwright compare --sort` takes it; empty: the sum of squared errors.
+    #[serde(default)]
+    pub sort: Vec<String>,
+    /// `json`, or `html`, `csv`, `svg` for a file.
+    #[serde(default)]
+    pub form: Form,
+}
+
+/// The form of a comparison.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Form {
+    /// As `linkwright compare --json` prints it.
+    #[default]
+    Json,
+    /// A page.
+    Html,
+    /// A table.
+    Csv,
+    /// The linkages over their target.
+    Svg,
+}
+
+/// A file to hand out.
+pub(super) struct Handed {
+    /// Its media type.
+    pub(super) kind: &'static str,
+    /// What stands after the dot of its name.
+    pub(super) ending: &'static str,
+    /// Its bytes.
+    pub(super) bytes: Vec<u8>,
+}
+
+/// The records of the latest searches of all tabs.
+#[derive(Default)]
+pub(super) struct Finished(Mutex<VecDeque<Arc<Record>>>);
+
+impl Finished {
+    /// Keeps a record; the oldest goes.
+    pub(super) fn keep(&self, record: &Record) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.retain(|other| other.problem.digest != record.problem.digest);
+        kept.push_back(Arc::new(record.clone()));
+        if kept.len() > KEPT {
+            kept.pop_front();
+        }
+    }
+
+    fn of(&self, digest: &str) -> Option<Arc<Record>> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.iter().find(|record| record.problem.digest == digest).cloned()
+    }
+}
+
+/// A record and one of its candidates, counted from 0.
+struct Found {
+    record: Record,
+    index: usize,
+}
+
+/// Where linkages are looked for.
+#[derive(Clone, Copy)]
+pub(super) struct Sources<'a> {
+    pub(super) shelf: &'a Shelf,
+    pub(super) finished: &'a Finished,
+}
+
+impl Sources<'_> {
+    fn find(self, source: &Source, with_costs: bool) -> Result<Found, String> {
+        match source {
+            Source::Job(OfJob { name, rank }) => {
+                let record = self.shelf.record(name)?;
+                if let Some(first) = verify(&record).map_err(|e| e.to_string())?.first() {
+                    return Err(format!("the record of {name} is not true: {first}"));
+                }
+                let n = record.candidates.len();
+                if *rank == 0 || *rank > n {
+                    return Err(format!("{name} has no candidate {rank}: it has {n}"));
+                }
+                Ok(Found { record, index: rank - 1 })
+            }
+            Source::Drawn(drawn) => self.drawn(drawn, with_costs),
+        }
+    }
+
+    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, String> {
+        let file = drawn.ask.problem()?;
+        let problem = Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
+        let linkage = FourBar::new(drawn.linkage).map_err(|e| e.to_string())?;
+        let n = problem.task().len();
+        if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
+            return Err(format!("`crank_deg` and `t1_at` have one value for each of the {n} points"));
+        }
+        let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
+        let t1_at = t1_at.ok_or("`t1_at` holds 1 and -1 alone")?;
+        let digest = digest(&file.spec).map_err(|e| e.to_string())?;
+        if let Some(record) = self.finished.of(&digest) {
+            let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
+            if let Some(index) = record.candidates.iter().position(same) {
+                let mut record = (*record).clone();
+                (record.problem.name, record.problem.unit) = (file.name, file.unit);
+                return Ok(Found { record, index });
+            }
+        }
+        let mut candidate = assess(&problem, &linkage, &drawn.crank_deg, &t1_at)
+            .ok_or("this linkage cannot be assembled at every point")?;
+        candidate.rank = 1;
+        let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
+        for candidate in &mut candidates {
+            annotate(&problem, candidate);
+            candidate.error.to_raw = to_raw(&problem, candidate);
+        }
+        Ok(Found { record: by_hand(file, digest, candidates), index: 0 })
+    }
+
+    /// What is known of a linkage.
+    ///
+    /// # Errors
+    /// Why nothing is, in words.
+    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, String> {
+        let Found { record, index } = self.find(&ask.of, true)?;
+        let words = html::candidate_markup(&record, index).unwrap_or_default();
+        let summary = html::summary_markup(&record);
+        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
+        let path = &record.problem.resolved.task.path;
+        Ok(Details {
+            name: record.problem.name.clone(),
+            unit: record.problem.unit,
+            points: path.points.clone(),
+            closed: path.closed,
+            tolerance: path.tolerance.clone(),
+            transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
+            candidates: record.candidates.len(),
+            shown: Shown::from(candidate),
+            summary,
+            words,
+        })
+    }
+
+    /// A linkage as a file.
+    ///
+    /// # Errors
+    /// Why there is none, in words.
+    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, String> {
+        let plain = ["html", "sheet", "points"].contains(&ask.format.as_str());
+        if plain && !ask.set.is_empty() {
+            return Err(format!("{} takes no settings", ask.format));
+        }
+        let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
+        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
+        let text = |kind, ending, text: String| Ok(Handed { kind, ending, bytes: text.into_bytes() });
+        match ask.format.as_str() {
+            "html" => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
+            "sheet" => text("image/svg+xml", "svg", svg::candidate_svg(&record, index)),
+            "points" => text("text/csv; charset=utf-8", "csv", csv::candidate_curve_csv(candidate)),
+            other => {
+                let format: Format = other.parse().map_err(|e| format!("{e}, html, sheet or points"))?;
+                let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
+                let said = |e: crate::report::export::Refusal| format!("{}: {}", e.message, e.help);
+                let settings = Settings::parse(format, &set).map_err(said)?;
+                let subject = Subject::of_candidate(&record, candidate);
+                let bytes = export(&subject, format, &settings).map_err(said)?.bytes;
+                let (kind, ending) = kind_of(format);
+                Ok(Handed { kind, ending, bytes })
+            }
+        }
+    }
+
+    /// Linkages side by side.
+    ///
+    /// # Errors
+    /// Why there is no comparison, in words.
+    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, String> {
+        if ask.of.is_empty() || ask.of.len() > MOST_COMPARED {
+            return Err(format!("compare 1 to {MOST_COMPARED} linkages"));
+        }
+        let keys: Result<Vec<SortKey>, _> = ask.sort.iter().map(|key| key.parse()).collect();
+        let keys = keys.map_err(|e| e.to_string())?;
+        let mut given = Vec::new();
+        for (i, source) in ask.of.iter().enumerate() {
+            // With costs: they are worked out again where the record is proved.
+            let Found { record, index } = self.find(source, true)?;
+            let named = match source {
+                Source::Job(of) => self.shelf.folder().join(&of.name).display().to_string(),
+                Source::Drawn(_) => format!("drawing {}", i + 1),
+            };
+            let run = Run { named, record, which: Which::Rank(index + 1) };
+            given.push((Path::new(""), Given::Run(Box::new(run))));
+        }
+        let comparison = compared(&given, None, &keys, None).map_err(|e| match e {
+            NotCompared::Refused(why) => why,
+            NotCompared::Nothing(_) => "none of these can be compared".to_owned(),
+        })?;
+        let (kind, ending, text) = match ask.form {
+            Form::Json => ("application/json", "json", comparison.json()),
+            Form::Html => ("text/html; charset=utf-8", "html", comparison.html()),
+            Form::Csv => ("text/csv; charset=utf-8", "csv", comparison.csv()),
+            Form::Svg => ("image/svg+xml", "svg", comparison.svg()),
+        };
+        Ok(Handed { kind, ending, bytes: text.into_bytes() })
+    }
+}
+
+fn assembly(t1: i64) -> Option<AssemblyMode> {
+    serde_json::from_value(t1.into()).ok()
+}
+
+/// A candidate with what its limits cost.
+fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
+    let mut outcome = SearchOutcome {
+        candidates: vec![candidate],
+        others: Vec::new(),
+        used: Vec::new(),
+        reason: Reason::ByHand,
+        evaluations: Evaluations { objective: EFFORT, positions: 0 },
+        exact: None,
+        repeats: None,
+    };
+    errors_without::attach(problem, &mut outcome, &Budget::new(&AtomicBool::new(false), Some(PATIENCE_S)));
+    outcome.candidates
+}
+
+/// The record of a linkage that no search ended with: it was fitted under the hand, and that was ended by hand.
+fn by_hand(file: ProblemFile, digest: String, candidates: Vec<Candidate>) -> Record {
+    Record {
+        format: FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        seed: file.spec.solve.seed,
+        method: MethodRecord { asked: file.spec.solve.method, used: vec!["following-the-hand".into()] },
+        problem: ProblemRecord {
+            name: file.name,
+            source: file.source,
+            unit: file.unit,
+            digest,
+            resolved: file.spec,
+        },
+        termination: Termination { reason: Reason::ByHand, reproducible: Reason::ByHand.is_repeatable() },
+        evaluations: Evaluations::default(),
+        family: None,
+        buildable: None,
+        exact: None,
+        candidates,
+        conflict: None,
+        relaxations: Vec::new(),
+        certificate: None,
+        no_certificate: None,
+        repeats: None,
+    }
+}
+
+/// The media type of a format, and the ending of its files.
+fn kind_of(format: Format) -> (&'static str, &'static str) {
+    match format {
+        Format::Svg | Format::SvgPlates => ("image/svg+xml", "svg"),
+        Format::Dxf | Format::DxfPlates => ("image/vnd.dxf", "dxf"),
+        Format::Stl => ("model/stl", "stl"),
+        Format::Scad => ("application/x-openscad", "scad"),
+        Format::Csv | Format::CutListCsv => ("text/csv; charset=utf-8", "csv"),
+        Format::Toml => ("application/toml; charset=utf-8", "toml"),
+        Format::Json => ("application/json", "json"),
+        Format::CutList => ("text/plain; charset=utf-8", "txt"),
+        #[cfg(feature = "images")]
+        Format::Png => ("image/png", "png"),
+        #[cfg(feature = "images")]
+        Format::Gif => ("image/gif", "gif"),
+    }
+}

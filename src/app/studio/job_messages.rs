@@ -1,0 +1,171 @@
+//! What is said of jobs, as JSON; the schemas are made from these types.
+
+use super::messages::Ask;
+use crate::mechanism::Unit;
+use crate::record::{Candidate, Record};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A search to begin, whose result is saved. Exactly one of `ask` and `problem` is given.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct JobAsk {
+    /// The target and the requirements as they stand in a tab. Its name is that of the job and of its folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ask: Option<Ask>,
+    /// The text of a problem file. Its points stand in it: files are not read for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+    /// Keys of `[solve]` to set, with values as `--set` takes them: `{"solve.evaluations": "1000000"}`.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set: BTreeMap<String, String>,
+    /// Replace an earlier result of that name; without it such a name is refused.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub replace: bool,
+}
+
+/// Where a job stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum JobState {
+    /// It searches.
+    Running,
+    /// Its search has ended by itself.
+    Done,
+    /// Its search was stopped, or its time was over; the best so far is saved.
+    Stopped,
+    /// The studio ended before the job did.
+    BrokenOff,
+    /// Another program, such as `linkwright synth`, works in its folder.
+    Elsewhere,
+    /// It could not be run or saved.
+    Failed,
+    /// What its folder holds is no whole result.
+    Unreadable,
+}
+
+/// A job, or a result that was made before.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct JobShown {
+    /// Its name: that of its folder.
+    pub name: String,
+    /// Where it stands.
+    pub state: JobState,
+    /// The same in words.
+    pub said: String,
+    /// Whether it can go on: from its checkpoint, or where there is none from the beginning.
+    pub resumable: bool,
+    /// While it runs: how far it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub progress: Option<JobProgress>,
+    /// What its folder holds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub result: Option<JobResult>,
+}
+
+/// How far a search is.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct JobProgress {
+    /// What is being done.
+    pub phase: String,
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// The budget; most searches end before it is used up.
+    pub budget: u64,
+    /// Evaluations a second.
+    pub rate: f64,
+    /// The best rms error so far, in the problem's unit of length.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best_rms: Option<f64>,
+    /// Whether that one is acceptable.
+    pub accepted: bool,
+    /// Seconds since it began.
+    pub elapsed_s: f64,
+    /// Seconds that are left at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub left_s: Option<f64>,
+}
+
+/// What a result's record says.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct JobResult {
+    /// The number of target points.
+    pub points: usize,
+    /// The label of lengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// Where every draw came from.
+    pub seed: u64,
+    /// The method asked for.
+    pub method: String,
+    /// How many candidates there are.
+    pub candidates: usize,
+    /// How many of them are accepted.
+    pub accepted: usize,
+    /// The best candidate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub best: Option<Best>,
+    /// Evaluations of the objective.
+    pub evaluations: u64,
+    /// Whether the same problem and seed give the same record again.
+    pub reproducible: bool,
+    /// The version of linkwright that wrote it.
+    pub version: String,
+}
+
+/// The figures of a result's best candidate.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Best {
+    /// The root of the mean squared error.
+    pub rms: f64,
+    /// The largest error.
+    pub max: f64,
+    /// Its type.
+    #[serde(rename = "type")]
+    pub linkage_type: String,
+    /// The worst transmission angle, degrees from 0 to 90.
+    pub transmission_deg: f64,
+    /// Whether every requirement is met.
+    pub accepted: bool,
+}
+
+impl From<&Candidate> for Best {
+    fn from(candidate: &Candidate) -> Best {
+        Best {
+            rms: candidate.error.rms,
+            max: candidate.error.max,
+            linkage_type: candidate.linkage_type.name().to_owned(),
+            transmission_deg: candidate.transmission_deg.worst,
+            accepted: candidate.accepted,
+        }
+    }
+}
+
+impl From<&Record> for JobResult {
+    fn from(record: &Record) -> JobResult {
+        JobResult {
+            points: record.problem.resolved.task.path.points.len(),
+            unit: record.problem.unit,
+            seed: record.seed,
+            method: record.method.asked.name().to_owned(),
+            candidates: record.candidates.len(),
+            accepted: record.candidates.iter().filter(|c| c.accepted).count(),
+            best: record.candidates.first().map(Best::from),
+            evaluations: record.evaluations.objective,
+            reproducible: record.termination.reproducible,
+            version: record.tool.version.clone(),
+        }
+    }
+}
+
+/// All jobs: those that run and all results of the folder, by name.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct JobList {
+    /// The folder, as it was named.
+    pub folder: String,
+    /// The jobs.
+    pub jobs: Vec<JobShown>,
+    /// How many more there are than are listed.
+    pub more: usize,
+}

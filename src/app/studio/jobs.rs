@@ -1,0 +1,358 @@
+//! Long searches: begun, watched, stopped, taken up again. Each runs as `linkwright synth` runs it, by
+//! [`saved_run`], into a folder of its own.
+//!
+//! Every job has as many threads as there are cores, all of low priority, so that jobs share the cores evenly, one
+//! that is alone has them all, and the hand's own answers come first. What is kept of a job in memory is where it
+//! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
+//! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
+
+use super::asked::MOST_POINTS;
+use super::job_messages::{JobAsk, JobProgress};
+use super::reading::said;
+use super::shelf::Shelf;
+use crate::app::results_folder::{is_in_use, replace_file};
+use crate::app::run::Job;
+use crate::app::saved_run;
+use crate::app::saved_run::{Listener, Options, Ran};
+use crate::files::name;
+use crate::files::problem_file;
+use crate::files::problem_file::ProblemFile;
+use crate::report::text::at_most;
+use crate::synthesis::Progress;
+use crate::task::Problem;
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Jobs at once.
+pub(super) const MOST_JOBS: usize = 16;
+/// Reasons of failed jobs that are kept.
+const MOST_FAILED: usize = 64;
+/// Where the problems of running jobs stand.
+const STARTED: &str = ".studio";
+/// How much lower than usual the priority of a job's threads is.
+const NICE: i32 = 10;
+
+/// Why something is not done with a job.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// There is none of this name.
+    Absent(String),
+    /// The name is taken, or the job is not in a state for it.
+    Conflict(String),
+    /// It makes no problem.
+    Bad(String),
+    /// Too many run.
+    Busy(String),
+}
+
+/// All jobs of a studio.
+pub(super) struct Jobs {
+    shelf: Shelf,
+    running: Mutex<Running>,
+    ended: Condvar,
+}
+
+#[derive(Default)]
+struct Running {
+    jobs: BTreeMap<String, Arc<OneJob>>,
+    failed: BTreeMap<String, String>,
+    closed: bool,
+}
+
+/// A job that runs.
+pub(super) struct OneJob {
+    cancel: AtomicBool,
+    begun: Instant,
+    points: usize,
+    told: Mutex<Told>,
+}
+
+#[derive(Default)]
+struct Told {
+    progress: Option<Progress>,
+    before: u64,
+    said: String,
+}
+
+impl OneJob {
+    fn new(points: usize) -> Self {
+        OneJob { cancel: AtomicBool::new(false), begun: Instant::now(), points, told: Mutex::default() }
+    }
+
+    fn told(&self) -> MutexGuard<'_, Told> {
+        self.told.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn note(&self, progress: &Progress) {
+        let mut told = self.told();
+        if told.progress.is_none() {
+            told.before = progress.evaluations;
+        }
+        told.progress = Some(progress.clone());
+    }
+
+    /// Whether it was told to stop.
+    pub(super) fn is_stopping(&self) -> bool {
+        self.cancel.load(Ordering::SeqCst)
+    }
+
+    /// What it has said of itself.
+    pub(super) fn said(&self) -> String {
+        self.told().said.clone()
+    }
+
+    /// Where it stands; `None` before its search has begun.
+    pub(super) fn progress(&self) -> Option<JobProgress> {
+        let told = self.told();
+        let progress = told.progress.as_ref()?;
+        let elapsed_s = self.begun.elapsed().as_secs_f64();
+        let rate = progress.evaluations.saturating_sub(told.before) as f64 / elapsed_s.max(1e-3);
+        let left = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
+        Some(JobProgress {
+            phase: progress.phase.to_owned(),
+            evaluations: progress.evaluations,
+            budget: progress.budget,
+            rate,
+            best_rms: progress.best_sum_sq.map(|sum| (sum / self.points.max(1) as f64).sqrt()),
+            accepted: progress.accepted,
+            elapsed_s,
+            left_s: Some(left).filter(|left| left.is_finite()),
+        })
+    }
+}
+
+impl JobAsk {
+    /// The problem that is asked.
+    ///
+    /// # Errors
+    /// Why it is none, in words.
+    pub fn problem(&self) -> Result<ProblemFile, String> {
+        let text = match (&self.ask, &self.problem) {
+            // Read as every edit is, so that its limits hold.
+            (Some(ask), None) => ask.problem().and_then(|_| ask.problem_text())?,
+            (None, Some(text)) => text.clone(),
+            _ => return Err("give either `ask` or `problem`".to_owned()),
+        };
+        if let Some(other) = self.set.keys().find(|key| !key.starts_with("solve.")) {
+            return Err(format!("`set` takes keys of [solve] such as solve.evaluations, not {other:?}"));
+        }
+        let set: Vec<_> = self.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
+        let file = problem_file::parse("problem", &text, None, &set).map_err(|e| said(&e))?;
+        if file.spec.task.path.points.len() > MOST_POINTS {
+            return Err(format!("at most {MOST_POINTS} points: this target has more"));
+        }
+        Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
+        Ok(file)
+    }
+}
+
+impl Jobs {
+    /// The jobs whose results stand in `folder`.
+    pub(super) fn new(folder: &Path) -> Self {
+        Jobs { shelf: Shelf::new(folder), running: Mutex::default(), ended: Condvar::new() }
+    }
+
+    /// What the folder holds.
+    pub(super) fn shelf(&self) -> &Shelf {
+        &self.shelf
+    }
+
+    fn running(&self) -> MutexGuard<'_, Running> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The jobs that run now, and why others failed.
+    pub(super) fn now(&self) -> (BTreeMap<String, Arc<OneJob>>, BTreeMap<String, String>) {
+        let running = self.running();
+        (running.jobs.clone(), running.failed.clone())
+    }
+
+    fn started(&self, name: &str) -> (PathBuf, String) {
+        (self.shelf.folder().join(STARTED), format!("{name}.json"))
+    }
+
+    /// The problem of a job that was begun and has not ended.
+    pub(super) fn begun(&self, name: &str) -> Option<JobAsk> {
+        let (folder, file) = self.started(name);
+        let text = std::fs::read(folder.join(file)).ok()?;
+        serde_json::from_slice(&text).ok()
+    }
+
+    /// Begins a job; its name.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub(super) fn start(self: &Arc<Self>, ask: &JobAsk) -> Result<String, Refusal> {
+        let file = ask.problem().map_err(Refusal::Bad)?;
+        let name = file.name.clone();
+        if !ask.replace && (self.shelf.holds(&name) || self.begun(&name).is_some()) {
+            return Err(Refusal::Conflict(format!(
+                "there is a result named {name} already: take another name, or replace it"
+            )));
+        }
+        self.begin(Job::from(file), Options::default(), Some(ask))?;
+        Ok(name)
+    }
+
+    /// Takes up a job that was stopped or broken off, from its checkpoint where there is one.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub(super) fn resume(self: &Arc<Self>, name: &str) -> Result<(), Refusal> {
+        name::check(name).map_err(|e| Refusal::Absent(e.to_string()))?;
+        let how = Options { resume: true, ..Options::default() };
+        if let Some(ask) = self.begun(name) {
+            let file = ask.problem().map_err(Refusal::Bad)?;
+            return self.begin(Job::from(file), how, Some(&ask));
+        }
+        if self.shelf.place(name).is_none() {
+            return Err(absent(name));
+        }
+        let asked = self.shelf.record(name).map_err(Refusal::Conflict)?.problem;
+        if asked.name != name {
+            let other = asked.name;
+            return Err(Refusal::Conflict(format!(
+                "the folder {name} holds the result of {other}: run it with `linkwright synth`"
+            )));
+        }
+        let job = Job { name: asked.name, source: asked.source, unit: asked.unit, spec: asked.resolved };
+        self.begin(job, how, None)
+    }
+
+    /// Stops a job: its threads end at once, its best so far is saved.
+    ///
+    /// # Errors
+    /// [`Refusal::Absent`] where no such job runs.
+    pub(super) fn cancel(&self, name: &str) -> Result<(), Refusal> {
+        let job = self.running().jobs.get(name).cloned();
+        let Some(job) = job else { return Err(Refusal::Absent(format!("no job named {name} is running"))) };
+        job.cancel.store(true, Ordering::SeqCst);
+        Ok(())
+    }
+
+    /// Begins the work; `ask` is kept until it has ended.
+    fn begin(self: &Arc<Self>, job: Job, options: Options, ask: Option<&JobAsk>) -> Result<(), Refusal> {
+        let name = job.name.clone();
+        let one = Arc::new(OneJob::new(job.spec.task.path.points.len()));
+        {
+            let mut running = self.running();
+            if running.closed {
+                return Err(Refusal::Busy("the studio is closing".to_owned()));
+            }
+            if running.jobs.contains_key(&name) {
+                return Err(Refusal::Conflict(format!("a job named {name} is running")));
+            }
+            if is_in_use(&self.shelf.folder().join(&name)) {
+                return Err(Refusal::Conflict(format!(
+                    "another program works in the folder {name}: wait for it"
+                )));
+            }
+            if running.jobs.len() >= MOST_JOBS {
+                return Err(Refusal::Busy(format!("{MOST_JOBS} jobs are running: wait for one or stop it")));
+            }
+            running.failed.remove(&name);
+            running.jobs.insert(name.clone(), Arc::clone(&one));
+        }
+        let begun = self.keep(&name, ask).and_then(|()| {
+            let (jobs, one) = (Arc::clone(self), Arc::clone(&one));
+            let work = move || jobs.work(&job, options, &one);
+            std::thread::Builder::new().name("job".into()).spawn(work).map_err(|e| e.to_string())
+        });
+        if let Err(why) = begun {
+            self.over(&name, Some(why.clone()));
+            return Err(Refusal::Busy(format!("the job cannot begin: {why}")));
+        }
+        Ok(())
+    }
+
+    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), String> {
+        let Some(ask) = ask else { return Ok(()) };
+        let (folder, file) = self.started(name);
+        std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+        let text = serde_json::to_vec(ask).map_err(|e| e.to_string())?;
+        replace_file(&folder, &file, &text).map_err(|e| e.to_string())
+    }
+
+    fn work(&self, job: &Job, options: Options, one: &OneJob) {
+        let ran = catch_unwind(AssertUnwindSafe(|| self.run(job, options, one)));
+        let failed = match ran {
+            Ok(Ok(())) => None,
+            Ok(Err(why)) => Some(why),
+            Err(_) => Some("this is a bug of linkwright: please report it".to_owned()),
+        };
+        self.over(&job.name, failed);
+    }
+
+    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), String> {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| stand_back());
+        let pool = pool.build().map_err(|e| format!("no threads to search with: {e}"))?;
+        let listener = Listener {
+            observer: &|progress| one.note(progress),
+            proving: &|progress| {
+                one.told().said = format!("certificate: no sum below {}", at_most(progress.lower_bound, 7));
+            },
+            tell: &|text| one.told().said = text.into(),
+        };
+        let place = self.shelf.folder().join(&job.name);
+        let run = || saved_run::run(job, &place, options, listener, &one.cancel, one.begun);
+        if let Ran::Written(written) = pool.install(run)? {
+            for put in saved_run::put_in_place(vec![written]) {
+                put?;
+            }
+        }
+        Ok(())
+    }
+
+    /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
+    fn over(&self, name: &str, failed: Option<String>) {
+        if failed.is_none() {
+            let (folder, file) = self.started(name);
+            // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
+            let _ = std::fs::remove_file(folder.join(file));
+        }
+        let mut running = self.running();
+        running.jobs.remove(name);
+        if let Some(why) = failed {
+            if running.failed.len() >= MOST_FAILED {
+                running.failed.pop_first();
+            }
+            running.failed.insert(name.to_owned(), why);
+        }
+        drop(running);
+        self.ended.notify_all();
+    }
+
+    /// Stops every job; none begins from now on.
+    pub(super) fn close(&self) {
+        let mut running = self.running();
+        running.closed = true;
+        running.jobs.values().for_each(|job| job.cancel.store(true, Ordering::SeqCst));
+    }
+
+    /// Waits until no job runs, not longer than this.
+    pub(super) fn wait(&self, longest: Duration) {
+        let running = self.running();
+        let waited = self.ended.wait_timeout_while(running, longest, |running| !running.jobs.is_empty());
+        drop(waited.unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+pub(super) fn absent(name: &str) -> Refusal {
+    Refusal::Absent(format!("there is no job named {name}"))
+}
+
+/// Lowers the priority of the thread that asks, where threads have one of their own.
+fn stand_back() {
+    #[cfg(target_os = "linux")]
+    {
+        // Without it the job runs as well, only beside everything else.
+        let _ = rustix::process::setpriority_process(None, NICE);
+    }
+    #[cfg(not(target_os = "linux"))]
+    let _ = NICE;
+}

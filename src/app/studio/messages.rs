@@ -1,0 +1,309 @@
+//! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
+
+use super::reading::{Reading, Text};
+use crate::files::problem_file::Expect;
+use crate::judge::assess::assess;
+use crate::mechanism::Unit;
+use crate::mechanism::{LinkageType, NaturalCoordinates};
+use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation};
+use crate::report::exact;
+use crate::report::html::Drive;
+use crate::task::Problem;
+use crate::task::spec::{
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec,
+    TransmissionOver,
+};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A target and what its linkage must satisfy, as it stands in a tab. All lengths are in `unit`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ask {
+    /// Counts the tab's edits; the answer names the edit that it answers.
+    #[serde(default)]
+    pub version: u64,
+    /// The problem's name, as in problem files.
+    #[serde(default = "unnamed")]
+    pub name: String,
+    /// The label of lengths.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// The target points in their order: 3 to 1000.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    #[serde(default)]
+    pub closed: bool,
+    /// The largest error accepted at any point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// The largest error accepted at each point, in place of `tolerance`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerances: Option<Vec<f64>>,
+    /// One positive weight a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+    /// The crank angle at each point; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<TimingSpec>,
+    /// What `points` were before they were smoothed or resampled; not read where they no longer come from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawPoints>,
+    /// The types allowed; empty: any.
+    #[serde(default)]
+    pub types: Vec<LinkageType>,
+    /// The least transmission angle, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_deg_min: Option<f64>,
+    /// Longest over shortest link at most.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link_ratio_max: Option<f64>,
+    /// The box that must hold both fixed pivots: xmin, ymin, xmax, ymax.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivots_in: Option<[f64; 4]>,
+    /// The box that must hold every joint and the coupler point over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub footprint_in: Option<[f64; 4]>,
+    /// Over which motion the transmission angle is judged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_over: Option<TransmissionOver>,
+    /// Whether the points must be passed in order.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub closing: ClosingPolicy,
+    /// How to search; `continuation`: all linkages through exactly nine points.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub method: Method,
+    /// What is minimised.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub objective: Objective,
+    /// Other keys of the problem file under `design` and `solve`, each with its value as it is typed there.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub kept: BTreeMap<String, String>,
+    /// Where the problem comes from, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// What is known of the answer; not read where the problem is another by now.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expect: Option<Known>,
+    /// Where every draw comes from.
+    #[serde(default = "one")]
+    pub seed: u64,
+    /// The hand is still moving: the search waits until it rests.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub moving: bool,
+    /// The target has nothing to do with the one before: nothing is to follow it.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub fresh: bool,
+}
+
+/// What is known of a problem's answer, as it stands under `[expect]` in its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Known {
+    /// Tells the problem that it is known of: its target, bounds, requirements and objective.
+    pub of: String,
+    /// The figures.
+    pub answer: Expect,
+}
+
+fn unnamed() -> String {
+    "drawing".into()
+}
+
+fn one() -> u64 {
+    1
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// What the studio is doing for a tab.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Doing {
+    /// The answers follow the hand; the search waits for it to rest.
+    Following,
+    /// The search is running.
+    Searching,
+    /// The search has ended.
+    Done,
+    /// The edit makes no problem, for the reason said.
+    Refused,
+}
+
+/// The answer to an edit. Later answers to the same edit replace earlier ones; answers that were not sent before the
+/// next came are dropped.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Answer {
+    /// The edit's version.
+    pub version: u64,
+    /// What is being done.
+    pub doing: Doing,
+    /// The same in words: what is done, how sure it is, and what stands in the way.
+    pub said: String,
+    /// How far the search is, 0 to 1 of its budget; most end before it is used up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub progress: Option<f64>,
+    /// The linkages, better first; in exact mode all real ones through the nine points.
+    pub candidates: Vec<Shown>,
+    /// In exact mode: how many linkages there are through the nine points, and of what kind.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nine: Option<Counted>,
+    /// Where nothing is acceptable: the changes that help, nearest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub relaxations: Vec<Relaxation>,
+}
+
+/// The linkages through nine points, counted.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Counted {
+    /// Solutions up to cognates, complex ones included.
+    pub classes: usize,
+    /// Those that are linkages.
+    pub real: usize,
+    /// Of these, those that pass all points on one circuit.
+    pub one_circuit: usize,
+    /// Of these, in order.
+    pub in_order: usize,
+    /// Of these, on one branch.
+    pub free_of_defects: usize,
+    /// The same and more in words.
+    pub said: Vec<String>,
+}
+
+impl Counted {
+    pub(super) fn of(exact: &ExactRecord) -> Counted {
+        let census = &exact.census;
+        Counted {
+            classes: census.classes,
+            real: census.real,
+            one_circuit: census.one_circuit,
+            in_order: census.in_order,
+            free_of_defects: census.free_of_defects,
+            said: super::status::census(exact),
+        }
+    }
+}
+
+/// A linkage with its figures, ready to be played.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Shown {
+    /// Its rank, from 1.
+    pub rank: usize,
+    /// The linkage, as in linkage files.
+    pub linkage: NaturalCoordinates,
+    /// How it is driven over its motion.
+    pub drive: Drive,
+    /// The crank angle at each target point, degrees.
+    pub crank_deg: Vec<f64>,
+    /// The assembly (1 or -1) at each point.
+    pub t1_at: Vec<i64>,
+    /// The number of the worst point, from 0.
+    pub worst: usize,
+    /// The root of the mean squared error.
+    pub rms: f64,
+    /// The largest error.
+    pub max: f64,
+    /// Its type.
+    #[serde(rename = "type")]
+    pub linkage_type: LinkageType,
+    /// The worst transmission angle, degrees from 0 to 90.
+    pub transmission_deg: f64,
+    /// Longest over shortest link.
+    pub link_ratio: f64,
+    /// Whether every requirement is met and no defect is there that is not allowed.
+    pub accepted: bool,
+    /// The requirements that are not met, by their keys, and the defects.
+    pub unmet: Vec<String>,
+    /// Through nine points: what the best of the curve's six mechanisms can do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ability: Option<String>,
+    /// Through nine points: one exact linkage is proved to stand this near.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certified_within: Option<f64>,
+}
+
+impl Shown {
+    /// A real linkage through nine points, judged; `None` where it cannot be.
+    pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
+        let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
+        Some(Shown::judged(&judged, rank, linkage))
+    }
+
+    /// A real linkage through nine points that is judged already.
+    pub(super) fn judged(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+        Shown {
+            rank,
+            ability: Some(exact::ability(linkage).into()),
+            certified_within: linkage.certified.map(|certified| certified.radius),
+            ..Shown::from(judged)
+        }
+    }
+}
+
+impl From<&Candidate> for Shown {
+    fn from(candidate: &Candidate) -> Shown {
+        let missed = candidate.requirements.iter().filter(|r| !r.met).map(|r| r.name.clone());
+        Shown {
+            rank: candidate.rank,
+            linkage: candidate.linkage.natural_coordinates(),
+            drive: Drive::new(&candidate.linkage, &candidate.crank_deg, &candidate.t1_at),
+            crank_deg: candidate.crank_deg.clone(),
+            t1_at: candidate.t1_at.iter().map(|t1| i64::from(*t1)).collect(),
+            worst: candidate.error.max_at,
+            rms: candidate.error.rms,
+            max: candidate.error.max,
+            linkage_type: candidate.linkage_type,
+            transmission_deg: candidate.transmission_deg.worst,
+            link_ratio: candidate.link_ratio,
+            accepted: candidate.accepted,
+            unmet: missed.collect(),
+            ability: None,
+            certified_within: candidate.certified.map(|certified| certified.radius),
+        }
+    }
+}
+
+/// A linkage to be written as a file.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LinkageAsk {
+    /// Its name.
+    #[serde(default = "unnamed")]
+    pub name: String,
+    /// The label of lengths.
+    #[serde(default)]
+    pub unit: Option<Unit>,
+    /// The linkage.
+    pub linkage: NaturalCoordinates,
+}
+
+/// The schemas of all messages, each under the name of its type.
+pub fn schemas() -> serde_json::Value {
+    serde_json::json!({
+        "Ask": schemars::schema_for!(Ask).to_value(),
+        "Answer": schemars::schema_for!(Answer).to_value(),
+        "LinkageAsk": schemars::schema_for!(LinkageAsk).to_value(),
+        "Text": schemars::schema_for!(Text).to_value(),
+        "Reading": schemars::schema_for!(Reading).to_value(),
+    })
+}

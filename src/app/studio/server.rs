@@ -1,0 +1,330 @@
+//! Routes, the page, the WebSocket.
+
+use super::api;
+use super::connection::Limited;
+use super::guard::{Guard, MOST_BYTES, guarded};
+use super::jobs::Jobs;
+use super::messages::{Ask, LinkageAsk, schemas};
+use super::reading;
+use super::reading::Text;
+use super::tab::{Mailbox, Searches, Told, work};
+use crate::files::{linkage_file, name};
+use crate::mechanism::FourBar;
+use axum::Router;
+use axum::body::Bytes;
+use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
+use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::http::{HeaderMap, StatusCode, Uri, header};
+use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
+use tokio::time::{interval, sleep, timeout};
+
+/// Where a tab's WebSocket is.
+pub(super) const LIVE: &str = "/live";
+/// Tabs at once.
+const MOST_TABS: usize = 16;
+/// A tab that takes no answer for so long is closed.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// A tab is pinged so often.
+const PING: Duration = Duration::from_secs(15);
+/// How often it is looked whether the studio is to end.
+const LOOK: Duration = Duration::from_millis(50);
+/// How long connections have to end.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// Why there is no studio.
+#[derive(Debug, thiserror::Error)]
+pub enum StudioError {
+    /// The port is taken, or may not be used.
+    #[error("port {port} of 127.0.0.1 cannot be used: {source}")]
+    Port {
+        /// The port.
+        port: u16,
+        /// Why.
+        source: io::Error,
+    },
+    /// The system gives no random numbers for the token.
+    #[error("the system gives no random numbers for the token: {0}")]
+    Random(getrandom::Error),
+    /// The system gives no sockets or threads.
+    #[error("the server cannot run: {0}")]
+    System(#[from] io::Error),
+}
+
+/// A studio that listens, and answers when it is [served](Studio::serve).
+pub struct Studio {
+    runtime: Runtime,
+    listener: TcpListener,
+    port: u16,
+    house: Arc<House>,
+}
+
+/// What all requests share.
+pub(super) struct House {
+    guard: Arc<Guard>,
+    /// What the page begins with, as JSON; `null`: with what it remembers.
+    beginning: String,
+    pub(super) searches: Arc<Searches>,
+    pub(super) jobs: Arc<Jobs>,
+    /// Places for requests that take work.
+    pub(super) work: Arc<Semaphore>,
+    tabs: Arc<Semaphore>,
+    closing: watch::Sender<bool>,
+}
+
+impl Studio {
+    /// Listens on a port of 127.0.0.1; port 0: one that is free. The page begins with `beginning`; jobs save their
+    /// results in folders inside of `results`.
+    ///
+    /// # Errors
+    /// [`StudioError`] where the port is taken or the system gives no server.
+    pub fn bind(port: u16, beginning: Option<&Ask>, results: &Path) -> Result<Studio, StudioError> {
+        // One thread carries messages; the work is done on others.
+        let runtime = Builder::new_current_thread().enable_io().enable_time().build()?;
+        let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+        let listener = runtime
+            .block_on(TcpListener::bind(address))
+            .map_err(|source| StudioError::Port { port, source })?;
+        let port = listener.local_addr()?.port();
+        let house = House {
+            guard: Arc::new(Guard::new(port).map_err(StudioError::Random)?),
+            beginning: serde_json::to_string(&beginning).map_err(io::Error::other)?,
+            searches: Arc::default(),
+            jobs: Arc::new(Jobs::new(results)),
+            work: Arc::new(Semaphore::new(api::AT_ONCE)),
+            tabs: Arc::new(Semaphore::new(MOST_TABS)),
+            closing: watch::Sender::new(false),
+        };
+        Ok(Studio { runtime, listener, port, house: Arc::new(house) })
+    }
+
+    /// The port.
+    pub fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// The address to open, with the token that lets one browser in.
+    pub fn address(&self) -> String {
+        let token = self.house.guard.token().unwrap_or_default();
+        format!("http://127.0.0.1:{}/?token={token}", self.port)
+    }
+
+    /// Answers until `end` is set; then tells the tabs, stops their searches and returns.
+    ///
+    /// # Errors
+    /// [`StudioError::System`] where the server breaks down.
+    pub fn serve(self, end: &AtomicBool) -> Result<(), StudioError> {
+        let Studio { runtime, listener, house, .. } = self;
+        let (closing, jobs) = (house.closing.clone(), Arc::clone(&house.jobs));
+        let app = routes(house);
+        let served = runtime.block_on(async {
+            let mut goodbye = closing.subscribe();
+            let server = axum::serve(Limited::new(listener), app).with_graceful_shutdown(async move {
+                // It is told once, or the sender is gone: either way the end has come.
+                let _ = goodbye.wait_for(|closing| *closing).await;
+            });
+            let asked_to_end = async {
+                while !end.load(Ordering::SeqCst) {
+                    sleep(LOOK).await;
+                }
+                jobs.close();
+                closing.send_replace(true);
+                sleep(FAREWELL).await;
+            };
+            tokio::select! {
+                served = server => served,
+                () = asked_to_end => Ok(()),
+            }
+        });
+        jobs.close();
+        jobs.wait(FAREWELL);
+        runtime.shutdown_timeout(FAREWELL);
+        Ok(served?)
+    }
+}
+
+fn routes(house: Arc<House>) -> Router {
+    let guard = Arc::clone(&house.guard);
+    let inside = Router::new()
+        .route("/app.js", get(|| file("text/javascript; charset=utf-8", include_str!("page/app.js"))))
+        .route("/style.css", get(|| file("text/css; charset=utf-8", include_str!("page/style.css"))))
+        .route("/beginning.json", get(beginning))
+        .route("/schemas.json", get(|| async { json(schemas().to_string()) }))
+        .route("/problem.toml", post(problem))
+        .route("/linkage.toml", post(linkage))
+        .route("/read", post(read))
+        .route(LIVE, get(live))
+        .merge(api::routes())
+        .layer(from_fn_with_state(Arc::clone(&house), known));
+    Router::new()
+        .route("/", get(page))
+        .merge(inside)
+        .fallback(|| async { (StatusCode::NOT_FOUND, "there is no such page\n") })
+        .layer(DefaultBodyLimit::max(MOST_BYTES))
+        .layer(from_fn_with_state(guard, guarded))
+        .layer(from_fn(no_upgrade_elsewhere))
+        .with_state(house)
+}
+
+/// An upgrade to anything is answered at one place alone.
+async fn no_upgrade_elsewhere(request: Request, next: Next) -> Response {
+    if request.headers().contains_key(header::UPGRADE) && request.uri().path() != LIVE {
+        return (StatusCode::BAD_REQUEST, "there is nothing to upgrade here\n").into_response();
+    }
+    next.run(request).await
+}
+
+/// Lets in who brings the cookie.
+async fn known(State(house): State<Arc<House>>, request: Request, next: Next) -> Response {
+    if house.guard.knows(request.headers()) { next.run(request).await } else { stranger() }
+}
+
+fn stranger() -> Response {
+    let why = "Open the address that linkwright printed: it holds a token that lets one browser in, once.\n\
+               For another one end the studio and start it again.\n";
+    (StatusCode::FORBIDDEN, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], why).into_response()
+}
+
+async fn file(kind: &'static str, text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, kind)], text).into_response()
+}
+
+pub(super) fn json(text: String) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+}
+
+/// The page; with the token in the address, the cookie and the way to the address without it.
+async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> Response {
+    let token = uri.query().and_then(|query| query.strip_prefix("token="));
+    match token {
+        Some(token) if house.guard.admits(token) => {
+            let to = [(header::LOCATION, "/".to_owned()), (header::SET_COOKIE, house.guard.cookie())];
+            (StatusCode::SEE_OTHER, to).into_response()
+        }
+        _ if !house.guard.knows(&headers) => stranger(),
+        // The same address once more, from a browser that is known.
+        Some(_) => (StatusCode::SEE_OTHER, [(header::LOCATION, "/")]).into_response(),
+        None => file("text/html; charset=utf-8", include_str!("page/index.html")).await,
+    }
+}
+
+async fn beginning(State(house): State<Arc<House>>) -> Response {
+    json(house.beginning.clone())
+}
+
+pub(super) fn refused(why: impl Into<String>) -> Response {
+    (StatusCode::UNPROCESSABLE_ENTITY, why.into() + "\n").into_response()
+}
+
+fn toml(text: String) -> Response {
+    ([(header::CONTENT_TYPE, "application/toml; charset=utf-8")], text).into_response()
+}
+
+/// The problem file of an edit.
+async fn problem(body: Bytes) -> Response {
+    match serde_json::from_slice::<Ask>(&body) {
+        Err(e) => refused(format!("this is no edit: {e}")),
+        Ok(ask) => match ask.problem().and_then(|_| ask.problem_text()) {
+            Err(why) => refused(why),
+            Ok(text) => toml(text),
+        },
+    }
+}
+
+/// A target or a problem of a text that was pasted or dropped.
+async fn read(body: Bytes) -> Response {
+    let text: Text = match serde_json::from_slice(&body) {
+        Err(e) => return refused(format!("this is no text with its kind: {e}")),
+        Ok(text) => text,
+    };
+    // A drawing may take its time: the tabs' messages do not wait for it.
+    match tokio::task::spawn_blocking(move || reading::read(&text)).await {
+        Ok(Ok(reading)) => serde_json::to_string(&reading).map_or_else(|e| refused(e.to_string()), json),
+        Ok(Err(why)) => refused(why),
+        Err(_) => refused("this text cannot be read: please report it as a bug of linkwright"),
+    }
+}
+
+/// The linkage file of a linkage.
+async fn linkage(body: Bytes) -> Response {
+    let ask: LinkageAsk = match serde_json::from_slice(&body) {
+        Err(e) => return refused(format!("this is no linkage: {e}")),
+        Ok(ask) => ask,
+    };
+    if let Err(e) = name::check(&ask.name) {
+        return refused(e.to_string());
+    }
+    match FourBar::new(ask.linkage) {
+        Err(e) => refused(e.to_string()),
+        Ok(linkage) => toml(linkage_file::to_toml(&ask.name, ask.unit, &linkage)),
+    }
+}
+
+/// A tab's WebSocket.
+async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgrade) -> Response {
+    let Ok(place) = Arc::clone(&house.tabs).try_acquire_owned() else {
+        let why = format!("{MOST_TABS} tabs are open: close one\n");
+        return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();
+    };
+    upgrade
+        .max_message_size(MOST_BYTES)
+        .max_frame_size(MOST_BYTES)
+        .max_write_buffer_size(4 * 1024 * 1024)
+        .on_upgrade(move |socket| tab(socket, house, place))
+}
+
+/// Carries what a tab says to its mailbox and the latest answer to the tab.
+///
+/// Its place is free again when its worker has ended.
+async fn tab(mut socket: WebSocket, house: Arc<House>, place: OwnedSemaphorePermit) {
+    let mail = Arc::new(Mailbox::default());
+    let (tell, mut told) = watch::channel::<Told>(None);
+    let (mine, searches) = (Arc::clone(&mail), Arc::clone(&house.searches));
+    let worker = std::thread::Builder::new().name("tab".into()).spawn(move || {
+        let _place = place;
+        work(mine, tell, searches);
+    });
+    if worker.is_err() {
+        return;
+    }
+    let mut closing = house.closing.subscribe();
+    let mut ping = interval(PING);
+    loop {
+        let send = tokio::select! {
+            changed = told.changed() => match (changed, told.borrow_and_update().clone()) {
+                (Ok(()), Some(answer)) => Message::Text(answer.as_ref().into()),
+                (Ok(()), None) => continue,
+                // The worker is gone: there is nothing more to say.
+                (Err(_), _) => break,
+            },
+            _ = ping.tick() => Message::Ping(Bytes::new()),
+            _ = closing.wait_for(|closing| *closing) => break,
+            message = socket.recv() => match message {
+                Some(Ok(Message::Text(text))) => {
+                    mail.put(text.as_str().to_owned());
+                    continue;
+                }
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
+                // Bytes are no edit; anything else is the end.
+                _ => break,
+            },
+        };
+        // A tab that takes nothing holds up nobody but itself, and not for long.
+        if !matches!(timeout(PATIENCE, socket.send(send)).await, Ok(Ok(()))) {
+            break;
+        }
+    }
+    mail.close();
+    // The other side may have left without a word.
+    let _ = timeout(Duration::from_millis(500), socket.send(Message::Close(None))).await;
+}

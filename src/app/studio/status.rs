@@ -1,0 +1,158 @@
+//! What a search came to, in words: how sure it is, and where nothing is acceptable what stands in the way.
+
+use crate::record::{Completeness, ExactRecord, Reason, Record};
+use crate::report::{exact, table};
+use crate::synthesis::{HitsSoFar, Progress};
+
+/// What a search is doing.
+pub(super) fn under_way(progress: &Progress) -> String {
+    match (progress.phase, progress.accepted) {
+        ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
+        ("continuation", _) => "Following the solution paths of the nine points to their ends.".into(),
+        (_, false) if progress.best_sum_sq.is_some() => "Searching: nothing acceptable yet.".into(),
+        _ => match progress.hits {
+            Some(HitsSoFar { came, wanted }) => {
+                format!("Searching for better ones; the best came {} of {wanted} times.", came.min(wanted))
+            }
+            None => "Searching for better ones.".into(),
+        },
+    }
+}
+
+/// How a search ended and how sure its best answer is.
+pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> String {
+    let end = table::ending_sentences(record);
+    let mut said = match record.candidates.first() {
+        None => "Nothing was found.".to_owned(),
+        Some(best) if best.accepted => sure(record, hits),
+        // What the attempts with other requirements came to says nothing of this one.
+        Some(_) => format!("{} {}", in_the_way(record), sure(record, None)),
+    };
+    said.push('\n');
+    said.push_str(&end);
+    said
+}
+
+/// How sure it is that nothing better was missed.
+fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
+    if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
+        return match exact.completeness {
+            Completeness::Complete => {
+                "These are all linkages through the points, by the published count.".into()
+            }
+            _ => "Some linkages through the points may be missing.".into(),
+        };
+    }
+    let came = match hits {
+        Some(HitsSoFar { came, .. }) => format!("came from {came} independent rounds of starts"),
+        None => "was found again and again from different starts".into(),
+    };
+    match record.termination.reason {
+        Reason::Converged => format!("Sure as far as sampling can be: the best {came}."),
+        Reason::TargetReached => {
+            "Sure: the points are met to the last digit, and nothing is better than that.".into()
+        }
+        Reason::Stalled => {
+            "Fairly sure: every kind of start was tried, and the last of them gave nothing better.".into()
+        }
+        Reason::EvaluationLimit => match hits {
+            Some(HitsSoFar { came, wanted }) if came >= wanted => {
+                format!(
+                    "Fairly sure: the best came {came} times; the budget ended before the search was done."
+                )
+            }
+            Some(HitsSoFar { came, wanted }) => {
+                format!("Not sure: the budget ended when the best had come {came} of {wanted} times.")
+            }
+            None => "Not sure: the budget of evaluations ended.".into(),
+        },
+        Reason::TimeLimit | Reason::Cancelled => "Not sure: it was cut short.".into(),
+        Reason::Snapped => {
+            "Not sure: its lengths were brought to stock sizes, nothing else was searched for.".into()
+        }
+        Reason::ByHand => {
+            "Not sure: it was fitted under the hand, no search has looked for anything better.".into()
+        }
+    }
+}
+
+/// A requirement in plain words.
+pub(super) fn plain(key: &str) -> String {
+    let words = match key {
+        "require.type" => "how it is driven",
+        "require.transmission_deg_min" => "the least transmission angle",
+        "require.link_ratio_max" => "the longest over shortest link",
+        "require.pivots_in" => "the pivot box",
+        "require.footprint_in" => "the space for the whole linkage",
+        "require.order" => "the order of the points",
+        "require.direction" => "the direction of the crank",
+        "require.circuit" => "staying on one circuit",
+        "require.branch" => "passing no toggle",
+        "require.closing" => "returning to the first point without reversing",
+        "task.path.tolerance" => "the largest error",
+        _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
+    };
+    words.to_owned()
+}
+
+/// Which requirements are not met together, and whether a change helps.
+fn in_the_way(record: &Record) -> String {
+    let among = record.conflict.as_ref().map_or(&[][..], |conflict| &conflict.among);
+    let named: Vec<String> = among.iter().map(|key| plain(key)).collect();
+    let way = match named.as_slice() {
+        [] => "Nothing acceptable was found.".to_owned(),
+        [only] => format!("Nothing acceptable was found: {only} asks for too much."),
+        [most @ .., last] => {
+            format!("Nothing acceptable was found: {} and {last} conflict.", most.join(", "))
+        }
+    };
+    let help = match record.relaxations.as_slice() {
+        [] => "No single change that helps was found.",
+        [_] => "One change was found that helps: see below.",
+        _ => "Changes were found that help: see below.",
+    };
+    format!("{way} {help}")
+}
+
+/// All linkages through nine points, counted in words; proofs where there are any.
+pub(super) fn census(record: &ExactRecord) -> Vec<String> {
+    if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
+        return vec![
+            "No linkage was found that passes all nine points: they are in special position, such as on one line."
+                .into(),
+        ];
+    }
+    let [found, real, paths, proof] = exact::sentences(record);
+    let counted = &record.census;
+    // What is isolated is known by its proof.
+    match (counted.certified, record.completeness) {
+        (0, Completeness::Complete) => vec![found, real],
+        (0, _) => vec![format!("{} solutions up to cognates so far, not yet proved.", counted.classes), real],
+        _ => vec![found, real, paths, proof],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::run::{Context, Job, run};
+    use crate::files::problem_file::parse;
+    use std::sync::atomic::AtomicBool;
+
+    #[test]
+    fn a_budget_that_ends_after_the_best_came_often_enough_is_told_as_that() {
+        let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.2], [3, 1], [2, -1], [1, -1]]\nclosed = true\n\
+            [solve]\nevaluations = 300\n";
+        let spec = parse("egg", text, None, &[]).expect("a problem").spec;
+        let job = Job { name: "egg".into(), source: None, unit: None, spec };
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        let record = run(&job, &context).expect("it runs").record;
+        assert_eq!(record.termination.reason, Reason::EvaluationLimit);
+        let said = |came| sure(&record, Some(HitsSoFar { came, wanted: 4 }));
+        assert_eq!(said(3), "Not sure: the budget ended when the best had come 3 of 4 times.");
+        assert_eq!(
+            said(15),
+            "Fairly sure: the best came 15 times; the budget ended before the search was done."
+        );
+    }
+}

@@ -1,0 +1,325 @@
+//! The suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population
+//! searches at equal evaluations and with published answers.
+//!
+//! Every run is [`run`] on the problem of its file, with two changes: the seed, and a single candidate. Runs go one
+//! after the other on one thread, so that their times can be compared. All figures in a [`Suite`] are computed by the
+//! referee; only the times differ from one machine to another.
+
+pub mod literature;
+
+use crate::app::published;
+use crate::app::run::{Context, Job, RunError, prove, run};
+use crate::files::problem_file::{ProblemFile, Published};
+use crate::judge::rank::exact_sum_sq;
+use crate::record::statistics::{Bar, Summary};
+use crate::record::suite::{FORMAT, MethodResult, ProblemResult, PublishedResult, Run, Smaller, Suite};
+use crate::record::{Certificate, Reason, Record, Tool};
+use crate::task::Problem;
+use crate::task::spec::{CertifySpec, MAX_EVALUATIONS, Method, ProblemSpec};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The population searches on the design vector that are run for comparison with the problem's own method.
+pub const POPULATIONS: [Method; 2] = [Method::Genetic, Method::DifferentialEvolution];
+
+/// The options of a suite.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The number of seeds for each problem: seeds 1 to this.
+    pub seeds: u64,
+    /// The number of seeds for each population search: seeds 1 to this, but at most `seeds`.
+    pub population_seeds: u64,
+    /// The command that makes the same suite again; stored with the figures.
+    pub command: String,
+    /// The options for certifying the best answer of each problem, on all threads; `None` for no certificates.
+    pub certify: Option<CertifySpec>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { seeds: 10, population_seeds: 5, command: String::new(), certify: None }
+    }
+}
+
+impl Options {
+    fn population_seeds(&self) -> u64 {
+        self.population_seeds.min(self.seeds)
+    }
+
+    /// Returns the number of runs for this number of problems.
+    pub fn runs(&self, problems: usize) -> u64 {
+        problems as u64 * (self.seeds + POPULATIONS.len() as u64 * self.population_seeds())
+    }
+}
+
+/// The progress of a suite, with the current run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step<'a> {
+    /// The name of the problem.
+    pub problem: &'a str,
+    /// The method.
+    pub method: Method,
+    /// The seed.
+    pub seed: u64,
+    /// The number of finished runs.
+    pub done: u64,
+    /// The number of all runs.
+    pub total: u64,
+}
+
+/// A callback that receives the progress of a suite: at the beginning of a run and repeatedly during it.
+pub type StepObserver<'a> = dyn Fn(&Step<'_>) + Sync + 'a;
+
+/// The reason why a suite cannot be run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SuiteError {
+    /// A problem that cannot be searched.
+    #[error("{problem}: {source}")]
+    Run {
+        /// The name of the problem.
+        problem: String,
+        /// The reason.
+        source: RunError,
+    },
+    /// The thread for the searches cannot be created.
+    #[error("no thread to search with: {0}")]
+    Thread(String),
+}
+
+/// Runs a suite: each problem from seeds 1 to [`Options::seeds`] with the method of its file, then with each of
+/// [`POPULATIONS`] with the median number of evaluations of the first method. Problems without an expected
+/// `best_known_sum_sq` are left out.
+///
+/// `cancel` ends the current run; that run does not count, and the results before it are returned.
+///
+/// # Errors
+/// [`SuiteError`].
+pub fn suite(
+    problems: &[ProblemFile],
+    options: &Options,
+    cancel: &AtomicBool,
+    observer: &StepObserver<'_>,
+) -> Result<Suite, SuiteError> {
+    let pool =
+        ThreadPoolBuilder::new().num_threads(1).build().map_err(|e| SuiteError::Thread(e.to_string()))?;
+    let known: Vec<(&ProblemFile, f64)> =
+        problems.iter().filter_map(|file| Some((file, file.expect.as_ref()?.best_known_sum_sq?))).collect();
+    let total = options.runs(known.len());
+    let mut runner = Runner { pool, cancel, observer, done: 0, total, cut_short: false };
+    let mut results = Vec::with_capacity(known.len());
+    for (file, best_known) in known {
+        let result = runner
+            .problem(file, best_known, options)
+            .map_err(|source| SuiteError::Run { problem: file.name.clone(), source })?;
+        if !result.search.runs.is_empty() {
+            results.push(result);
+        }
+        if runner.cancelled() {
+            break;
+        }
+    }
+    Ok(Suite {
+        format: FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        command: options.command.clone(),
+        seeds: options.seeds,
+        threads: 1,
+        complete: runner.done == runner.total && !runner.cut_short,
+        problems: results,
+    })
+}
+
+/// The state shared by the runs of a suite.
+struct Runner<'a> {
+    pool: ThreadPool,
+    cancel: &'a AtomicBool,
+    observer: &'a StepObserver<'a>,
+    done: u64,
+    total: u64,
+    /// Whether a certificate was cancelled.
+    cut_short: bool,
+}
+
+impl Runner<'_> {
+    fn cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+
+    fn problem(
+        &mut self,
+        file: &ProblemFile,
+        best_known: f64,
+        options: &Options,
+    ) -> Result<ProblemResult, RunError> {
+        let problem = Problem::new(file.spec.clone())?;
+        let expect = file.expect.clone().unwrap_or_default();
+        let bar =
+            Bar { goal: expect.goal_sum_sq.unwrap_or(best_known), best_known, exact: exact_sum_sq(&problem) };
+        let (search, best) = self.method(file, file.spec.clone(), options.seeds, &bar)?;
+        let (certificate, no_certificate) = match (options.certify, best) {
+            (Some(certify), Some(record)) => self.certificate(record, certify),
+            (Some(_), None) => (None, Some("there is no accepted answer".into())),
+            (None, _) => (None, None),
+        };
+        let mut populations = Vec::with_capacity(POPULATIONS.len());
+        for method in POPULATIONS {
+            let Some(evaluations) = search.summary.median_evaluations.filter(|_| !self.cancelled()) else {
+                break;
+            };
+            let mut spec = file.spec.clone();
+            spec.solve.method = method;
+            spec.solve.evaluations = evaluations.clamp(1, MAX_EVALUATIONS);
+            populations.push(self.method(file, spec, options.population_seeds(), &bar)?.0);
+        }
+        let smaller_than_best_known = smallest(std::iter::once(&search).chain(&populations), &bar);
+        let published: Vec<PublishedResult> =
+            expect.published.iter().map(|entry| evaluated(&problem, entry)).collect();
+        Ok(ProblemResult {
+            name: file.name.clone(),
+            source: file.source.clone(),
+            points: problem.task().len(),
+            best_known_sum_sq: bar.best_known,
+            goal_sum_sq: bar.goal,
+            search,
+            populations,
+            smaller_than_best_known,
+            best_published: best_published(&published).cloned(),
+            published,
+            certificate,
+            no_certificate,
+        })
+    }
+
+    /// Returns the certificate of a run's answer, or the reason why there is none; neither if it is cancelled.
+    fn certificate(
+        &mut self,
+        mut record: Record,
+        certify: CertifySpec,
+    ) -> (Option<Certificate>, Option<String>) {
+        record.problem.resolved.solve.certify = Some(certify);
+        let (method, seed) = (record.problem.resolved.solve.method, record.seed);
+        let step =
+            Step { problem: &record.problem.name.clone(), method, seed, done: self.done, total: self.total };
+        prove(&mut record, self.cancel, &mut |_| (self.observer)(&step));
+        if self.cancelled() {
+            self.cut_short = true;
+            return (None, None);
+        }
+        (record.certificate, record.no_certificate)
+    }
+
+    /// Returns the runs of a method, and the record with the least accepted sum.
+    fn method(
+        &mut self,
+        file: &ProblemFile,
+        mut spec: ProblemSpec,
+        seeds: u64,
+        bar: &Bar,
+    ) -> Result<(MethodResult, Option<Record>), RunError> {
+        spec.solve.candidates = 1;
+        let mut best: Option<(f64, Record)> = None;
+        let (method, evaluations_at_most) = (spec.solve.method, spec.solve.evaluations);
+        let mut job = Job { name: file.name.clone(), source: file.source.clone(), unit: file.unit, spec };
+        let mut runs = Vec::new();
+        for seed in 1..=seeds {
+            if self.cancelled() {
+                break;
+            }
+            job.spec.solve.seed = seed;
+            let step = Step { problem: &file.name, method, seed, done: self.done, total: self.total };
+            (self.observer)(&step);
+            let context = Context { cancel: self.cancel, observer: &|_| (self.observer)(&step) };
+            let finished = self.pool.install(|| run(&job, &context))?;
+            let record = finished.record;
+            if record.termination.reason == Reason::Cancelled {
+                break;
+            }
+            let first = record.candidates.first();
+            runs.push(Run {
+                seed,
+                accepted: first.is_some_and(|c| c.accepted),
+                sum_sq: first.map(|c| c.error.sum_sq),
+                to_curve_sum_sq: first.map(|c| c.error.to_curve.sum_sq),
+                evaluations: record.evaluations.objective,
+                search_s: finished.search_s,
+                reason: record.termination.reason,
+            });
+            self.done += 1;
+            let sum_sq = first.filter(|c| c.accepted).map(|c| c.error.sum_sq);
+            if let Some(sum_sq) = sum_sq.filter(|sum| best.as_ref().is_none_or(|(least, _)| sum < least)) {
+                best = Some((sum_sq, record));
+            }
+        }
+        let result = MethodResult { method, evaluations_at_most, summary: Summary::of(&runs, bar), runs };
+        Ok((result, best.map(|(_, record)| record)))
+    }
+}
+
+/// Returns the smallest accepted answer of all runs, if it is smaller than the best known.
+fn smallest<'a>(methods: impl Iterator<Item = &'a MethodResult>, bar: &Bar) -> Option<Smaller> {
+    methods
+        .filter_map(|of| {
+            let best = of.summary.best.as_ref().filter(|best| bar.is_beaten_by(best.sum_sq))?;
+            Some(Smaller { method: of.method, seed: best.seed, sum_sq: best.sum_sq })
+        })
+        .min_by(|one, other| one.sum_sq.total_cmp(&other.sum_sq))
+}
+
+fn evaluated(problem: &Problem, entry: &Published) -> PublishedResult {
+    let candidate = published::evaluate(problem, entry);
+    let unmet = candidate.iter().flat_map(|c| &c.requirements).filter(|r| !r.met);
+    PublishedResult {
+        source: entry.source.clone(),
+        printed_sum_sq: entry.printed_sum_sq,
+        sum_sq: candidate.as_ref().map(|c| c.error.sum_sq),
+        to_curve_sum_sq: candidate.as_ref().map(|c| c.error.to_curve.sum_sq),
+        accepted: candidate.as_ref().map(|c| c.accepted),
+        unmet: unmet.map(|r| r.name.clone()).collect(),
+    }
+}
+
+fn best_published(published: &[PublishedResult]) -> Option<&PublishedResult> {
+    let least = |of: fn(&PublishedResult) -> Option<f64>| {
+        let known = published.iter().filter_map(|entry| Some((of(entry)?, entry)));
+        known.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, entry)| entry)
+    };
+    least(|entry| entry.sum_sq).or_else(|| least(|entry| entry.printed_sum_sq))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn published(source: &str, printed_sum_sq: Option<f64>, sum_sq: Option<f64>) -> PublishedResult {
+        PublishedResult {
+            source: source.into(),
+            printed_sum_sq,
+            sum_sq,
+            to_curve_sum_sq: None,
+            accepted: None,
+            unmet: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_best_published_answer_is_the_best_by_our_own_evaluation() {
+        let flattering = published("printed small, evaluates large", Some(1e-9), Some(0.5));
+        let true_best = published("printed large", Some(0.3), Some(0.2));
+        let only_printed = published("no vector", Some(1e-12), None);
+        let all = [flattering, true_best, only_printed];
+        assert_eq!(best_published(&all), Some(&all[1]));
+        assert_eq!(
+            best_published(&all[2..]),
+            Some(&all[2]),
+            "without a vector the printed figure is all there is"
+        );
+        assert_eq!(best_published(&[published("nothing", None, None)]), None);
+    }
+
+    #[test]
+    fn the_number_of_runs_counts_no_more_population_seeds_than_seeds() {
+        let options = |seeds| Options { seeds, ..Options::default() };
+        assert_eq!(options(10).runs(3), 3 * (10 + 2 * 5));
+        assert_eq!(options(2).runs(1), 2 + 2 * 2);
+    }
+}

@@ -1,0 +1,337 @@
+//! Linkage files: a four-bar in natural coordinates or as a vector loop, or a chain of stages.
+
+mod chain;
+
+use crate::files::diagnostic::Diagnostic;
+use crate::files::input_text;
+use crate::files::name;
+use crate::files::toml_text::TomlText;
+use crate::files::toml_values::{Count, Number, OnlyTable, XY};
+use crate::mechanism::Unit;
+use crate::mechanism::{
+    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, VectorLoop,
+};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::path::Path;
+
+/// The format of linkage files that this program reads and writes.
+pub const FORMAT: u64 = 1;
+
+/// A linkage with its name and the unit of its lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkageFile {
+    /// Its name; the file stem if the file has none.
+    pub name: String,
+    /// The unit that labels lengths.
+    pub unit: Option<Unit>,
+    /// The linkage.
+    pub linkage: FourBar,
+}
+
+/// A linkage of any kind with its name and the unit of its lengths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnyLinkageFile {
+    /// Its name; the file stem if the file has none.
+    pub name: String,
+    /// The unit that labels lengths.
+    pub unit: Option<Unit>,
+    /// The linkage.
+    pub linkage: Linkage,
+}
+
+/// A linkwright linkage file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "LinkageFile")]
+pub(crate) struct RawLinkageFile {
+    /// 1.
+    #[schemars(required)]
+    format: Option<Count>,
+    /// 1 to 64 letters, digits, blanks and - _ .
+    name: Option<String>,
+    /// The unit of lengths.
+    unit: Option<Unit>,
+    /// Natural coordinates; this or vector_loop or chain.
+    linkage: Option<OnlyTable<RawLinkage>>,
+    /// A vector loop; this or linkage or chain.
+    vector_loop: Option<OnlyTable<RawVectorLoop>>,
+    /// A compound mechanism, stage by stage; this or linkage or vector_loop.
+    chain: Option<OnlyTable<chain::RawChain>>,
+}
+
+/// Pivots A and B, lengths and two signs.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Linkage")]
+struct RawLinkage {
+    /// The fixed pivot of the crank.
+    #[serde(rename = "A")]
+    crank_pivot: XY,
+    /// The fixed pivot of the follower.
+    #[serde(rename = "B")]
+    follower_pivot: XY,
+    /// |AC|, the crank.
+    a: Number,
+    /// |CD|, the coupler.
+    b: Number,
+    /// |BD|, the follower.
+    c: Number,
+    /// |CP|.
+    d: Number,
+    /// |DP|.
+    e: Number,
+    /// 1: D lies left of the line from C to B; -1: right.
+    #[schemars(with = "i64")]
+    t1: AssemblyMode,
+    /// 1: P lies left of the line from C to D; -1: right.
+    #[schemars(with = "i64")]
+    t2: CouplerSide,
+}
+
+/// Pivots, link lengths and a polar coupler point.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "VectorLoop")]
+struct RawVectorLoop {
+    /// The fixed pivot of the crank.
+    #[serde(rename = "O1")]
+    crank_pivot: XY,
+    /// The fixed pivot of the follower.
+    #[serde(rename = "O2")]
+    follower_pivot: XY,
+    /// The crank.
+    #[serde(rename = "L2")]
+    crank: Number,
+    /// The coupler.
+    #[serde(rename = "L3")]
+    coupler: Number,
+    /// The follower.
+    #[serde(rename = "L4")]
+    follower: Number,
+    /// From the crank pin to the coupler point.
+    #[serde(rename = "Z1")]
+    coupler_point: Number,
+    /// From the coupler's line to the coupler point, degrees.
+    beta_deg: Number,
+    /// 1: D lies left of the line from C to B; -1: right.
+    #[schemars(with = "i64")]
+    t1: AssemblyMode,
+}
+
+/// Help for a file without a linkage.
+const KINDS: &str =
+    "a linkage file has a table [linkage] with A, B, a, b, c, d, e, t1, t2, or [vector_loop], or [chain]";
+
+/// Reads the four-bar of a file.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the fault; a chain is no four-bar, see [`load_any`].
+pub fn load(path: &Path) -> Result<LinkageFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse(&path.display().to_string(), &text)
+}
+
+/// Reads the linkage of a file: a four-bar or a chain.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the fault.
+pub fn load_any(path: &Path) -> Result<AnyLinkageFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse_any(&path.display().to_string(), &text)
+}
+
+/// Reads the four-bar of a text; `file_name` is shown in diagnostics and gives the default name.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>> {
+    let AnyLinkageFile { name, unit, linkage } = parse_any(file_name, text)?;
+    match linkage {
+        Linkage::FourBar(linkage) => Ok(LinkageFile { name, unit, linkage }),
+        Linkage::Chain(_) => {
+            let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
+            let message = "a chain is not a four-bar, and a four-bar is needed here";
+            let help = "give a linkage file with [linkage] or [vector_loop]";
+            Err(Box::new(toml.at_key("chain", message).with_help(help)))
+        }
+    }
+}
+
+/// Reads the linkage of a text, a four-bar or a chain.
+///
+/// # Errors
+/// As [`load_any`].
+pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diagnostic>> {
+    let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
+    if toml.text.trim().is_empty() {
+        return Err(Box::new(toml.about_file("the file is empty").with_help(KINDS)));
+    }
+    let raw: RawLinkageFile = toml.read()?;
+    check_format(&toml, raw.format, FORMAT)?;
+    let name = checked_name(&toml, raw.name, "linkage")?;
+    let linkage = match (raw.linkage, raw.vector_loop, raw.chain) {
+        (Some(OnlyTable(natural)), None, None) => {
+            Linkage::FourBar(natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?)
+        }
+        (None, Some(OnlyTable(vector_loop)), None) => {
+            Linkage::FourBar(from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?)
+        }
+        (None, None, Some(OnlyTable(chain))) => Linkage::Chain(Box::new(chain::chain(&toml, chain)?)),
+        (None, None, None) => {
+            return Err(Box::new(toml.about_file("there is no linkage in this file").with_help(KINDS)));
+        }
+        (natural, vector_loop, chain) => {
+            let kinds = [
+                ("linkage", natural.is_some()),
+                ("vector_loop", vector_loop.is_some()),
+                ("chain", chain.is_some()),
+            ];
+            let there: Vec<&str> = kinds.iter().filter(|(_, there)| *there).map(|(kind, _)| *kind).collect();
+            let (first, last) = (there[0], there[there.len() - 1]);
+            let both = toml.at_key(last, format!("two linkages: [{first}] and [{last}]"));
+            return Err(Box::new(both.with_help("keep one of the two tables")));
+        }
+    };
+    Ok(AnyLinkageFile { name, unit: raw.unit, linkage })
+}
+
+fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {
+    FourBar::new(NaturalCoordinates {
+        crank_pivot: raw.crank_pivot.numbers(),
+        follower_pivot: raw.follower_pivot.numbers(),
+        crank: raw.a.0,
+        coupler: raw.b.0,
+        follower: raw.c.0,
+        crank_side: raw.d.0,
+        follower_side: raw.e.0,
+        assembly: raw.t1,
+        side: raw.t2,
+    })
+}
+
+fn from_vector_loop(raw: &RawVectorLoop) -> Result<FourBar, LinkageError> {
+    FourBar::from_vector_loop(VectorLoop {
+        crank_pivot: raw.crank_pivot.numbers(),
+        follower_pivot: raw.follower_pivot.numbers(),
+        crank: raw.crank.0,
+        coupler: raw.coupler.0,
+        follower: raw.follower.0,
+        coupler_point: raw.coupler_point.0,
+        beta_deg: raw.beta_deg.0,
+        assembly: raw.t1,
+    })
+}
+
+/// Returns the diagnostic of a linkage's error, at the key of the file's table that it is about.
+fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagnostic> {
+    let name = |key: &'static str| if table == "linkage" { key } else { vector_loop_key(key) };
+    let path = |key: &'static str| format!("{table}.{}", name(key));
+    Box::new(match error {
+        LinkageError::NotFinite { key, value } => toml
+            .at(&path(key), format!("{} = {value} is not a finite number below {MAX_MAGNITUDE:e}", name(key)))
+            .with_help("use a larger unit, such as m for mm"),
+        LinkageError::LengthNotPositive { key, value } => toml
+            .at(&path(key), format!("{} = {value}: a link's length must be positive", name(key)))
+            .with_help("write a length above 0"),
+        LinkageError::DistanceNegative { key, value } => toml
+            .at(&path(key), format!("{} = {value}: a distance cannot be negative", name(key)))
+            .with_help("write a distance of 0 or more; t2, or beta_deg, tells the side of the coupler point"),
+        LinkageError::NoCouplerTriangle { b, d, e } => toml
+            .at(
+                &path("d"),
+                format!("impossible triangle: no coupler has the sides b = {b}, d = {d}, e = {e}"),
+            )
+            .with_help(triangle_remedy(*b, *d, *e)),
+    })
+}
+
+/// Returns help for sides b, d, e that make no triangle.
+pub(crate) fn triangle_remedy(b: f64, d: f64, e: f64) -> String {
+    let [(first, x), (second, y), (longest, z)] = {
+        let mut sides = [("b", b), ("d", d), ("e", e)];
+        sides.sort_by(|l, r| l.1.total_cmp(&r.1));
+        sides
+    };
+    format!(
+        "each side is at most the sum of the other two: {longest} = {z} against {first} + {second} = {}",
+        x + y
+    )
+}
+
+fn vector_loop_key(key: &str) -> &'static str {
+    match key {
+        "A" => "O1",
+        "B" => "O2",
+        "a" => "L2",
+        "b" => "L3",
+        "c" => "L4",
+        "beta_deg" => "beta_deg",
+        _ => "Z1",
+    }
+}
+
+/// Refuses a file of another format.
+pub(crate) fn check_format(
+    toml: &TomlText<'_>,
+    format: Option<Count>,
+    read: u64,
+) -> Result<(), Box<Diagnostic>> {
+    match format {
+        Some(Count(version)) if version == read => Ok(()),
+        Some(Count(version)) => Err(Box::new(
+            toml.at("format", format!("this program reads format {read}, this file has format {version}"))
+                .with_help(if version > read {
+                    "install a newer linkwright".to_owned()
+                } else {
+                    format!("write format = {read}")
+                }),
+        )),
+        None => Err(Box::new(
+            toml.about_file(format!("the key `format` is missing: this program reads format {read}"))
+                .with_help(format!("write format = {read} as the first line")),
+        )),
+    }
+}
+
+/// Returns the name in the file, or one made from the file's name.
+pub(crate) fn checked_name(
+    toml: &TomlText<'_>,
+    given: Option<String>,
+    fallback: &str,
+) -> Result<String, Box<Diagnostic>> {
+    let Some(given) = given else { return Ok(name::from_file(toml.file, fallback)) };
+    match name::check(&given) {
+        Ok(()) => Ok(given),
+        Err(error) => Err(Box::new(toml.at("name", error.to_string()).with_help(error.remedy()))),
+    }
+}
+
+/// Returns the text of a linkage file; every number reads back to the same digits.
+pub fn to_toml(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
+    let p = linkage.natural_coordinates();
+    let name = toml::Value::String(name.to_owned());
+    let unit = unit.map_or(String::new(), |u| format!("unit = \"{}\"\n", u.label()));
+    let ([ax, ay], [bx, by]) = (p.crank_pivot, p.follower_pivot);
+    format!(
+        "# A four-bar linkage, {}.\n\
+         # A, B: fixed pivots of crank and follower. C, D: moving pins. P: coupler point.\n\
+         # a = |AC| crank, b = |CD| coupler, c = |BD| follower, d = |CP|, e = |DP|.\n\
+         # t1 = 1: D lies left of the line from C to B; t2 = 1: P lies left of the line from C to D.\n\
+         format = {FORMAT}\n\
+         name = {name}\n\
+         {unit}\n\
+         [linkage]\n\
+         A = [{ax:?}, {ay:?}]\n\
+         B = [{bx:?}, {by:?}]\n\
+         a = {:?}\nb = {:?}\nc = {:?}\nd = {:?}\ne = {:?}\nt1 = {}\nt2 = {}\n",
+        crate::files::generator::mark(),
+        p.crank,
+        p.coupler,
+        p.follower,
+        p.crank_side,
+        p.follower_side,
+        i64::from(p.assembly),
+        i64::from(p.side),
+    )
+}

@@ -1,0 +1,352 @@
+//! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
+
+use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::input_text;
+use crate::files::toml_text::nearest;
+use crate::mechanism::MAX_MAGNITUDE;
+use std::ops::Range;
+use std::path::Path;
+
+pub use crate::task::spec::MAX_POINTS;
+
+/// The columns that are read.
+const COLUMNS: [&str; 5] = ["x", "y", "crank_deg", "weight", "tolerance"];
+
+/// The points of a CSV file and their other columns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PointsFile {
+    /// The file as the user named it.
+    pub file: String,
+    /// The text of the file.
+    pub text: String,
+    /// The points.
+    pub points: Vec<[f64; 2]>,
+    /// The crank angle at each point, in degrees.
+    pub crank_deg: Option<Vec<f64>>,
+    /// The weight of each point.
+    pub weight: Option<Vec<f64>>,
+    /// The largest error accepted at each point.
+    pub tolerance: Option<Vec<f64>>,
+    /// The place of each point's row in the text.
+    pub rows: Vec<Range<usize>>,
+    /// Warnings about ignored columns.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads the points of a file.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the row and cell at fault.
+pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
+    let text = input_text::read(path)?;
+    parse(&path.display().to_string(), &text)
+}
+
+/// Reads the points of a text; `file` is shown in diagnostics.
+///
+/// # Errors
+/// A [`Diagnostic`] that points at the row and cell at fault.
+pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
+    let text = input_text::without_mark(text);
+    let mut table = Rows::new(file, text);
+    let header = match table.header()? {
+        Some(row) => row,
+        None => {
+            return Err(
+                table.about_file("the file is empty", "write a first line x,y and then one point a line")
+            );
+        }
+    };
+    let columns = Columns::of(&table, &header)?;
+    let mut out = PointsFile {
+        file: file.to_owned(),
+        text: text.to_owned(),
+        points: Vec::new(),
+        crank_deg: columns.place[2].map(|_| Vec::new()),
+        weight: columns.place[3].map(|_| Vec::new()),
+        tolerance: columns.place[4].map(|_| Vec::new()),
+        rows: Vec::new(),
+        warnings: columns.warnings,
+    };
+    while let Some(row) = table.next_row()? {
+        // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
+        let beyond = row.cells.iter().skip(header.cells.len()).any(|cell| !cell.is_empty());
+        let short = columns.place.iter().flatten().any(|place| *place >= row.cells.len());
+        if beyond || short {
+            return Err(table.ragged(&row, header.cells.len()));
+        }
+        if out.points.len() == MAX_POINTS {
+            return Err(table.at(
+                row.span,
+                format!("there are more than {MAX_POINTS} points"),
+                "leave out points: a few hundred describe any path that a four-bar can trace",
+            ));
+        }
+        let number =
+            |column: usize| columns.place[column].map(|i| table.number(&row, i, COLUMNS[column])).transpose();
+        if let (Some(x), Some(y)) = (number(0)?, number(1)?) {
+            out.points.push([x, y]);
+        }
+        for (column, list) in [(2, &mut out.crank_deg), (3, &mut out.weight), (4, &mut out.tolerance)] {
+            let (Some(list), Some(value), Some(i)) = (list, number(column)?, columns.place[column]) else {
+                continue;
+            };
+            let remedy = match column {
+                3 if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
+                4 if value < 0.0 => "a tolerance is 0 or more",
+                _ => {
+                    list.push(value);
+                    continue;
+                }
+            };
+            return Err(table.at(row.cell_span(text, i), format!("{} = {value}", COLUMNS[column]), remedy));
+        }
+        out.rows.push(row.span);
+    }
+    if out.points.is_empty() {
+        return Err(table.at(
+            header.span,
+            "there are no points under the header",
+            "write one point a line, such as 1.5,2",
+        ));
+    }
+    Ok(out)
+}
+
+/// A row: its cells, trimmed, and its place in the text.
+struct Row {
+    cells: Vec<String>,
+    span: Range<usize>,
+}
+
+impl Row {
+    /// Returns the place of a cell, without the blanks around it.
+    fn cell_span(&self, text: &str, index: usize) -> Range<usize> {
+        let row = &text[self.span.clone()];
+        let (mut start, mut cell, mut in_quotes) = (0, 0, false);
+        let mut found = 0..row.len();
+        for (i, c) in row.char_indices().chain([(row.len(), ',')]) {
+            match c {
+                '"' => in_quotes = !in_quotes,
+                ',' if !in_quotes || i == row.len() => {
+                    if cell == index {
+                        found = start..i;
+                        break;
+                    }
+                    (start, cell) = (i + 1, cell + 1);
+                }
+                _ => {}
+            }
+        }
+        let cell = &row[found.clone()];
+        let start = self.span.start + found.start + (cell.len() - cell.trim_start().len());
+        start..start + cell.trim().len()
+    }
+}
+
+/// The rows of a text that are neither blank nor comments.
+struct Rows<'a> {
+    file: &'a str,
+    text: &'a str,
+    reader: csv::Reader<&'a [u8]>,
+}
+
+impl<'a> Rows<'a> {
+    fn new(file: &'a str, text: &'a str) -> Self {
+        let reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(text.as_bytes());
+        Rows { file, text, reader }
+    }
+
+    /// Returns the first row, after the line `sep=,` that some spreadsheets write above it.
+    fn header(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
+        let first = self.next_row()?;
+        match &first {
+            Some(row) if self.text.get(row.span.clone()).is_some_and(|line| line.trim() == "sep=,") => {
+                self.next_row()
+            }
+            _ => Ok(first),
+        }
+    }
+
+    fn next_row(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
+        let mut record = csv::StringRecord::new();
+        loop {
+            let start = self.reader.position().byte() as usize;
+            match self.reader.read_record(&mut record) {
+                Ok(true) => {}
+                Ok(false) => return Ok(None),
+                Err(error) => {
+                    return Err(self.about_file(format!("the file is no CSV: {error}"), "check its quotes"));
+                }
+            }
+            let blank = record.iter().all(str::is_empty);
+            let comment = record.get(0).is_some_and(|cell| cell.starts_with('#'));
+            if !blank && !comment {
+                let end = self.reader.position().byte() as usize;
+                let span = row_span(self.text, start, end);
+                let cells = record.iter().map(|cell| unquoted(cell).to_owned()).collect();
+                return Ok(Some(Row { cells, span }));
+            }
+        }
+    }
+
+    fn at(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
+        Box::new(Diagnostic::new(self.file, self.text, message).at(span).with_help(help))
+    }
+
+    fn about_file(&self, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
+        Box::new(Diagnostic::new(self.file, self.text, message).with_help(help))
+    }
+
+    fn ragged(&self, row: &Row, expected: usize) -> Box<Diagnostic> {
+        let found = row.cells.len();
+        let count = |n: usize| if n == 1 { "1 cell".to_owned() } else { format!("{n} cells") };
+        let help = if row.cells.iter().any(|c| c.contains(';')) {
+            "separate cells with commas, not with semicolons"
+        } else if self.text[row.span.clone()].matches('"').count() % 2 == 1 {
+            "a quote is opened and not closed; numbers need no quotes"
+        } else if found == 2 * expected {
+            "if these are decimal commas, write a decimal point: 1.5"
+        } else {
+            "give each row a cell for each column"
+        };
+        self.at(row.span.clone(), format!("this row has {}, the header has {}", count(found), expected), help)
+    }
+
+    /// Returns the finite number in a cell.
+    fn number(&self, row: &Row, index: usize, column: &str) -> Result<f64, Box<Diagnostic>> {
+        let cell = row.cells.get(index).map_or("", String::as_str);
+        let refuse =
+            |message: String, help: &str| Err(self.at(row.cell_span(self.text, index), message, help));
+        match cell.parse::<f64>() {
+            Ok(value) if value.abs() <= MAX_MAGNITUDE => Ok(value),
+            Ok(value) if value.is_finite() => refuse(
+                format!("{column} = {} is too large: numbers go up to 1e12", quoted(cell)),
+                crate::files::toml_text::too_large_help(column),
+            ),
+            Ok(_) => refuse(
+                format!("{column} = {} is not a finite number", quoted(cell)),
+                "leave the row out or give its value",
+            ),
+            Err(_) if cell.is_empty() => {
+                refuse(format!("the cell of {column} is empty"), "give its value or leave the row out")
+            }
+            Err(_) if is_decimal_comma(cell) => refuse(
+                format!("{column} = {} has a decimal comma", quoted(cell)),
+                "write a decimal point: 1.5",
+            ),
+            Err(_) => refuse(
+                format!("{column} = {} is not a number", quoted(cell)),
+                "write a number such as 1.5 or 2e-3",
+            ),
+        }
+    }
+}
+
+/// Returns the place of the row itself: without the comments and blank lines before it and the line's end after it.
+fn row_span(text: &str, start: usize, end: usize) -> Range<usize> {
+    let end = end.min(text.len());
+    let mut start = start.min(end);
+    loop {
+        let rest = &text[start..end];
+        let line = rest.split_inclusive('\n').next().unwrap_or("");
+        if line.is_empty() || !(line.trim().is_empty() || line.starts_with('#')) {
+            let blank = rest.len() - rest.trim_start().len();
+            return start + blank..start + rest.trim_end().len().max(blank);
+        }
+        start += line.len();
+    }
+}
+
+/// Returns a cell without the quotes that were kept because of blanks before them: `1, "2"`.
+fn unquoted(cell: &str) -> &str {
+    let inner = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
+    inner.filter(|inner| !inner.contains('"')).map_or(cell, str::trim)
+}
+
+fn is_decimal_comma(cell: &str) -> bool {
+    cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok()
+}
+
+/// The places of the columns in a row.
+struct Columns {
+    place: [Option<usize>; 5],
+    warnings: Vec<Diagnostic>,
+}
+
+impl Columns {
+    fn of(table: &Rows<'_>, header: &Row) -> Result<Columns, Box<Diagnostic>> {
+        let whole = || header.span.clone();
+        if let [only] = header.cells.as_slice() {
+            for (separator, name) in [(';', "semicolons"), ('\t', "tabs")] {
+                if only.contains(separator) {
+                    return Err(table.at(
+                        whole(),
+                        format!("the columns are separated by {name}"),
+                        "separate them with commas and write numbers with a decimal point; \
+                         in a spreadsheet, save as \"CSV (comma delimited)\"",
+                    ));
+                }
+            }
+        }
+        if header.cells.iter().all(|c| c.is_empty() || c.parse::<f64>().is_ok() || is_decimal_comma(c)) {
+            return Err(table.at(
+                whole(),
+                "the header is missing: the first row holds numbers",
+                "write a first line x,y",
+            ));
+        }
+        let mut columns = Columns { place: [None; 5], warnings: Vec::new() };
+        let mut extra = Vec::new();
+        for (i, cell) in header.cells.iter().enumerate() {
+            let name = cell.to_lowercase();
+            match COLUMNS.iter().position(|c| *c == name) {
+                Some(c) if columns.place[c].is_some() => {
+                    let span = header.cell_span(table.text, i);
+                    return Err(table.at(
+                        span,
+                        format!("there are two columns {name}"),
+                        "remove or rename one of them",
+                    ));
+                }
+                Some(c) => columns.place[c] = Some(i),
+                None if cell.is_empty() => {}
+                None => extra.push(i),
+            }
+        }
+        columns.warnings.extend(extra_columns(table, header, &extra));
+        for (c, name) in COLUMNS.iter().enumerate().take(2) {
+            if columns.place[c].is_none() {
+                return Err(table.at(
+                    whole(),
+                    format!("there is no column {name}"),
+                    format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", ")),
+                ));
+            }
+        }
+        Ok(columns)
+    }
+}
+
+/// Returns one warning for all columns that are not read; it points at the first.
+fn extra_columns(table: &Rows<'_>, header: &Row, extra: &[usize]) -> Option<Diagnostic> {
+    /// The largest number of columns that the warning names, to keep it short.
+    const NAMED: usize = 6;
+    let first = *extra.first()?;
+    let named: Vec<String> = extra.iter().take(NAMED).map(|&i| quoted(&header.cells[i])).collect();
+    let more = if extra.len() > NAMED { format!(" and {} more", extra.len() - NAMED) } else { String::new() };
+    let message = match extra.len() {
+        1 => format!("the column {} is not used", named[0]),
+        _ => format!("the columns {}{more} are not used", named.join(", ")),
+    };
+    let hint =
+        nearest(&header.cells[first], &COLUMNS).map_or(String::new(), |n| format!("did you mean {n}? "));
+    let help = format!("{hint}columns that are read: {}", COLUMNS.join(", "));
+    let span = header.cell_span(table.text, first);
+    Some(Diagnostic::new(table.file, table.text, message).at(span).with_help(help))
+}

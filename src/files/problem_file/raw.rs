@@ -1,0 +1,265 @@
+//! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
+
+use crate::files::toml_values::{
+    BoundedXY, Bounds, Corners, Count, Number, OneOrEach, OneOrMore, OnlyTable, XY,
+};
+use crate::mechanism::Unit;
+use crate::mechanism::{AssemblyMode, LinkageType};
+use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
+use crate::numbers::optimise::genetic::GeneticParameters;
+use crate::task::AngleOffset;
+use crate::task::spec::{
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver, Variables,
+};
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// A linkwright problem file.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ProblemFile")]
+pub(crate) struct RawProblem {
+    /// The format of the file: 1.
+    #[schemars(required)]
+    pub format: Option<Count>,
+    /// 1 to 64 letters, digits, blanks and `- _ .`, not starting with a dot; where silent, the name of the file.
+    pub name: Option<String>,
+    /// Where the problem comes from, in words.
+    pub source: Option<String>,
+    /// The unit of lengths: it labels them and scales drawings.
+    pub unit: Option<Unit>,
+    /// What is wanted.
+    #[schemars(required)]
+    pub task: Option<OnlyTable<RawTask>>,
+    /// Where the parameters may lie.
+    #[serde(default)]
+    pub design: OnlyTable<RawDesign>,
+    /// What an acceptable linkage satisfies.
+    #[serde(default)]
+    pub require: OnlyTable<RawRequire>,
+    /// How to search.
+    #[serde(default)]
+    pub solve: OnlyTable<RawSolve>,
+    /// How a certificate is worked out, where `solve.certify` asks for one.
+    #[serde(default)]
+    pub certify: Option<OnlyTable<RawCertify>>,
+    /// What is known of the answer; no search reads it.
+    pub expect: Option<OnlyTable<RawExpect>>,
+}
+
+/// What is wanted: a path.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Task")]
+pub(crate) struct RawTask {
+    /// A path to trace.
+    #[schemars(required)]
+    pub path: Option<OnlyTable<RawPath>>,
+}
+
+/// A path to trace: points, a file of points, or a drawing.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Path")]
+pub(crate) struct RawPath {
+    /// The target points in their order, each [x, y]. Give one of points, file and svg.
+    pub points: Option<Vec<XY>>,
+    /// A CSV file, named from the problem file's folder: columns x, y and optionally crank_deg, weight, tolerance.
+    pub file: Option<String>,
+    /// An SVG drawing, named from the problem file's folder: its first path, polyline, polygon, circle or ellipse.
+    pub svg: Option<String>,
+    /// The id of the drawing's shape, where it is not the first.
+    pub svg_id: Option<String>,
+    /// How many points are taken evenly by arc length: of a drawing (60 where silent), or along the points.
+    pub samples: Option<Count>,
+    /// Smooths digitised points: the standard deviation of the window, a length along the path.
+    pub smooth: Option<Number>,
+    /// Whether the target is a closed curve; where silent, false, of a drawing as it is drawn.
+    pub closed: Option<bool>,
+    /// The largest error accepted, 0 or more: a number for every point, or a list of one a point; where silent, any.
+    pub tolerance: Option<OneOrEach>,
+    /// Weights of the squared errors, above 0, one a point; where silent, all points count alike.
+    pub weight: Option<Vec<Number>>,
+    /// Prescribed crank angles; where silent, the timing is free: each point is met at whatever angle suits it.
+    pub timing: Option<OnlyTable<RawTiming>>,
+}
+
+/// Prescribed crank angles.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Timing")]
+pub(crate) struct RawTiming {
+    /// One a point, degrees, counter-clockwise positive; or a column of the CSV file.
+    pub crank_deg: Option<Vec<Number>>,
+    /// What they are measured from.
+    #[serde(default)]
+    pub offset: AngleOffset,
+}
+
+/// Where the parameters may lie: a number fixes, [min, max] bounds.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Design")]
+pub(crate) struct RawDesign {
+    /// The fixed pivot of the crank: [x, y], each a number or [min, max]; where silent, within 5 sizes of the target.
+    #[serde(rename = "A")]
+    pub crank_pivot: Option<BoundedXY>,
+    /// The fixed pivot of the follower, likewise.
+    #[serde(rename = "B")]
+    pub follower_pivot: Option<BoundedXY>,
+    /// |AC|, the crank; where silent, 0.02 to 5 sizes of the target, as are b, c and ground.
+    pub a: Option<Bounds>,
+    /// |CD|, the coupler.
+    pub b: Option<Bounds>,
+    /// |BD|, the follower.
+    pub c: Option<Bounds>,
+    /// |CP|.
+    pub d: Option<Bounds>,
+    /// |DP|.
+    pub e: Option<Bounds>,
+    /// |AB|.
+    pub ground: Option<Bounds>,
+    /// The direction from A to B, degrees from the x axis.
+    pub ground_angle_deg: Option<Bounds>,
+    /// P along the line from C to D, from C; where silent, at most 5 sizes of the target either way.
+    pub coupler_x: Option<Bounds>,
+    /// P across the line from C to D, positive to its left; likewise.
+    pub coupler_y: Option<Bounds>,
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Require")]
+pub(crate) struct RawRequire {
+    /// The types allowed; where silent, any.
+    #[serde(rename = "type")]
+    pub types: Option<OneOrMore<LinkageType>>,
+    /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
+    pub transmission_deg_min: Option<Number>,
+    /// Over which motion it is judged; where silent, the cycle where the crank turns fully.
+    pub transmission_over: Option<TransmissionOver>,
+    /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
+    pub link_ratio_max: Option<Number>,
+    /// The box [xmin, ymin, xmax, ymax] that must hold both fixed pivots.
+    pub pivots_in: Option<Corners>,
+    /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
+    pub footprint_in: Option<Corners>,
+    /// Whether the points must be passed in order.
+    #[serde(default)]
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    #[serde(default)]
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    #[serde(default)]
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    #[serde(default)]
+    pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed.
+    #[serde(default)]
+    pub closing: ClosingPolicy,
+}
+
+/// How to search and when to stop.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Solve")]
+pub(crate) struct RawSolve {
+    /// The method.
+    #[serde(default)]
+    pub method: Method,
+    /// What is minimised.
+    #[serde(default)]
+    pub objective: Objective,
+    /// In which variables genetic and differential-evolution move.
+    #[serde(default)]
+    pub variables: Variables,
+    /// Every draw comes from this number; 1 where silent.
+    pub seed: Option<Count>,
+    /// How many distinct answers are wanted, 1 to 100; 5 where silent.
+    pub candidates: Option<Count>,
+    /// How many evaluations of the objective at most; 200000 where silent.
+    pub evaluations: Option<Count>,
+    /// Seconds at most, of search and advice together; a run that the clock ends cannot be repeated to the digit.
+    pub time_limit_s: Option<Number>,
+    /// Whether advice is worked out beside the answers: which requirements conflict, what can be built, what limits cost; where silent, true.
+    pub advice: Option<bool>,
+    /// Whether a lower bound of the sum of squares is proved after the search (prescribed timing); where silent, false.
+    #[serde(default)]
+    pub certify: bool,
+    /// The genetic algorithm's parameters.
+    #[serde(default)]
+    pub genetic: OnlyTable<GeneticParameters>,
+    /// Differential evolution's parameters.
+    #[serde(default, rename = "differential-evolution")]
+    pub differential_evolution: OnlyTable<DifferentialEvolutionParameters>,
+}
+
+/// How a certificate is worked out.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Certify")]
+pub(crate) struct RawCertify {
+    /// How far below the best candidate the proved bound may be, relative, between 0 and 1; 1e-4 where silent.
+    pub gap: Option<Number>,
+    /// Seconds at most, up to 1e6; what is proved by then stands; 300 where silent.
+    pub time_limit_s: Option<Number>,
+}
+
+/// What is known of the answer.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Expect")]
+pub(crate) struct RawExpect {
+    /// The least sum of squared errors that is known.
+    pub best_known_sum_sq: Option<Number>,
+    /// What a run has to reach to count as a hit; where silent, best_known_sum_sq.
+    pub goal_sum_sq: Option<Number>,
+    /// How many linkages there are through nine points.
+    pub exact: Option<OnlyTable<RawExpectedCensus>>,
+    /// Answers that were published.
+    #[serde(default)]
+    pub published: Vec<OnlyTable<RawPublished>>,
+}
+
+/// How many linkages there are through nine points, up to cognates.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "ExpectedCensus")]
+pub(crate) struct RawExpectedCensus {
+    /// Isolated solutions, real and complex.
+    pub classes: Option<Count>,
+    /// Real linkages.
+    pub real: Option<Count>,
+    /// Of these, on one circuit.
+    pub one_circuit: Option<Count>,
+    /// Of these, in the order of the points.
+    pub in_order: Option<Count>,
+    /// Of these, on one branch.
+    pub free_of_defects: Option<Count>,
+}
+
+/// An answer that was published.
+#[derive(Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Published")]
+pub(crate) struct RawPublished {
+    /// Author and year.
+    pub source: String,
+    /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
+    #[serde(default)]
+    pub vector: Vec<Number>,
+    /// Which way it closes: 1: D lies left of the line from C to B; -1: right.
+    #[schemars(with = "Option<i64>")]
+    pub t1: Option<AssemblyMode>,
+    /// The crank angles that were published, degrees from the ground line.
+    pub crank_deg: Option<Vec<Number>>,
+    /// The error that was printed.
+    pub printed_sum_sq: Option<Number>,
+    /// The error that the vector has when this project evaluates it.
+    pub recomputed_sum_sq: Option<Number>,
+    /// A remark.
+    pub note: Option<String>,
+}

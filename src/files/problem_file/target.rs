@@ -1,0 +1,189 @@
+//! Where the points of `[task.path]` come from: the file itself, a CSV or a drawing beside it.
+
+use super::raw::RawPath;
+use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::points_file;
+use crate::files::points_file::{MAX_POINTS, PointsFile};
+use crate::files::svg_file;
+use crate::files::svg_file::{SvgOptions, SvgTarget};
+use crate::files::toml_text::TomlText;
+use crate::mechanism::Unit;
+use std::path::{Component, Path, PathBuf};
+
+/// Where files that a problem file names are looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Whereabouts<'a> {
+    /// The folder of the problem file, where it has one.
+    pub folder: Option<&'a Path>,
+    /// Whether the file was named on the command line, so that it may lie anywhere.
+    pub anywhere: bool,
+    /// Points files that are not on the disk, by the names under which a problem asks for them.
+    pub beside: &'a [(&'a str, &'a str)],
+}
+
+/// What gave the points.
+pub(super) enum Source {
+    /// The problem file.
+    File,
+    /// A CSV.
+    Csv(PointsFile),
+    /// A drawing.
+    Svg(SvgTarget),
+}
+
+/// Points with what stands beside them.
+pub(super) struct Target {
+    pub points: Vec<[f64; 2]>,
+    pub source: Source,
+    pub closed: bool,
+    /// How many samples are asked for.
+    pub samples: Option<usize>,
+    /// Whether the points are no longer those of the source.
+    pub resampled: bool,
+}
+
+type Answer<T> = Result<T, Box<Diagnostic>>;
+
+impl Target {
+    /// The points of a path, from wherever it says.
+    pub fn of(
+        toml: &TomlText<'_>,
+        path: &RawPath,
+        whereabouts: &Whereabouts<'_>,
+        unit: Option<Unit>,
+    ) -> Answer<Target> {
+        let refuse = |key: &str, message: String, help: &str| {
+            Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
+        };
+        let given =
+            [("points", path.points.is_some()), ("file", path.file.is_some()), ("svg", path.svg.is_some())];
+        let mut given = given.iter().filter(|(_, there)| *there).map(|(key, _)| *key);
+        if let (Some(first), Some(second)) = (given.next(), given.next()) {
+            let message = format!("two sources of points: {first} and {second}");
+            let place = toml.at_key(&format!("task.path.{second}"), message);
+            return Err(Box::new(place.with_help("keep one of the two")));
+        }
+        if path.svg_id.is_some() && path.svg.is_none() {
+            let help = "name the drawing too: svg = \"drawing.svg\"; or remove svg_id";
+            return refuse("svg_id", "svg_id names a shape, but there is no drawing".into(), help);
+        }
+        let samples = match path.samples {
+            None => None,
+            Some(count) if (2..=MAX_POINTS as u64).contains(&count.0) => Some(count.0 as usize),
+            Some(count) => {
+                let message = format!("samples = {} is not between 2 and {MAX_POINTS}", count.0);
+                return refuse("samples", message, "60 points describe most paths");
+            }
+        };
+        let mut closed = path.closed.unwrap_or(false);
+        let (points, source) = if let Some(points) = &path.points {
+            if points.len() > MAX_POINTS {
+                let message = format!("{} points; at most {MAX_POINTS} are read", points.len());
+                let help = "leave out points: a few hundred describe any path that a four-bar can trace";
+                return Err(Box::new(toml.at_key("task.path.points", message).with_help(help)));
+            }
+            (points.iter().map(|p| p.numbers()).collect(), Source::File)
+        } else if let Some(file) = &path.file {
+            let mut csv = match whereabouts.beside.iter().find(|(name, _)| name == file) {
+                Some((name, text)) => points_file::parse(name, text)?,
+                None => points_file::load(&whereabouts.find(toml, "file", file)?)?,
+            };
+            (std::mem::take(&mut csv.points), Source::Csv(csv))
+        } else if let Some(file) = &path.svg {
+            let options = SvgOptions {
+                id: path.svg_id.as_deref(),
+                samples: samples.unwrap_or(svg_file::DEFAULT_SAMPLES),
+                closed: path.closed,
+                unit,
+            };
+            let mut svg = svg_file::load(&whereabouts.find(toml, "svg", file)?, &options)?;
+            closed = svg.closed;
+            (std::mem::take(&mut svg.points), Source::Svg(svg))
+        } else {
+            let place = toml.at_key("task.path", "the path has no points");
+            let help = "add points = [[x, y], ...] or file = \"points.csv\" or svg = \"drawing.svg\"";
+            return Err(Box::new(place.with_help(help)));
+        };
+        Ok(Target { points, source, closed, samples, resampled: false })
+    }
+
+    /// A complaint about a point, where it is written.
+    pub fn at_point(&self, toml: &TomlText<'_>, index: usize, message: String) -> Diagnostic {
+        match &self.source {
+            _ if self.resampled => self.at_all(toml, message),
+            Source::Csv(csv) => {
+                let diagnostic = Diagnostic::new(csv.file.clone(), csv.text.clone(), message);
+                match csv.rows.get(index) {
+                    Some(row) => diagnostic.at(row.clone()),
+                    None => diagnostic,
+                }
+            }
+            Source::File => toml.at(&format!("task.path.points.{index}"), message),
+            Source::Svg(_) => self.at_all(toml, message),
+        }
+    }
+
+    /// A complaint about all points.
+    pub fn at_all(&self, toml: &TomlText<'_>, message: String) -> Diagnostic {
+        match &self.source {
+            Source::Csv(csv) => Diagnostic::new(csv.file.clone(), csv.text.clone(), message),
+            Source::Svg(svg) => Diagnostic::new(svg.file.clone(), "", message),
+            Source::File => toml.at("task.path.points", message),
+        }
+    }
+}
+
+impl Whereabouts<'_> {
+    /// The file that `task.path.key` names: inside the problem file's folder, links followed, or anywhere where it
+    /// was named on the command line.
+    fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Answer<PathBuf> {
+        let what = if key == "svg" { "drawing" } else { "points file" };
+        let refuse = |message: String, help: &str| {
+            Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
+        };
+        let Some(folder) = self.folder else {
+            return refuse(
+                format!("a {what} cannot be read here: this text comes from no folder"),
+                "write the points as points = [[x, y], ...]",
+            );
+        };
+        let place = folder.join(file);
+        if self.anywhere {
+            return Ok(place);
+        }
+        let outside = |how: &str| {
+            refuse(
+                format!("the {what} lies outside the folder of the problem file{how}"),
+                "copy it beside the problem file and name it without a folder",
+            )
+        };
+        if !stays_inside(Path::new(file)) {
+            return outside("");
+        }
+        if !place.exists() {
+            let beside = "it is looked for beside the problem file";
+            return refuse(format!("there is no {what} {}", place.display()), beside);
+        }
+        // An empty path is the folder we are in.
+        let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        match (here.canonicalize(), place.canonicalize()) {
+            (Ok(here), Ok(real)) if real.starts_with(&here) => Ok(place),
+            (Ok(_), Ok(_)) => outside(": it is a link"),
+            _ => refuse(format!("{} cannot be found", quoted(file)), "check the folders above it"),
+        }
+    }
+}
+
+/// Whether a relative path leads nowhere above the folder that it starts from.
+fn stays_inside(path: &Path) -> bool {
+    let mut depth = 0_usize;
+    for part in path.components() {
+        match part {
+            Component::Normal(_) => depth += 1,
+            Component::CurDir => {}
+            Component::ParentDir if depth > 0 => depth -= 1,
+            Component::ParentDir | Component::RootDir | Component::Prefix(_) => return false,
+        }
+    }
+    depth > 0
+}

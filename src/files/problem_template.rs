@@ -1,0 +1,109 @@
+//! A commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path.
+
+use crate::files::name;
+use crate::files::name::NameError;
+
+/// A closed path in mm that a crank-rocker of usual proportions draws.
+const SAMPLE_POINTS: &str = "\
+# The points to pass, in order, in the unit above. Many points: file = \"points.csv\" (columns x,y).
+points = [
+    [27.1, 91.3], [45.1, 111.6], [45.9, 123.1], [33.2, 126.0], [14.7, 120.1], [-3.5, 106.8],
+    [-17.8, 89.5], [-26.6, 71.8], [-29.1, 57.1], [-25.0, 48.7], [-14.4, 50.9], [3.3, 66.7],
+]
+closed = true                   # the path ends where it begins
+tolerance = 0.5                 # the largest error accepted at any point; remove to take the best there is
+";
+
+/// Returns the text of a problem file called `name`, with sample points or with those of a CSV file or an SVG drawing
+/// (according to the name's ending) in the same folder.
+///
+/// # Errors
+/// [`NameError`] if the name is not valid.
+pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String, NameError> {
+    name::check(name)?;
+    let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    let points = match points_file {
+        None => SAMPLE_POINTS.to_owned(),
+        Some(file) if crate::files::problem_file::is_drawing(std::path::Path::new(file)) => format!(
+            "# The curve to trace: the drawing's first path, polyline, polygon, circle or ellipse, as points.\n\
+             svg = {}\n\
+             # svg_id = \"leg\"                # the id of another shape of the drawing\n\
+             samples = 60                    # how many points, evenly by arc length\n\
+             # closed = true                 # where silent, as it is drawn\n\
+             # tolerance = 0.5               # the largest error accepted at any point\n",
+            quoted(file)
+        ),
+        Some(file) => format!(
+            "# The points to pass, in order: columns x,y and optionally crank_deg, weight, tolerance.\n\
+             file = {}\n\
+             closed = false                  # true: the path ends where it begins\n\
+             # samples = 60                  # take so many points instead, evenly along the path\n\
+             # smooth = 2                    # smooth digitised points over about this length of path\n\
+             # tolerance = 0.5               # the largest error accepted at any point\n",
+            quoted(file)
+        ),
+    };
+    // A drawing may state its unit itself.
+    let head = match points_file.map(std::path::Path::new) {
+        Some(file) if crate::files::problem_file::is_drawing(file) => {
+            HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"")
+        }
+        _ => HEAD.to_owned(),
+    };
+    Ok(head.replace("NAME", &quoted(name)) + &points + TAIL)
+}
+
+const HEAD: &str = "\
+#:schema linkwright-problem.schema.json
+# (For editors that complete keys: `linkwright schema problem > linkwright-problem.schema.json` beside this file.)
+# A problem for linkwright: run it with `linkwright synth`, check it with `linkwright check`.
+# Lines that start with # are comments; remove the # to use a key.
+format = 1
+name = NAME
+# source = \"author, year\"       # where the points come from
+unit = \"mm\"                     # mm, cm, m or in: labels lengths, scales drawings
+
+[task.path]
+";
+
+const TAIL: &str = r#"
+# Does it matter at which crank angle each point is passed? One angle a point, counter-clockwise positive.
+# [task.path.timing]
+# crank_deg = [0, 30, 60]
+# offset = "free"               # only the increments count; "fixed": from the x axis; "ground": from A to B
+
+# Where the linkage may be. A number fixes, [min, max] bounds; what is silent is set from the path's size.
+[design]
+# A = [0, 0]                    # pivot of the crank: where the motor sits
+# B = [[50, 200], [-50, 50]]    # pivot of the follower: x between 50 and 200, y between -50 and 50
+# a = [10, 60]                  # crank
+# b = [20, 200]                 # coupler
+# c = [20, 200]                 # follower
+# ground = [50, 200]            # from A to B
+# coupler_x = [-100, 200]       # the tracing point along the coupler, from the crank's pin
+# coupler_y = [-100, 100]       # and across it
+
+# What an answer must satisfy.
+[require]
+type = ["crank-rocker", "double-crank"]   # a motor on the crank can turn fully
+transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam
+# link_ratio_max = 10           # longest over shortest link; 20 where silent
+# pivots_in = [-100, -100, 250, 250]      # xmin, ymin, xmax, ymax: where there is room for the two pivots
+# footprint_in = [-150, -150, 300, 300]   # where there is room for all of it as it moves
+# direction = "ccw"             # or "cw": which way the crank turns
+
+# How to search.
+[solve]
+candidates = 5                  # how many different answers
+seed = 1                        # the same seed gives the same answers; another one may give others
+# objective = "max-deviation"   # the least largest error; where silent, the least sum of squared errors
+# method = "differential-evolution"   # or "genetic", "least-squares"; where silent, "auto" chooses
+# variables = "reduced"         # for the first two of these; where silent, the literature's "nine"
+# evaluations = 200000          # how long to search
+# time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
+# advice = false                # the answers alone: not what conflicts, what to build or what limits cost
+# certify = true                # with crank angles: prove afterwards how little better any linkage could be
+# [certify]
+# gap = 1e-4                    # until that part of the best sum is left open
+# time_limit_s = 300            # or this time is over
+"#;

@@ -1,0 +1,245 @@
+//! The reference page of a file's keys, generated from its schema: a section for each table, a row for each key.
+
+use super::{SchemaKind, schema};
+use serde_json::{Map, Value};
+use std::fmt::Write;
+
+/// The order of the tables at the top of a problem file; the others follow by name.
+const ORDER: [&str; 6] = ["task", "design", "require", "solve", "certify", "expect"];
+
+/// The beginning of the page of linkage files: a whole file of each kind.
+const LINKAGE_EXAMPLES: &str = r#"
+`linkwright check FILE` reads such a file and says what is wrong with it; `analyze`, `cognates`, `build`, `snap`,
+`export` and `compare --target PROBLEM` take it as their LINKAGE or RESULT, and every result holds its candidates as
+such files (`linkage-1.toml`, ..). A file holds exactly one of `[linkage]`, `[vector_loop]` and `[chain]`.
+
+A four-bar: crank A-C, coupler C-D with the coupler point P, follower B-D.
+
+```toml
+format = 1
+name = "four-bar"
+unit = "mm"
+
+[linkage]
+A = [0.0, 0.0]
+B = [4.0, 1.0]
+a = 2.0
+b = 5.0
+c = 5.0
+d = 5.0
+e = 5.0
+t1 = 1
+t2 = -1
+```
+
+The same kind of linkage as textbooks write it, a vector loop with a polar coupler point:
+
+```toml
+format = 1
+name = "vector-loop"
+
+[vector_loop]
+O1 = [0.0, 0.0]
+O2 = [-350.0, 0.0]
+L2 = 700.0
+L3 = 300.0
+L4 = 500.0
+Z1 = 200.0
+beta_deg = 30.0
+t1 = 1
+```
+
+A compound mechanism, stage by stage: a crank turns the joint C about A, a dyad hangs the joint D between C and the fixed
+pivot B, and P is a point of the link C-D, 2 along it and 1 to its left. Further `[[chain.dyad]]`, `[[chain.slider]]` and
+`[[chain.guide]]` add stages; `problems/linkages/` has six-bars, a walking leg and a quick-return drive.
+
+```toml
+format = 1
+name = "chain"
+
+[chain]
+trace = "P"
+
+[chain.pivots]
+A = [0.0, 0.0]
+B = [4.0, 0.0]
+
+[chain.crank]
+pivot = "A"
+joint = "C"
+length = 1.0
+
+[[chain.dyad]]
+joint = "D"
+from = ["C", "B"]
+lengths = [4.0, 3.0]
+side = 1
+
+[[chain.point]]
+name = "P"
+on = ["C", "D"]
+at = [2.0, 1.0]
+```
+
+A file that linkwright wrote says so in its first line, "written by linkwright", whatever is edited below it: such a
+file may be replaced by a command that writes a linkage file under the same name. Without that line, and where it is the
+command's own input, it is replaced with `--force` alone.
+"#;
+
+/// Returns the reference of a kind of file as a page of Markdown: every table with its keys, their allowed values,
+/// defaults and meanings.
+///
+/// ```
+/// use linkwright::internals::files::schema::{SchemaKind, reference};
+/// assert!(reference(SchemaKind::Problem).contains("| `transmission_deg_min` | number |"));
+/// ```
+pub fn reference(kind: SchemaKind) -> String {
+    let schema = schema(kind);
+    let mut page = Page { schema: &schema, text: String::new() };
+    let name = kind.name();
+    let read = "Unknown keys are refused. All numbers are finite and below 1e12 in magnitude.";
+    let (title, rules) = match kind {
+        SchemaKind::Problem => ("problem file", read),
+        SchemaKind::Linkage => ("linkage file", read),
+        SchemaKind::Record => {
+            ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
+        }
+    };
+    // Writing to a string never fails, so the results of `write!` below are ignored.
+    let _ = write!(
+        page.text,
+        "# The {title}\n\n\
+         This page is made from the program's own schema: `linkwright schema {name} --markdown` prints it. {rules} \
+         Angles are in degrees, lengths in the file's unit.\n{examples}",
+        examples = if kind == SchemaKind::Linkage { LINKAGE_EXAMPLES } else { "" },
+    );
+    page.table("", &schema);
+    page.text
+}
+
+/// The page that is being written.
+struct Page<'a> {
+    schema: &'a Value,
+    text: String,
+}
+
+impl<'a> Page<'a> {
+    /// Returns a value's schema, with references followed and the alternative `null` (key absent) left out.
+    fn resolved(&self, value: &'a Value) -> &'a Value {
+        if let Some(place) = value["$ref"].as_str() {
+            return self.schema.pointer(place.trim_start_matches('#')).unwrap_or(value);
+        }
+        match value["anyOf"].as_array().map(Vec::as_slice) {
+            Some([one, null]) if null["type"] == "null" => self.resolved(one),
+            _ => value,
+        }
+    }
+
+    /// Writes a table's rows, then the tables in it, each under its name.
+    fn table(&mut self, name: &str, table: &'a Value) {
+        let Some(keys) = table["properties"].as_object() else { return };
+        let required: Vec<&str> =
+            table["required"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+        let (mut inner, rows): (Vec<_>, Vec<_>) =
+            keys.iter().partition(|(_, value)| self.inner(value).is_some());
+        inner.sort_by_key(|(key, _)| ORDER.iter().position(|first| first == key).unwrap_or(ORDER.len()));
+        if !rows.is_empty() {
+            self.text.push_str("\n| key | what | default | meaning |\n|---|---|---|---|\n");
+        }
+        let mut words = Vec::new();
+        for (key, value) in rows {
+            let default = match &value["default"] {
+                Value::Null if required.contains(&key.as_str()) => "required".to_owned(),
+                Value::Null => String::new(),
+                default => format!("`{default}`").replace('"', ""),
+            };
+            let (what, meaning) = (self.what(value), description(value));
+            let _ = writeln!(self.text, "| `{key}` | {what} | {default} | {meaning} |");
+            words.extend(self.words(value).map(|choices| (key, choices)));
+        }
+        for (key, choices) in words {
+            let _ = write!(self.text, "\n`{key}`:\n\n");
+            for choice in choices {
+                let word = choice["const"].as_str().unwrap_or_default();
+                let _ = writeln!(self.text, "- `{word}`: {}", description(choice));
+            }
+        }
+        for (key, value) in inner {
+            let path = if name.is_empty() { key.clone() } else { format!("{name}.{key}") };
+            let Some((table, list)) = self.inner(value) else { continue };
+            let heading = if list { format!("[[{path}]]") } else { format!("[{path}]") };
+            let _ = write!(self.text, "\n## `{heading}`\n\n{}\n", description(value));
+            self.table(&path, table);
+        }
+    }
+
+    /// Returns the table that a key holds, and whether it holds a list of such tables.
+    fn inner(&self, value: &'a Value) -> Option<(&'a Value, bool)> {
+        let value = self.resolved(value);
+        let (value, list) = match &value["items"] {
+            Value::Null => (value, false),
+            items => (self.resolved(items), true),
+        };
+        value["properties"].is_object().then_some((value, list))
+    }
+
+    /// Returns the allowed words of a key, if its value is one of several words or a list of such.
+    fn words(&self, value: &'a Value) -> Option<&'a Vec<Value>> {
+        let value = self.resolved(value);
+        if let Some(alternatives) = value["anyOf"].as_array() {
+            return alternatives.iter().find_map(|one| self.words(one));
+        }
+        value["oneOf"].as_array().filter(|choices| choices.iter().all(|choice| choice["const"].is_string()))
+    }
+
+    /// Returns the allowed values of a key, in words.
+    fn what(&self, value: &'a Value) -> String {
+        let value = self.resolved(value);
+        if let Some(alternatives) = value["anyOf"].as_array() {
+            let several: Vec<String> = alternatives.iter().map(|one| self.what(one)).collect();
+            return several.join(" or ").replace("number or [number, number]", "number or [min, max]");
+        }
+        if let Some(choices) = self.words(value) {
+            return if choices.is_empty() { "text".into() } else { "a word".into() };
+        }
+        match kind(value).as_deref() {
+            Some("number") => "number".into(),
+            Some("integer") => "whole number".into(),
+            Some("boolean") => "true or false".into(),
+            Some("string") => "text".into(),
+            Some("array") => self.list(value.as_object()),
+            _ => "table".into(),
+        }
+    }
+
+    /// Returns the contents of a list, in words.
+    fn list(&self, value: Option<&'a Map<String, Value>>) -> String {
+        let Some(value) = value else { return "list".into() };
+        let item = value.get("items").map_or("anything".into(), |items| self.what(items));
+        match value.get("minItems").and_then(Value::as_u64) {
+            Some(n) if value.get("maxItems").and_then(Value::as_u64) == Some(n) => match (n, item.as_str()) {
+                (2, "number") => "[number, number]".into(),
+                _ => format!("list of {n}: {item} each"),
+            },
+            _ => format!("list: {item} each"),
+        }
+    }
+}
+
+/// Returns the JSON type of a value that may be absent.
+fn kind(value: &Value) -> Option<String> {
+    match &value["type"] {
+        Value::String(one) => Some(one.clone()),
+        Value::Array(several) => {
+            several.iter().filter_map(Value::as_str).find(|t| *t != "null").map(str::to_owned)
+        }
+        _ => None,
+    }
+}
+
+/// Returns the description in one line, fit for a cell of a table; names of Rust items lose their brackets.
+fn description(value: &Value) -> String {
+    let text = value["description"].as_str().unwrap_or_default();
+    let text = text.replace('\n', " ").replace("[`", "`").replace("`]", "`");
+    text.replace('|', "\\|")
+}

@@ -1,0 +1,362 @@
+//! The value types of our TOML files, with errors that state the expected value in a designer's words.
+//!
+//! Each type here refuses values that are not finite numbers below 1e12, and lists of the wrong length, which serde's
+//! own arrays would cut without an error. A custom error is `message` or `message\nhelp`.
+
+use crate::files::toml_text::TOO_LARGE;
+use crate::mechanism::MAX_MAGNITUDE;
+use crate::task::spec::Limits;
+use schemars::JsonSchema;
+use serde::de::{
+    self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
+};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// Returns an error with a remedy.
+pub(crate) fn refuse<E: de::Error>(message: impl fmt::Display, help: impl fmt::Display) -> E {
+    E::custom(format_args!("{message}\n{help}"))
+}
+
+fn usable<E: de::Error>(value: f64) -> Result<f64, E> {
+    if value.abs() <= MAX_MAGNITUDE {
+        Ok(value)
+    } else if value.is_finite() {
+        Err(refuse(format_args!("{value:e} is too large: numbers go up to 1e12"), TOO_LARGE))
+    } else {
+        let name = if value.is_nan() { "nan".to_owned() } else { value.to_string() };
+        Err(refuse(format_args!("{name} is not a number that can be used"), "write a finite number"))
+    }
+}
+
+/// Defines the visitor's functions for numbers; integers are numbers too.
+macro_rules! visit_numbers {
+    ($make:expr) => {
+        fn visit_f64<E: de::Error>(self, value: f64) -> Result<Self::Value, E> {
+            usable(value).map($make)
+        }
+        fn visit_i64<E: de::Error>(self, value: i64) -> Result<Self::Value, E> {
+            self.visit_f64(value as f64)
+        }
+        fn visit_u64<E: de::Error>(self, value: u64) -> Result<Self::Value, E> {
+            self.visit_f64(value as f64)
+        }
+        fn visit_i128<E: de::Error>(self, value: i128) -> Result<Self::Value, E> {
+            self.visit_f64(value as f64)
+        }
+    };
+}
+
+/// A finite number below 1e12 in magnitude.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(inline)]
+pub(crate) struct Number(pub f64);
+
+impl<'de> Deserialize<'de> for Number {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NumberVisitor;
+        impl Visitor<'_> for NumberVisitor {
+            type Value = Number;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number")
+            }
+            visit_numbers!(Number);
+        }
+        deserializer.deserialize_any(NumberVisitor)
+    }
+}
+
+/// 2^53: up to this value, a float distinguishes neighbouring whole numbers.
+const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// A whole number that is not negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
+#[schemars(inline)]
+pub(crate) struct Count(pub u64);
+
+impl<'de> Deserialize<'de> for Count {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct CountVisitor;
+        impl Visitor<'_> for CountVisitor {
+            type Value = Count;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number, 0 or more")
+            }
+            fn visit_u64<E: de::Error>(self, value: u64) -> Result<Count, E> {
+                Ok(Count(value))
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Count, E> {
+                u64::try_from(value)
+                    .map(Count)
+                    .map_err(|_| E::invalid_value(Unexpected::Signed(value), &self))
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Count, E> {
+                // 1e6 is a whole number to a person and a float to TOML.
+                if (0.0..=LARGEST_WHOLE).contains(&value) && value.fract() == 0.0 {
+                    Ok(Count(value as u64))
+                } else {
+                    Err(E::invalid_value(Unexpected::Float(value), &self))
+                }
+            }
+        }
+        deserializer.deserialize_any(CountVisitor)
+    }
+}
+
+/// The description of a fixed-length list of numbers.
+pub(crate) trait ListName {
+    /// The text of the expected list, such as `[x, y]`.
+    const EXPECTED: &'static str;
+}
+
+/// A list of exactly N values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Exactly<T, const N: usize, Name>(pub [T; N], PhantomData<Name>);
+
+impl<'de, T, const N: usize, Name> Deserialize<'de> for Exactly<T, N, Name>
+where
+    T: Deserialize<'de>,
+    Name: ListName,
+{
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor<T, const N: usize, Name>(PhantomData<(T, Name)>);
+        impl<'de, T, const N: usize, Name> Visitor<'de> for ListVisitor<T, N, Name>
+        where
+            T: Deserialize<'de>,
+            Name: ListName,
+        {
+            type Value = Exactly<T, N, Name>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(Name::EXPECTED)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
+                exactly(seq, Name::EXPECTED).map(|list| Exactly(list, PhantomData))
+            }
+        }
+        deserializer.deserialize_any(ListVisitor(PhantomData))
+    }
+}
+
+/// Reads a list of exactly N values.
+fn exactly<'de, T, A, const N: usize>(mut seq: A, expected: &str) -> Result<[T; N], A::Error>
+where
+    T: Deserialize<'de>,
+    A: SeqAccess<'de>,
+{
+    let mut list = Vec::with_capacity(N);
+    while list.len() < N
+        && let Some(value) = seq.next_element()?
+    {
+        list.push(value);
+    }
+    let mut count = list.len();
+    while seq.next_element::<de::IgnoredAny>()?.is_some() {
+        count += 1;
+    }
+    let wrong = || de::Error::custom(format_args!("expected {expected}, found a list of {count}"));
+    if count == N { list.try_into().map_err(|_| wrong()) } else { Err(wrong()) }
+}
+
+impl<T: JsonSchema, const N: usize, Name> JsonSchema for Exactly<T, N, Name>
+where
+    [T; N]: JsonSchema,
+{
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        <[T; N]>::schema_name()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        <[T; N]>::json_schema(generator)
+    }
+}
+
+/// The names of the list types.
+pub(crate) mod names {
+    macro_rules! list_name {
+        ($name:ident, $expected:literal) => {
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub(crate) struct $name;
+            impl super::ListName for $name {
+                const EXPECTED: &'static str = $expected;
+            }
+        };
+    }
+    list_name!(XY, "a point [x, y]");
+    list_name!(BoundedXY, "a point [x, y], each a number or bounds [min, max]");
+    list_name!(Corners, "a box [xmin, ymin, xmax, ymax]");
+}
+
+/// A point.
+pub(crate) type XY = Exactly<Number, 2, names::XY>;
+/// A point, each coordinate fixed or bounded.
+pub(crate) type BoundedXY = Exactly<Bounds, 2, names::BoundedXY>;
+/// A rectangle, given by four numbers.
+pub(crate) type Corners = Exactly<Number, 4, names::Corners>;
+
+impl XY {
+    /// Returns x and y.
+    pub(crate) fn numbers(self) -> [f64; 2] {
+        self.0.map(|n| n.0)
+    }
+}
+
+/// The bounds of a number: a number, which fixes the value, or [min, max].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bounds(pub Limits);
+
+impl<'de> Deserialize<'de> for Bounds {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        const EXPECTED: &str = "a number, which fixes the value, or bounds [min, max]";
+        struct BoundsVisitor;
+        impl<'de> Visitor<'de> for BoundsVisitor {
+            type Value = Bounds;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(EXPECTED)
+            }
+            visit_numbers!(|v| Bounds(Limits(v, v)));
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Bounds, A::Error> {
+                let [Number(low), Number(high)] = exactly(seq, EXPECTED)?;
+                if low > high {
+                    return Err(refuse(
+                        format_args!("the bounds are the wrong way round: {low} is above {high}"),
+                        format_args!("write [{high}, {low}]"),
+                    ));
+                }
+                Ok(Bounds(Limits(low, high)))
+            }
+        }
+        deserializer.deserialize_any(BoundsVisitor)
+    }
+}
+
+impl JsonSchema for Bounds {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Bounds".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "description": "A number fixes the value; [min, max] bounds it.",
+            "anyOf": [
+                {"type": "number"},
+                {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
+            ]
+        })
+    }
+}
+
+/// One number for all points, or a list of one for each.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum OneOrEach {
+    One(f64),
+    Each(Vec<f64>),
+}
+
+impl<'de> Deserialize<'de> for OneOrEach {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct OneOrEachVisitor;
+        impl<'de> Visitor<'de> for OneOrEachVisitor {
+            type Value = OneOrEach;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number for all points, or a list of one for each")
+            }
+            visit_numbers!(OneOrEach::One);
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<OneOrEach, A::Error> {
+                let mut list = Vec::new();
+                while let Some(Number(value)) = seq.next_element()? {
+                    list.push(value);
+                }
+                Ok(OneOrEach::Each(list))
+            }
+        }
+        deserializer.deserialize_any(OneOrEachVisitor)
+    }
+}
+
+impl JsonSchema for OneOrEach {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "OneOrEach".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({"anyOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}}]})
+    }
+}
+
+/// A table and nothing else: serde's own structs would accept a list as their fields in order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct OnlyTable<T>(pub T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OnlyTable<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TableVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for TableVisitor<T> {
+            type Value = OnlyTable<T>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a table")
+            }
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+                T::deserialize(de::value::MapAccessDeserializer::new(map)).map(OnlyTable)
+            }
+        }
+        deserializer.deserialize_any(TableVisitor(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for OnlyTable<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        T::schema_name()
+    }
+    fn schema_id() -> std::borrow::Cow<'static, str> {
+        T::schema_id()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        T::json_schema(generator)
+    }
+}
+
+/// A list of names, or one name.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct OneOrMore<T>(pub Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for ListVisitor<T> {
+            type Value = OneOrMore<T>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list of names in quotes")
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<Self::Value, E> {
+                T::deserialize(value.into_deserializer()).map(|one| OneOrMore(vec![one]))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
+                let mut list = Vec::new();
+                while let Some(value) = seq.next_element()? {
+                    list.push(value);
+                }
+                Ok(OneOrMore(list))
+            }
+        }
+        deserializer.deserialize_any(ListVisitor(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for OneOrMore<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        format!("OneOrMore{}", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        let one = generator.subschema_for::<T>();
+        schemars::json_schema!({"anyOf": [one.clone(), {"type": "array", "items": one}]})
+    }
+}

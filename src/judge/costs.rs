@@ -1,0 +1,312 @@
+//! Costs of the active requirements: Lagrange multipliers at a candidate, as rates of the error per unit of a limit.
+//!
+//! At an optimum of f(x) = sum_j w_j |r_j|^2 under g_i(x) >= 0 (Karush 1939, Kuhn and Tucker 1951)
+//!
+//! ```text
+//! grad f = sum_i m_i grad g_i,   m_i >= 0,   m_i = 0 where g_i > 0
+//! df*/dL = -sum_i m_i dg_i/dL                                      for a limit L that g_i depends on
+//! ```
+//!
+//! with grad f = 2 sum_j w_j J_j^T r_j, the points' own unknowns eliminated. Bounds of single unknowns are rows like
+//! the others. The multipliers come from non-negative least squares on the active rows (the active set); if they do not
+//! explain the gradient, or not uniquely, no rate is given. Errors are sqrt(f / sum_j w_j), so that d(rms) = df / (2 W
+//! rms).
+
+use super::loosen::Demand;
+use super::rank::exact_objective;
+use super::warm::start_at;
+use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
+use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
+use crate::record::{Candidate, Cost, LimitUnit};
+use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Shape};
+use crate::task::forms::requirements::{Motion, Requirements, RowKind, Side};
+use crate::task::forms::timed::TimedFit;
+use crate::task::forms::torus::TorusFit;
+use crate::task::spec::Objective;
+use crate::task::{Problem, Setting};
+
+/// Distance from a row's limit, in parts of the target's size, within which the row is active.
+const ACTIVE: f64 = 1e-6;
+/// Relative distance within which a bound is active: bounds are met to rounding.
+const ON_BOUND: f64 = 1e-9;
+/// A multiplier counts as known if the unexplained part of the gradient can move it by this part at most.
+const UNEXPLAINED: f64 = 0.02;
+/// A rate below this part of the error for a unit as large as the limit itself (or the target) is negligible.
+const NEGLIGIBLE: f64 = 1e-6;
+/// Change of a row with the crank angle, in target sizes per radian, above which it depends on the points' places on
+/// the curve. Free timing leaves those angles to each point, and the rates are not given.
+const MOVED_BY_POINTS: f64 = 1e-3;
+
+/// An active row of the optimality conditions: its gradient by the scaled unknowns and the limit that it belongs to.
+struct Active {
+    gradient: Vec<f64>,
+    moved_by_points: bool,
+    /// The limit; `None` for a bound that the user has not set.
+    label: Option<Label>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Label {
+    name: String,
+    side: Option<&'static str>,
+    limit: f64,
+    unit: LimitUnit,
+    /// The change dg of the row for one unit more of room.
+    by_room: f64,
+    /// The scale of a change of the limit.
+    scale: f64,
+}
+
+/// Returns the root of the weighted mean squared error: the rms if no point has a weight.
+pub fn weighted_rms(problem: &Problem, objective: f64) -> f64 {
+    (objective / problem.task().weights().iter().sum::<f64>()).sqrt()
+}
+
+/// Returns the costs of the limits that are active at a candidate, in a fixed order; without [`Cost::rms_without`].
+///
+/// Empty if no limit is active, or the candidate is not accepted, is exact, or is not an optimum that the limits
+/// explain; and if no advice is asked for.
+pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
+    if !candidate.accepted
+        || !problem.spec().solve.advice
+        || problem.spec().solve.objective != Objective::SumOfSquares
+        || candidate.error.objective <= exact_objective(problem)
+    {
+        return Vec::new();
+    }
+    let Some(start) = start_at(problem, candidate) else { return Vec::new() };
+    if start.positions.is_empty() {
+        let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
+        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
+        let motion = fit.motion(&start.design, &shape);
+        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
+        at.costs(&fit, &(), fit.space(), fit.requirements(), &motion, false)
+    } else {
+        let fit = TorusFit::new(problem, start.setting);
+        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
+        let motion = fit.motion(&shape, &start.positions);
+        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
+        at.costs(&fit, &start.positions, fit.space(), fit.requirements(), &motion, true)
+    }
+}
+
+struct At<'a> {
+    problem: &'a Problem,
+    candidate: &'a Candidate,
+    x: &'a Design,
+    shape: &'a Shape,
+    setting: Setting,
+}
+
+impl At<'_> {
+    fn costs<F: BlockLeastSquares<DESIGN>>(
+        &self,
+        fit: &F,
+        state: &F::State,
+        space: &DesignSpace,
+        requirements: &Requirements,
+        motion: &Motion<'_>,
+        free_timing: bool,
+    ) -> Vec<Cost> {
+        let size = self.problem.task().size();
+        let mut kinds = Vec::new();
+        requirements.rows(self.setting.aim, self.shape, motion, &mut |row| {
+            kinds.push((row.kind, free_timing && row.crank.abs() > MOVED_BY_POINTS * size));
+        });
+        // Unknowns that can move, lengths in sizes of the target.
+        let unknowns: Vec<(usize, f64)> = (0..DESIGN)
+            .filter(|&i| space.bounds()[i].0 < space.bounds()[i].1)
+            .map(|i| (i, if space.coordinate(i).is_none_or(|(_, is_angle)| is_angle) { 1.0 } else { size }))
+            .collect();
+        let scaled = |row: &Design| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
+        let mut active = Vec::new();
+        let mut place = 0;
+        fit.constraints(self.x, state, &mut |row| {
+            let (kind, moved_by_points) = kinds[place];
+            place += 1;
+            if row.value <= ACTIVE * size {
+                let gradient = scaled(&row.gradient);
+                active.push(Active { gradient, moved_by_points, label: self.label(kind) });
+            }
+        });
+        self.bounds(space, &unknowns, &mut active);
+        if active.is_empty() {
+            return Vec::new();
+        }
+        let mut gradient = [0.0; DESIGN];
+        let complete = fit.linearise(self.x, state, &mut |block| {
+            let (t, r) = (block.tangent, block.residual);
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let along = if t_sq > 0.0 { (t[0] * r[0] + t[1] * r[1]) / t_sq } else { 0.0 };
+            for (axis, j) in block.jacobian.iter().enumerate() {
+                let normal = r[axis] - along * t[axis];
+                for (sum, by) in gradient.iter_mut().zip(j) {
+                    *sum += 2.0 * block.weight * normal * by;
+                }
+            }
+        });
+        if !complete {
+            return Vec::new();
+        }
+        self.priced(&active, &scaled(&gradient))
+    }
+
+    /// Adds the active bounds of the design. Those that come from the box of the pivots are rows already.
+    fn bounds(&self, space: &DesignSpace, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
+        for (place, &(i, by)) in unknowns.iter().enumerate() {
+            let Some((name, is_angle)) = space.coordinate(i) else { continue };
+            let (low, high) = space.bounds()[i];
+            let given = Demand::named(&format!("design.{name}"))
+                .and_then(|demand| demand.limits(self.problem.spec()))
+                .map(|limits| {
+                    let first = if matches!(name, "Ay" | "By") { 2 } else { 0 };
+                    [limits[first].value, limits[first + 1].value]
+                });
+            let unit = if is_angle { 1f64.to_radians() } else { 1.0 };
+            for (bound, sign, side) in [(low, 1.0, "min"), (high, -1.0, "max")] {
+                if (self.x[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
+                    continue;
+                }
+                let set = given.map(|limits| limits[usize::from(sign < 0.0)]);
+                let is_set = set.is_some_and(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());
+                let from_box = self.problem.spec().require.pivots_in.is_some() && i < 4 && !is_set;
+                if from_box && matches!(name, "Ax" | "Ay" | "Bx" | "By") {
+                    continue;
+                }
+                let mut gradient = vec![0.0; unknowns.len()];
+                gradient[place] = sign * by;
+                let label =
+                    set.filter(|_| is_set).map(|limit| self.design_label(name, side, limit, is_angle));
+                active.push(Active {
+                    gradient,
+                    moved_by_points: false,
+                    label: label.map(|l| Label { by_room: unit, ..l }),
+                });
+            }
+        }
+    }
+
+    fn design_label(&self, name: &str, side: &'static str, limit: f64, is_angle: bool) -> Label {
+        Label {
+            name: format!("design.{name}"),
+            side: Some(side),
+            limit,
+            unit: if is_angle { LimitUnit::Degree } else { LimitUnit::Length },
+            by_room: 1.0,
+            scale: if is_angle { 90.0 } else { self.problem.task().size() },
+        }
+    }
+
+    fn label(&self, kind: RowKind) -> Option<Label> {
+        let require = &self.problem.spec().require;
+        let size = self.problem.task().size();
+        let label =
+            |name: &str, side: Option<Side>, limit: f64, unit: LimitUnit, by_room: f64, scale: f64| {
+                Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
+            };
+        let length = LimitUnit::Length;
+        match kind {
+            // If no type is asked for, the crank has to turn fully to come back to the first point.
+            RowKind::Type if require.types.is_empty() => label("closing", None, 0.0, length, 1.0, size),
+            RowKind::Type => label("type", None, 0.0, length, 1.0, size),
+            RowKind::LinkRatio(longer) => {
+                let limit = require.link_ratio_max;
+                label("link_ratio_max", None, limit, LimitUnit::Ratio, longer / (limit * limit), limit)
+            }
+            RowKind::Pivots(side) => {
+                label("pivots_in", Some(side), require.pivots_in?[side.index()], length, 1.0, size)
+            }
+            RowKind::Footprint(side) => {
+                label("footprint_in", Some(side), require.footprint_in?[side.index()], length, 1.0, size)
+            }
+            RowKind::Transmission => {
+                let limit = require.transmission_deg_min?;
+                let by_room = size * limit.to_radians().sin() * 1f64.to_radians();
+                label("transmission_deg_min", None, limit, LimitUnit::Degree, by_room, 90.0)
+            }
+            RowKind::Derived(quantity, lower) => {
+                let name = match quantity {
+                    Derived::Ground => "ground",
+                    Derived::GroundAngle => "ground_angle_deg",
+                    Derived::CrankSide => "d",
+                    Derived::FollowerSide => "e",
+                };
+                let demand = Demand::named(&format!("design.{name}"))?;
+                let limits = demand.limits(self.problem.spec())?;
+                let is_angle = quantity == Derived::GroundAngle;
+                let side = if lower { "min" } else { "max" };
+                let fixed = limits[0].value == limits[1].value;
+                let by_room = if is_angle { size * 1f64.to_radians() } else { 1.0 };
+                let label = self.design_label(name, side, limits[usize::from(!lower)].value, is_angle);
+                (!fixed).then_some(Label { by_room, ..label })
+            }
+        }
+    }
+
+    fn priced(&self, active: &[Active], gradient: &[f64]) -> Vec<Cost> {
+        let lengths: Vec<f64> =
+            active.iter().map(|a| a.gradient.iter().map(|g| g * g).sum::<f64>().sqrt()).collect();
+        let unit = |i: usize| -> Vec<f64> {
+            let length = if lengths[i] > 0.0 { lengths[i] } else { 1.0 };
+            active[i].gradient.iter().map(|g| g / length).collect()
+        };
+        let columns: Vec<Vec<f64>> = (0..active.len()).map(unit).collect();
+        let found = nonnegative_least_squares(&columns, gradient);
+        let told = !active.iter().zip(&found.values).any(|(a, m)| a.moved_by_points && *m > 0.0);
+        let whole: f64 = self.problem.task().weights().iter().sum();
+        let rms = weighted_rms(self.problem, self.candidate.error.objective);
+        let mut labels: Vec<&Label> = Vec::new();
+        for label in active.iter().filter_map(|a| a.label.as_ref()) {
+            if !labels.iter().any(|l| l.name == label.name && l.side == label.side) {
+                labels.push(label);
+            }
+        }
+        let mut costs = Vec::new();
+        for label in labels {
+            let own =
+                |a: &Active| a.label.as_ref().is_some_and(|l| l.name == label.name && l.side == label.side);
+            let (mut rate, mut known) = (0.0, true);
+            for ((a, m), length) in active.iter().zip(&found.values).zip(&lengths) {
+                let Some(l) = a.label.as_ref().filter(|_| own(a) && *m > 0.0) else { continue };
+                rate -= m / length * l.by_room / (2.0 * whole * rms);
+                known &= found.residual * found.sensitivity <= UNEXPLAINED * m;
+            }
+            if -rate * label.scale <= NEGLIGIBLE * rms {
+                continue;
+            }
+            if !found.sensitivity.is_finite()
+                || others_explain(active, &columns, gradient, found.residual, &own)
+            {
+                // Another limit restricts in the same way: moving this one alone gains nothing.
+                continue;
+            }
+            if told && !known {
+                continue;
+            }
+            costs.push(Cost {
+                name: label.name.clone(),
+                side: label.side.map(str::to_owned),
+                limit: label.limit,
+                rms_per_unit: told.then_some(rate),
+                unit_of_limit: label.unit,
+                rms_without: None,
+            });
+        }
+        costs
+    }
+}
+
+/// Returns whether the gradient is explained as well without the rows of a label. (Of a known multiplier the rest would
+/// be fifty times the residual.)
+fn others_explain(
+    active: &[Active],
+    columns: &[Vec<f64>],
+    gradient: &[f64],
+    residual: f64,
+    own: &dyn Fn(&Active) -> bool,
+) -> bool {
+    let others: Vec<Vec<f64>> =
+        active.iter().zip(columns).filter(|(a, _)| !own(a)).map(|(_, column)| column.clone()).collect();
+    let size: f64 = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+    nonnegative_least_squares(&others, gradient).residual <= 10.0 * residual + 1e-9 * size
+}

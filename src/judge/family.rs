@@ -1,0 +1,113 @@
+//! Local dimension of the set of exact answers: detects whether an exact answer belongs to a family.
+//!
+//! At an exact answer x the points' residuals are r(x) = 0, and if their derivative J by the free unknowns has rank k <
+//! m, the answer moves on a manifold of dimension m - k (locally, at a regular point) on which all points stay met.
+//! Prescribed timing has two rows a point; with free timing a point may slide along its own tangent, and the one row
+//! normal to it counts. Fixed derived quantities (a ground of a given length between free pivots) are equations too;
+//! inequality limits do not reduce the dimension.
+
+use super::rank::exact_sum_sq;
+use super::warm::start_at;
+use crate::mechanism::turned;
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBlock};
+use crate::record::{Candidate, Family};
+use crate::task::Problem;
+use crate::task::forms::design_space::{DESIGN, Derived, DesignSpace, SHAPE, Shape, unit};
+use crate::task::forms::timed::TimedFit;
+use crate::task::forms::torus::TorusFit;
+use nalgebra::{DMatrix, SMatrix};
+
+/// The part of the largest singular value below which a singular value counts as zero: an exact answer is known to
+/// about 1e-12 of the linkage, which moves the singular values by as much.
+pub const RANK_TOLERANCE: f64 = 1e-8;
+
+/// Returns the family that an exact accepted answer belongs to; `None` if it is isolated or not exact.
+pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
+    if !best.accepted || best.error.sum_sq > exact_sum_sq(problem) {
+        return None;
+    }
+    let dimension = dimension(problem, best).filter(|dimension| *dimension > 0)?;
+    let text =
+        format!("a {dimension}-parameter family of exact answers: ranked by transmission angle, then size");
+    Some(Family { dimension, exact: true, text })
+}
+
+/// Returns the number of free unknowns less the rank of the points' derivatives by them; `None` if these do not exist.
+pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
+    let start = start_at(problem, candidate)?;
+    let mut rows: Vec<[f64; DESIGN]> = Vec::new();
+    let space = if start.positions.is_empty() {
+        let fit = TimedFit::new(problem, start.setting)?;
+        linearised(&fit, &start.design, &(), &mut rows)?;
+        fit.space().clone()
+    } else {
+        let fit = TorusFit::new(problem, start.setting);
+        linearised(&fit, &start.design, &start.positions, &mut rows)?;
+        fit.space().clone()
+    };
+    let shape = space.shape(&start.design)?;
+    for bound in space.derived().iter().filter(|bound| bound.limits.is_fixed()) {
+        rows.push(space.pull_back(&start.design, &shape, &gradient(bound.quantity, &shape), 0.0));
+    }
+    let free: Vec<usize> = (0..DESIGN).filter(|&i| space.bounds()[i].0 < space.bounds()[i].1).collect();
+    Some(free.len() - rank(&space, &shape, &rows, &free))
+}
+
+/// Adds the rows of all points' derivatives, normal to their own tangents; `None` if one does not exist.
+fn linearised<P: BlockLeastSquares<DESIGN>>(
+    fit: &P,
+    x: &[f64; DESIGN],
+    state: &P::State,
+    rows: &mut Vec<[f64; DESIGN]>,
+) -> Option<()> {
+    let exists = fit.linearise(x, state, &mut |block: &PointBlock<DESIGN>| {
+        let [t_x, t_y] = block.tangent;
+        let length = t_x.hypot(t_y);
+        let [by_x, by_y] = block.jacobian;
+        if length == 0.0 {
+            rows.extend([by_x, by_y]);
+        } else {
+            rows.push(std::array::from_fn(|i| (t_x * by_y[i] - t_y * by_x[i]) / length));
+        }
+    });
+    exists.then_some(())
+}
+
+fn rank(space: &DesignSpace, shape: &Shape, rows: &[[f64; DESIGN]], free: &[usize]) -> usize {
+    // A rotation moves the points by the linkage's size.
+    let reach = shape.links().into_iter().fold(shape.offset.norm(), f64::max);
+    let scale = |i: usize| if space.is_angle(i) { 1.0 / reach } else { 1.0 };
+    // J = Q R: the singular values of the small R are those of J.
+    let tall = DMatrix::from_fn(rows.len().max(DESIGN), DESIGN, |row, column| {
+        let used = free.contains(&column);
+        if used { rows.get(row).map_or(0.0, |r| r[column] * scale(column)) } else { 0.0 }
+    });
+    let r = tall.qr().r();
+    let small = SMatrix::<f64, DESIGN, DESIGN>::from_fn(|row, column| r[(row, column)]);
+    let values = small.singular_values();
+    let largest = values.iter().copied().fold(0.0, f64::max);
+    values.iter().filter(|value| **value > RANK_TOLERANCE * largest).count()
+}
+
+/// Returns the derivative of a quantity by (Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y).
+fn gradient(quantity: Derived, shape: &Shape) -> [f64; SHAPE] {
+    let mut row = [0.0; SHAPE];
+    let ground = shape.follower_pivot - shape.crank_pivot;
+    let along = unit(ground);
+    match quantity {
+        Derived::Ground => (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im),
+        Derived::GroundAngle => {
+            let across = turned(along) / ground.norm().max(f64::MIN_POSITIVE);
+            (row[0], row[1], row[2], row[3]) = (-across.re, -across.im, across.re, across.im);
+        }
+        Derived::CrankSide => {
+            let side = unit(shape.offset);
+            (row[7], row[8]) = (side.re, side.im);
+        }
+        Derived::FollowerSide => {
+            let side = unit(shape.offset - shape.coupler);
+            (row[5], row[7], row[8]) = (-side.re, side.re, side.im);
+        }
+    }
+    row
+}

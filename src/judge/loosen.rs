@@ -1,0 +1,527 @@
+//! Relaxation of a problem: each requirement as limits with an outward side.
+
+use crate::judge::assess::assess;
+use crate::record::{Candidate, Change, Figure, TypedValue};
+use crate::task::Problem;
+use crate::task::spec::{
+    ClosingPolicy, DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy,
+    OrderPolicy, ProblemSpec,
+};
+
+/// A requirement, or the bounds of a design key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Demand {
+    /// The key `require.type`.
+    Type,
+    /// The key `require.transmission_deg_min`.
+    Transmission,
+    /// The key `require.link_ratio_max`.
+    LinkRatio,
+    /// The key `require.pivots_in`.
+    PivotsIn,
+    /// The key `require.footprint_in`.
+    FootprintIn,
+    /// The key `task.path.tolerance`.
+    Tolerance,
+    /// The key `require.order`.
+    Order,
+    /// The key `require.direction`.
+    Direction,
+    /// The key `require.circuit`.
+    Circuit,
+    /// The key `require.branch`.
+    Branch,
+    /// The key `require.closing`.
+    Closing,
+    /// A key of `[design]`.
+    Design(DesignKey),
+}
+
+/// The keys of `[design]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DesignKey {
+    /// The crank's pivot A.
+    CrankPivot,
+    /// The follower's pivot B.
+    FollowerPivot,
+    /// The ground length |AB|.
+    Ground,
+    /// The angle of the ground line, arg(B - A), in degrees.
+    GroundAngle,
+    /// The crank length |AC|.
+    Crank,
+    /// The coupler length |CD|.
+    Coupler,
+    /// The follower length |BD|.
+    Follower,
+    /// The coupler side |CP| at the crank.
+    CrankSide,
+    /// The coupler side |DP| at the follower.
+    FollowerSide,
+    /// The coordinate of P along C -> D.
+    CouplerX,
+    /// The coordinate of P across C -> D.
+    CouplerY,
+}
+
+const DESIGN_KEYS: [DesignKey; 11] = [
+    DesignKey::CrankPivot,
+    DesignKey::FollowerPivot,
+    DesignKey::Ground,
+    DesignKey::GroundAngle,
+    DesignKey::Crank,
+    DesignKey::Coupler,
+    DesignKey::Follower,
+    DesignKey::CrankSide,
+    DesignKey::FollowerSide,
+    DesignKey::CouplerX,
+    DesignKey::CouplerY,
+];
+
+/// A limit of the link ratio that practically does not bind: a slider-crank to four digits.
+const NO_LINK_RATIO: f64 = 1e4;
+/// The bound of a dropped design key, in sizes of the target.
+const FAR: f64 = 2.0 * DEFAULT_REACH;
+
+/// A limit, and the side on which it is loosened: +1 above it, -1 below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The value of the limit.
+    pub value: f64,
+    /// The direction in which it is loosened, +1 or -1.
+    pub outward: f64,
+}
+
+impl Demand {
+    /// Returns the demands of a problem in a fixed order; design keys last.
+    pub fn of(problem: &Problem) -> Vec<Demand> {
+        let spec = problem.spec();
+        let require = &spec.require;
+        let mut all = Vec::new();
+        let mut push = |demand, asked: bool| {
+            if asked {
+                all.push(demand);
+            }
+        };
+        push(Demand::Transmission, require.transmission_deg_min.is_some());
+        push(Demand::PivotsIn, require.pivots_in.is_some());
+        push(Demand::FootprintIn, require.footprint_in.is_some());
+        push(Demand::LinkRatio, true);
+        push(Demand::Tolerance, spec.task.path.tolerance.is_some());
+        push(Demand::Type, !require.types.is_empty());
+        push(Demand::Order, require.order == OrderPolicy::Required && spec.task.path.timing.is_none());
+        push(Demand::Direction, require.direction != DirectionPolicy::Any);
+        push(Demand::Circuit, require.circuit == OnePolicy::One);
+        push(Demand::Branch, require.branch == OnePolicy::One);
+        push(Demand::Closing, problem.has_to_turn_on());
+        for key in DESIGN_KEYS {
+            push(Demand::Design(key), !key.get(&spec.design).is_empty());
+        }
+        all
+    }
+
+    /// Returns the demand that a requirement of the record belongs to.
+    pub fn named(name: &str) -> Option<Demand> {
+        let all = [
+            Demand::Type,
+            Demand::Transmission,
+            Demand::LinkRatio,
+            Demand::PivotsIn,
+            Demand::FootprintIn,
+            Demand::Tolerance,
+            Demand::Order,
+            Demand::Direction,
+            Demand::Circuit,
+            Demand::Branch,
+            Demand::Closing,
+        ];
+        let designs = DESIGN_KEYS.map(Demand::Design);
+        all.into_iter().chain(designs).find(|demand| demand.rows().contains(&name))
+    }
+
+    /// Returns whether it is a choice among words, with no measure of how far it is loosened.
+    pub fn is_policy(self) -> bool {
+        use Demand::{Branch, Circuit, Closing, Direction, Order, Type};
+        matches!(self, Type | Order | Direction | Circuit | Branch | Closing)
+    }
+
+    /// Returns the key in the problem file.
+    pub fn key(self) -> &'static str {
+        match self {
+            Demand::Type => "require.type",
+            Demand::Transmission => "require.transmission_deg_min",
+            Demand::LinkRatio => "require.link_ratio_max",
+            Demand::PivotsIn => "require.pivots_in",
+            Demand::FootprintIn => "require.footprint_in",
+            Demand::Tolerance => "task.path.tolerance",
+            Demand::Order => "require.order",
+            Demand::Direction => "require.direction",
+            Demand::Circuit => "require.circuit",
+            Demand::Branch => "require.branch",
+            Demand::Closing => "require.closing",
+            Demand::Design(key) => key.key(),
+        }
+    }
+
+    /// Returns the names of its rows among a candidate's requirements.
+    fn rows(self) -> &'static [&'static str] {
+        match self {
+            Demand::Type => &["type"],
+            Demand::Transmission => &["transmission_deg_min"],
+            Demand::LinkRatio => &["link_ratio_max"],
+            Demand::PivotsIn => &["pivots_in"],
+            Demand::FootprintIn => &["footprint_in"],
+            Demand::Tolerance => &["tolerance"],
+            Demand::Order => &["order"],
+            Demand::Direction => &["direction"],
+            Demand::Circuit => &["circuit"],
+            Demand::Branch => &["branch"],
+            Demand::Closing => &["closing"],
+            Demand::Design(key) => key.rows(),
+        }
+    }
+
+    /// Returns the problem without this demand; design keys keep within reach of the target.
+    pub fn dropped(self, problem: &Problem, mut spec: ProblemSpec) -> ProblemSpec {
+        let require = &mut spec.require;
+        match self {
+            Demand::Type => require.types.clear(),
+            Demand::Transmission => require.transmission_deg_min = None,
+            Demand::LinkRatio => require.link_ratio_max = require.link_ratio_max.max(NO_LINK_RATIO),
+            Demand::PivotsIn => require.pivots_in = None,
+            Demand::FootprintIn => require.footprint_in = None,
+            Demand::Tolerance => spec.task.path.tolerance = None,
+            Demand::Order => require.order = OrderPolicy::Any,
+            Demand::Direction => require.direction = DirectionPolicy::Any,
+            Demand::Circuit => require.circuit = OnePolicy::Any,
+            Demand::Branch => require.branch = OnePolicy::Any,
+            Demand::Closing => require.closing = ClosingPolicy::Any,
+            Demand::Design(key) => key.widen(problem, &mut spec.design),
+        }
+        spec
+    }
+
+    /// Returns its limits as numbers; `None` if it has none (a policy, types, a tolerance that differs from point to
+    /// point).
+    pub fn limits(self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
+        let require = &spec.require;
+        let one = |value: Option<f64>, outward| Some(vec![Limit { value: value?, outward }]);
+        let of_box = |b: Option<[f64; 4]>| {
+            let b = b?;
+            Some((0..4).map(|i| Limit { value: b[i], outward: if i < 2 { -1.0 } else { 1.0 } }).collect())
+        };
+        match self {
+            Demand::Transmission => one(require.transmission_deg_min, -1.0),
+            Demand::LinkRatio => one(Some(require.link_ratio_max), 1.0),
+            Demand::PivotsIn => of_box(require.pivots_in),
+            Demand::FootprintIn => of_box(require.footprint_in),
+            Demand::Tolerance => {
+                let list = spec.task.path.tolerance.as_ref()?;
+                let first = *list.first()?;
+                list.iter().all(|t| *t == first).then(|| vec![Limit { value: first, outward: 1.0 }])
+            }
+            Demand::Design(key) => {
+                let limits = key.get(&spec.design);
+                let pair =
+                    |l: Limits| [Limit { value: l.0, outward: -1.0 }, Limit { value: l.1, outward: 1.0 }];
+                (!limits.is_empty()).then(|| limits.into_iter().flat_map(pair).collect())
+            }
+            Demand::Type
+            | Demand::Order
+            | Demand::Direction
+            | Demand::Circuit
+            | Demand::Branch
+            | Demand::Closing => None,
+        }
+    }
+
+    /// Returns the problem with other limits, as many as [`Demand::limits`] gives.
+    pub fn with_limits(self, mut spec: ProblemSpec, limits: &[f64]) -> ProblemSpec {
+        let require = &mut spec.require;
+        let as_box = || <[f64; 4]>::try_from(limits).ok();
+        match self {
+            Demand::Transmission => require.transmission_deg_min = limits.first().copied(),
+            Demand::LinkRatio => require.link_ratio_max = limits.first().map_or(NO_LINK_RATIO, |l| *l),
+            Demand::PivotsIn => require.pivots_in = as_box(),
+            Demand::FootprintIn => require.footprint_in = as_box(),
+            Demand::Tolerance => {
+                let (n, first) = (spec.task.path.points.len(), limits.first());
+                spec.task.path.tolerance = first.map(|limit| vec![*limit; n]);
+            }
+            Demand::Design(key) => {
+                key.set(&mut spec.design, |i| Limits(limits[2 * i], limits[2 * i + 1]));
+            }
+            _ => {}
+        }
+        spec
+    }
+
+    /// Returns whether a value to type leaves everything allowed that the problem allows: each limit at its value or
+    /// farther out, a policy that allows any, the types with others.
+    pub fn is_no_tighter(self, spec: &ProblemSpec, to: &TypedValue) -> bool {
+        match (self, to) {
+            (Demand::Type, TypedValue::Words(names)) => {
+                spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
+            }
+            (policy, TypedValue::Word(word)) if policy.is_policy() => word == "any",
+            (Demand::Design(_), to) => {
+                let values = match to {
+                    TypedValue::Number(value) => vec![*value; 2],
+                    TypedValue::Numbers(values) => values.clone(),
+                    TypedValue::Pairs(pairs) => pairs.concat(),
+                    TypedValue::Word(_) | TypedValue::Words(_) => return false,
+                };
+                self.limits(spec).is_some_and(|limits| {
+                    // A pivot that is fixed is typed as its two coordinates.
+                    let fixed = limits.len() == 2 * values.len();
+                    let values = if fixed { values.iter().flat_map(|v| [*v; 2]).collect() } else { values };
+                    reach_out(&limits, &values)
+                })
+            }
+            (_, TypedValue::Number(value)) => {
+                self.limits(spec).is_some_and(|limits| reach_out(&limits, &[*value]))
+            }
+            (_, TypedValue::Numbers(values)) => {
+                self.limits(spec).is_some_and(|limits| reach_out(&limits, values))
+            }
+            _ => false,
+        }
+    }
+
+    /// Returns the values that a candidate, judged under the problem that demands, attains in place of each limit.
+    pub fn attained(self, judged: &Candidate) -> Option<Vec<f64>> {
+        if self == Demand::Tolerance {
+            return Some(vec![judged.error.max]);
+        }
+        let rows = self.rows().iter().map(|name| judged.requirements.iter().find(|r| r.name == *name));
+        let mut values = Vec::new();
+        for row in rows {
+            match &row?.value {
+                // Bounds have two limits for one value.
+                Figure::Number(value) if matches!(self, Demand::Design(_)) => values.extend([*value; 2]),
+                Figure::Number(value) => values.push(*value),
+                Figure::Numbers(several) => values.extend(several),
+                Figure::Word(_) | Figure::Words(_) => return None,
+            }
+        }
+        Some(values)
+    }
+
+    /// Returns the value of the key in a problem, as it is typed; `None` if it cannot be typed.
+    pub fn typed(self, spec: &ProblemSpec) -> Option<TypedValue> {
+        let require = &spec.require;
+        let word = |any: bool, otherwise: &str| {
+            Some(TypedValue::Word(if any { "any".into() } else { otherwise.into() }))
+        };
+        match self {
+            Demand::Type => Some(TypedValue::Words(require.types.iter().map(|t| t.name().into()).collect())),
+            Demand::Order => word(require.order == OrderPolicy::Any, "required"),
+            Demand::Direction => match require.direction {
+                DirectionPolicy::Any => word(true, ""),
+                DirectionPolicy::Ccw => word(false, "ccw"),
+                DirectionPolicy::Cw => word(false, "cw"),
+            },
+            Demand::Circuit => word(require.circuit == OnePolicy::Any, "one"),
+            Demand::Branch => word(require.branch == OnePolicy::Any, "one"),
+            Demand::Closing => word(!require.closing.is_one_way(), "one-way"),
+            Demand::Design(key) => {
+                let limits = key.get(&spec.design);
+                match limits.as_slice() {
+                    [l] if l.is_fixed() => Some(TypedValue::Number(l.0)),
+                    [l] => Some(TypedValue::Numbers(vec![l.0, l.1])),
+                    [x, y] if x.is_fixed() && y.is_fixed() => Some(TypedValue::Numbers(vec![x.0, y.0])),
+                    [x, y] => Some(TypedValue::Pairs(vec![[x.0, x.1], [y.0, y.1]])),
+                    _ => None,
+                }
+            }
+            _ => {
+                let limits: Vec<f64> = self.limits(spec)?.iter().map(|l| l.value).collect();
+                Some(match limits.as_slice() {
+                    [only] => TypedValue::Number(*only),
+                    _ => TypedValue::Numbers(limits),
+                })
+            }
+        }
+    }
+}
+
+/// Returns whether each value is at its limit or farther out.
+fn reach_out(limits: &[Limit], values: &[f64]) -> bool {
+    limits.len() == values.len()
+        && limits.iter().zip(values).all(|(limit, value)| limit.outward * (value - limit.value) >= 0.0)
+}
+
+impl DesignKey {
+    /// Returns the key in the problem file.
+    pub fn key(self) -> &'static str {
+        match self {
+            DesignKey::CrankPivot => "design.A",
+            DesignKey::FollowerPivot => "design.B",
+            _ => self.rows()[0],
+        }
+    }
+
+    fn rows(self) -> &'static [&'static str] {
+        match self {
+            DesignKey::CrankPivot => &["design.Ax", "design.Ay"],
+            DesignKey::FollowerPivot => &["design.Bx", "design.By"],
+            DesignKey::Ground => &["design.ground"],
+            DesignKey::GroundAngle => &["design.ground_angle_deg"],
+            DesignKey::Crank => &["design.a"],
+            DesignKey::Coupler => &["design.b"],
+            DesignKey::Follower => &["design.c"],
+            DesignKey::CrankSide => &["design.d"],
+            DesignKey::FollowerSide => &["design.e"],
+            DesignKey::CouplerX => &["design.coupler_x"],
+            DesignKey::CouplerY => &["design.coupler_y"],
+        }
+    }
+
+    /// Returns its limits: none if the problem does not contain the key, two of a pivot, else one.
+    pub fn get(self, design: &DesignSpec) -> Vec<Limits> {
+        match self {
+            DesignKey::CrankPivot => design.crank_pivot.into_iter().flatten().collect(),
+            DesignKey::FollowerPivot => design.follower_pivot.into_iter().flatten().collect(),
+            DesignKey::Ground => design.ground.into_iter().collect(),
+            DesignKey::GroundAngle => design.ground_angle_deg.into_iter().collect(),
+            DesignKey::Crank => design.a.into_iter().collect(),
+            DesignKey::Coupler => design.b.into_iter().collect(),
+            DesignKey::Follower => design.c.into_iter().collect(),
+            DesignKey::CrankSide => design.d.into_iter().collect(),
+            DesignKey::FollowerSide => design.e.into_iter().collect(),
+            DesignKey::CouplerX => design.coupler_x.into_iter().collect(),
+            DesignKey::CouplerY => design.coupler_y.into_iter().collect(),
+        }
+    }
+
+    fn set(self, design: &mut DesignSpec, limits: impl Fn(usize) -> Limits) {
+        match self {
+            DesignKey::CrankPivot => design.crank_pivot = Some([limits(0), limits(1)]),
+            DesignKey::FollowerPivot => design.follower_pivot = Some([limits(0), limits(1)]),
+            DesignKey::Ground => design.ground = Some(limits(0)),
+            DesignKey::GroundAngle => design.ground_angle_deg = Some(limits(0)),
+            DesignKey::Crank => design.a = Some(limits(0)),
+            DesignKey::Coupler => design.b = Some(limits(0)),
+            DesignKey::Follower => design.c = Some(limits(0)),
+            DesignKey::CrankSide => design.d = Some(limits(0)),
+            DesignKey::FollowerSide => design.e = Some(limits(0)),
+            DesignKey::CouplerX => design.coupler_x = Some(limits(0)),
+            DesignKey::CouplerY => design.coupler_y = Some(limits(0)),
+        }
+    }
+
+    /// Returns whether it is a length, which is never negative.
+    pub fn is_length(self) -> bool {
+        use DesignKey::*;
+        matches!(self, Ground | Crank | Coupler | Follower | CrankSide | FollowerSide)
+    }
+
+    fn widen(self, problem: &Problem, design: &mut DesignSpec) {
+        let (far, centre) = (FAR * problem.task().size(), problem.task().centre());
+        let middle = [centre.re, centre.im];
+        let old = self.get(design);
+        let around = |l: Limits, middle: f64, far: f64| Limits(l.0.min(middle - far), l.1.max(middle + far));
+        match self {
+            DesignKey::CrankPivot | DesignKey::FollowerPivot => {
+                self.set(design, |i| around(old[i], middle[i], far));
+            }
+            DesignKey::GroundAngle => {
+                self.set(design, |i| around(old[i], 0.5 * (old[i].0 + old[i].1), 180.0));
+            }
+            DesignKey::CouplerX | DesignKey::CouplerY => self.set(design, |i| around(old[i], 0.0, far)),
+            _ => self.set(design, |i| Limits(0.0, old[i].1.max(far))),
+        }
+    }
+}
+
+/// Returns the changes to type that lead from a problem to one in which `demands` have been loosened.
+///
+/// A key that is typed is no longer filled in by a default, which may remove the default of another key:
+/// [`DesignSpec::resolve`] gives no ground if both pivots are given, and no B if the ground is. Such keys are typed as
+/// well, with the values that they have.
+pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) -> Option<Vec<Change>> {
+    let spec = problem.spec();
+    let change = |demand: Demand| {
+        Some(Change { key: demand.key().into(), from: demand.typed(spec)?, to: demand.typed(loosened)? })
+    };
+    let mut keys = demands.to_vec();
+    let mut pin = |key: DesignKey| {
+        let demand = Demand::Design(key);
+        if !keys.contains(&demand) && !key.get(&spec.design).is_empty() {
+            keys.push(demand);
+        }
+    };
+    let (size, centre) = (problem.task().size(), problem.task().centre());
+    let design = &spec.design;
+    let is_default = |l: &Limits, low: f64, high: f64| l.0 == low && l.1 == high;
+    let ground_is_default =
+        design.ground.is_some_and(|l| is_default(&l, DEFAULT_SHORTEST * size, DEFAULT_REACH * size));
+    let pivot_is_default = |p: Option<[Limits; 2]>| {
+        p.is_some_and(|p| {
+            let at = [centre.re, centre.im];
+            p.iter().zip(at).all(|(l, c)| is_default(l, c - DEFAULT_REACH * size, c + DEFAULT_REACH * size))
+        })
+    };
+    if ground_is_default {
+        use DesignKey::{CrankPivot, FollowerPivot, Ground};
+        let typed = |key| demands.contains(&Demand::Design(key));
+        let given = |key, pivot| typed(key) || !pivot_is_default(pivot);
+        let both = given(CrankPivot, design.crank_pivot) && given(FollowerPivot, design.follower_pivot);
+        if (typed(CrankPivot) || typed(FollowerPivot)) && both {
+            pin(Ground);
+            pin(FollowerPivot);
+        }
+        if typed(Ground) {
+            pin(FollowerPivot);
+        }
+    }
+    keys.into_iter().map(change).collect()
+}
+
+/// Rounds a limit outward to three significant digits of itself or of its change, whichever is coarser; finer if that
+/// would be more than the change.
+///
+/// ```
+/// use linkwright::internals::judge::loosen::rounded_outward;
+/// assert_eq!(rounded_outward(32.1472, 40.0, -1.0), 32.1);
+/// assert_eq!(rounded_outward(1000.0321, 1000.0, 1.0), 1000.033);
+/// ```
+pub fn rounded_outward(value: f64, from: f64, outward: f64) -> f64 {
+    let change = (value - from).abs();
+    let power = |x: f64, digits: i32| (x.log10().floor() as i32) - digits + 1;
+    if change == 0.0 || !value.is_finite() || !change.is_finite() {
+        return value;
+    }
+    let own = if value == 0.0 { i32::MIN } else { power(value.abs(), 3) };
+    let exponent =
+        if value != 0.0 && 10f64.powi(own) > change { power(change, 2) } else { own.max(power(change, 3)) };
+    let steps = |x: f64| if exponent >= 0 { x / 10f64.powi(exponent) } else { x * 10f64.powi(-exponent) };
+    // A value that lies on a step, up to rounding, stays there.
+    let near = 1e-9;
+    let count = outward * (outward * steps(value) - near).ceil();
+    // Through decimal text, so that it prints with few digits.
+    format!("{count}e{exponent}").parse().unwrap_or(value)
+}
+
+/// Returns the candidate judged under a problem that is stricter than the one that it was found for.
+pub fn judged_under(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
+    assess(problem, &candidate.linkage, &candidate.crank_deg, &candidate.t1_at)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_goes_outward_and_never_past_twice_the_change() {
+        for i in 1..2000 {
+            let value = 0.37 * f64::from(i) - 300.0;
+            for (from, outward) in [(value - 0.013, 1.0), (value + 5.1, -1.0), (value - 400.0, 1.0)] {
+                let rounded = rounded_outward(value, from, outward);
+                let slack = 1e-8 * value.abs();
+                assert!(outward * (rounded - value) >= -slack, "{value} from {from}: {rounded}");
+                assert!((rounded - from).abs() <= 2.0 * (value - from).abs() + slack, "{value} from {from}");
+            }
+        }
+    }
+}

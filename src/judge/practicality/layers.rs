@@ -1,0 +1,167 @@
+//! Layers of the plates: a stacking in which no parts cross while the linkage moves.
+//!
+//! Plates joined by a pin overlap at that pin, so each of the pairs ground-crank, crank-coupler, coupler-follower and
+//! follower-ground needs two layers. The pairs crank-follower and coupler-ground may share a plane if they stay apart
+//! over the whole motion. A pin passes through all layers from one of its plates to the other; in those between, it
+//! must stay clear of every plate there and of every other pin that passes through them. Pins end flush with their
+//! plates, and every plate is one piece in one layer. All stackings are tried: there are at most 4^4.
+//!
+//! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
+//! count as crossing.
+
+use super::clearance::{Build, Pin, Workpieces};
+use super::closest::Closest;
+use super::sweep::Sweep;
+use crate::mechanism::plates::Link;
+
+/// The pairs of plates that no pin joins.
+pub const FREE_PAIRS: [[Link; 2]; 2] = [[Link::Crank, Link::Follower], [Link::Coupler, Link::Ground]];
+
+/// Two plates that no pin joins, with the least distance between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlatePair {
+    /// The two plates.
+    pub plates: [Link; 2],
+    /// The least distance between them over the motion; below zero if they overlap.
+    pub closest: Closest,
+}
+
+/// A pin and a plate that it does not join, with the least distance between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinPlate {
+    /// The pin.
+    pub pin: Pin,
+    /// The plate.
+    pub plate: Link,
+    /// The least distance between them over the motion.
+    pub closest: Closest,
+}
+
+/// Two pins, with the least distance between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PinPair {
+    /// The two pins.
+    pub pins: [Pin; 2],
+    /// The least distance between their surfaces over the motion.
+    pub closest: Closest,
+}
+
+/// A stacking without crossings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stack {
+    /// The plates of each layer, the lowest first.
+    pub layers: Vec<Vec<Link>>,
+    /// The pins that pass through a layer between their plates, with the index of that layer, counted from 0.
+    pub through: Vec<(Pin, usize)>,
+}
+
+/// The distances that decide the layers, and the resulting stacking.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layering {
+    /// The two pairs of plates that could share a plane.
+    pub free_pairs: Vec<PlatePair>,
+    /// Pins and the plates that they do not join.
+    pub pins_plates: Vec<PinPlate>,
+    /// Pairs of pins.
+    pub pins: Vec<PinPair>,
+    /// The stacking of the fewest layers; of several the one whose pins pass through the fewest layers, then with the
+    /// coupler outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
+    pub stack: Option<Stack>,
+}
+
+/// Returns whether it is proved that two parts stay apart.
+pub fn clear(closest: &Closest) -> bool {
+    closest.bound > 0.0
+}
+
+/// Computes the stacking of the fewest layers without crossings over the whole motion; `None` if the loop is open in
+/// the motion.
+pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
+    let pieces = Workpieces::new(sweep, build);
+    let mut free_pairs = Vec::new();
+    for plates in FREE_PAIRS {
+        free_pairs.push(PlatePair { plates, closest: pieces.between_plates(plates[0], plates[1])? });
+    }
+    let mut pins_plates = Vec::new();
+    let mut pins = Vec::new();
+    for (i, pin) in Pin::ALL.into_iter().enumerate() {
+        for plate in Link::ALL.into_iter().filter(|link| !pin.joins().contains(link)) {
+            pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
+        }
+        for other in Pin::ALL.into_iter().skip(i + 1) {
+            pins.push(PinPair { pins: [pin, other], closest: pieces.between_pins(pin, other)? });
+        }
+    }
+    let mut layering = Layering { free_pairs, pins_plates, pins, stack: None };
+    layering.stack = layering.best();
+    Some(layering)
+}
+
+/// The layer of each plate, in the order of [`Link::ALL`].
+type Places = [usize; 4];
+
+fn layer(places: &Places, link: Link) -> usize {
+    places[link as usize]
+}
+
+/// Returns the layers strictly between the two plates of a pin.
+fn between(places: &Places, pin: Pin) -> std::ops::Range<usize> {
+    let [one, other] = pin.joins().map(|link| layer(places, link));
+    one.min(other) + 1..one.max(other).max(one.min(other) + 1)
+}
+
+impl Layering {
+    fn best(&self) -> Option<Stack> {
+        (2..=Link::ALL.len()).find_map(|count| {
+            let all = (0..count.pow(4)).map(|code| {
+                let digit = |i: u32| (code / count.pow(i)) % count;
+                [digit(0), digit(1), digit(2), digit(3)]
+            });
+            let fits = all.filter(|places| (0..count).all(|l| places.contains(&l)) && self.works(places));
+            let through =
+                |places: &Places| Pin::ALL.iter().map(|pin| between(places, *pin).len()).sum::<usize>();
+            let merit = |places: &Places| {
+                let coupler = layer(places, Link::Coupler);
+                let inside = coupler != 0 && coupler + 1 != count;
+                (through(places), inside, layer(places, Link::Ground), *places)
+            };
+            fits.min_by_key(merit).map(|places| Stack {
+                layers: (0..count)
+                    .map(|l| Link::ALL.into_iter().filter(|link| layer(&places, *link) == l).collect())
+                    .collect(),
+                through: Pin::ALL
+                    .into_iter()
+                    .flat_map(|pin| between(&places, pin).map(move |l| (pin, l)))
+                    .collect(),
+            })
+        })
+    }
+
+    /// Returns whether no parts cross in a stacking.
+    fn works(&self, places: &Places) -> bool {
+        let apart = Pin::ALL.iter().all(|pin| {
+            let [one, other] = pin.joins();
+            layer(places, one) != layer(places, other)
+        });
+        let planes = self.free_pairs.iter().all(|pair| {
+            let [one, other] = pair.plates;
+            layer(places, one) != layer(places, other) || clear(&pair.closest)
+        });
+        let crossed = |pin: Pin, plate: Link| between(places, pin).contains(&layer(places, plate));
+        let plates = self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
+        let side_by_side = |pins: [Pin; 2]| {
+            let [one, other] = pins.map(|pin| between(places, pin));
+            one.start.max(other.start) < one.end.min(other.end)
+        };
+        let pins = self.pins.iter().all(|pair| !side_by_side(pair.pins) || clear(&pair.closest));
+        apart && planes && plates && pins
+    }
+
+    /// Returns the obstacles to a flatter stacking, or to any: the pairs of plates and the crossings of a pin and a
+    /// plate that are not clear.
+    pub fn obstacles(&self) -> (Vec<PlatePair>, Vec<PinPlate>) {
+        let pairs = self.free_pairs.iter().filter(|pair| !clear(&pair.closest)).copied().collect();
+        let pins = self.pins_plates.iter().filter(|p| !clear(&p.closest)).copied().collect();
+        (pairs, pins)
+    }
+}

@@ -1,0 +1,84 @@
+//! Practicality of a candidate with its target, or of a linkage by itself: layers, distances and sensitivities
+//! together.
+
+use super::clearance::{Build, PivotDistance, pivot_distances};
+use super::layers::{Layering, layering};
+use super::sensitivity::{At, Crank, Sensitivity, along, sensitivity};
+use super::sweep::Sweep;
+use crate::judge::referee::judge;
+use crate::mechanism::FourBar;
+use crate::record::Candidate;
+use crate::task::Problem;
+use crate::task::spec::TransmissionOver;
+use crate::task::{AngleOffset, Timing};
+
+/// Number of positions on each stretch of the motion at which the path of a linkage without a target is examined.
+const POSITIONS: usize = 72;
+
+/// Layers, distances and sensitivities of one linkage.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Practicality {
+    /// The linkage and its motion.
+    pub sweep: Sweep,
+    /// The radii of plates and pins.
+    pub build: Build,
+    /// The layers of the plates; `None` if the loop is open in the motion.
+    pub layering: Option<Layering>,
+    /// The least distances between the joints, nearest first; `None` if the loop is open in the motion.
+    pub distances: Option<Vec<PivotDistance>>,
+    /// The sensitivity of the path to errors of the dimensions; `None` if no position has a derivative.
+    pub sensitivity: Option<Sensitivity>,
+    /// Whether the path is examined at a target's points, counted from 0; else all along the motion.
+    pub at_points: bool,
+}
+
+impl Practicality {
+    /// Examines a candidate over the cycle or the motion used, as for its transmission angle; the path at its positions
+    /// on the target.
+    ///
+    /// `None` if it lacks a position for one of the problem's points, or has a crank angle that is no number.
+    pub fn of_candidate(problem: &Problem, candidate: &Candidate, build: Build) -> Option<Self> {
+        let n = problem.task().len();
+        let angles = &candidate.crank_deg;
+        if angles.len() != n || candidate.t1_at.len() != n || !angles.iter().all(|deg| deg.is_finite()) {
+            return None;
+        }
+        let radians: Vec<f64> = angles.iter().map(|deg| deg.to_radians()).collect();
+        let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
+        let cycle = candidate.transmission_deg.over == TransmissionOver::Cycle;
+        let sweep = Sweep::of_motion(&verdict.motion, cycle);
+        let felt = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem));
+        Some(Practicality::of(sweep, build, felt, true))
+    }
+
+    /// Examines a linkage by itself over its whole motion without passing a toggle ([`Sweep::of_linkage`]), and the
+    /// path along that motion, with free timing ([`Crank::Settles`]). `None` if it cannot be assembled.
+    pub fn of_linkage(linkage: &FourBar, build: Build) -> Option<Self> {
+        let sweep = Sweep::of_linkage(linkage)?;
+        let felt = sensitivity(linkage, &along(&sweep, POSITIONS), Crank::Settles);
+        Some(Practicality::of(sweep, build, felt, false))
+    }
+
+    fn of(sweep: Sweep, build: Build, sensitivity: Option<Sensitivity>, at_points: bool) -> Self {
+        let (layering, distances) = (layering(&sweep, build), pivot_distances(&sweep));
+        Practicality { sweep, build, layering, distances, sensitivity, at_points }
+    }
+}
+
+impl At {
+    /// Returns the positions of a candidate, one for each target point.
+    pub fn of_candidate(candidate: &Candidate) -> Vec<At> {
+        let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
+        positions.map(|(deg, assembly)| At { crank_angle: deg.to_radians(), assembly: *assembly }).collect()
+    }
+}
+
+/// Returns the behaviour of a problem's crank angles when a dimension is off.
+pub fn crank_of(problem: &Problem) -> Crank {
+    match problem.task().timing() {
+        Timing::Free => Crank::Settles,
+        Timing::Prescribed { offset: AngleOffset::Free, .. } => Crank::OffsetIsSet,
+        Timing::Prescribed { offset: AngleOffset::Fixed, .. } => Crank::Stays,
+        Timing::Prescribed { offset: AngleOffset::Ground, .. } => Crank::TurnsWithGround,
+    }
+}

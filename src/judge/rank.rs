@@ -1,0 +1,278 @@
+//! Ranking of candidates and choice of the distinct ones.
+//!
+//! Candidates are ranked by acceptance, then (if tolerances are missed) by how far, then error (errors of exact answers
+//! are equal), then (if refused) by how grave the defects are and how many requirements are unmet, then worst
+//! transmission angle, then size. Two candidates are one answer if
+//!
+//! - they are nearly the same linkage: at the first point their joints A, B, C, D and P lie within [`NEAR`] of
+//!   the larger linkage's span of each other, or those of a cognate (Roberts) or of the linkage seen from its
+//!   other side do; or
+//! - they draw the same curve: their coupler points at the target points, and their whole curves, lie within
+//!   [`SAME_CURVE`] of the target's size of each other; or
+//! - the target is symmetric, and its symmetry maps the one to the other (only in the list that is reported; a search
+//!   goes on for as long as it did without this rule).
+//!
+//! Of many exact answers (a family of them) the best is taken, and of the others, in their order, those that look
+//! different: first at least half a span apart from all that are taken, then, if that gives too few, a quarter, and so
+//! on down to [`NEAR`].
+
+use super::look::Look;
+use super::symmetry::Symmetries;
+use crate::record::{Candidate, Figure};
+use crate::task::Defect;
+use crate::task::Problem;
+use crate::task::spec::Objective;
+use std::borrow::Cow;
+use std::cmp::Ordering;
+
+/// Distance of curves, in parts of the target's size, below which they are one answer.
+pub const SAME_CURVE: f64 = 1e-2;
+/// Distance of the joints of linkages, in parts of their span, below which they are one answer.
+pub const NEAR: f64 = 0.05;
+/// Distances between members of a family of exact answers, in spans: the largest that gives enough of them is used.
+const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
+pub use crate::record::EXACT_MEAN_SQ as EXACT;
+
+/// Returns the sum of squares below which a fit is exact.
+pub fn exact_sum_sq(problem: &Problem) -> f64 {
+    EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
+}
+
+/// Returns whether an accepted candidate of a list is exact: the target is reached.
+pub fn holds_an_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
+    let exact = exact_sum_sq(problem);
+    candidates.iter().any(|c| c.accepted && c.error.sum_sq <= exact)
+}
+
+/// Returns the weighted sum of squares below which a fit is exact.
+pub fn exact_cost(problem: &Problem) -> f64 {
+    EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+}
+
+/// Returns the objective below which a fit is exact: a weighted sum of squares; or a largest deviation, which is a
+/// length, or if tolerances are given that length in parts of the least of them.
+pub fn exact_objective(problem: &Problem) -> f64 {
+    match problem.spec().solve.objective {
+        Objective::SumOfSquares => exact_cost(problem),
+        Objective::MaxDeviation => {
+            let least =
+                problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
+            EXACT.sqrt() * problem.task().size() / least
+        }
+    }
+}
+
+/// Returns the cost that searches by least squares minimise: the weighted sum of squares, whatever the objective is.
+pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
+    if problem.spec().solve.objective == Objective::SumOfSquares {
+        return candidate.error.objective;
+    }
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = problem.task().errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.objective)
+}
+
+/// The ranking key of a candidate; less is better.
+#[derive(Clone, Copy, Debug)]
+struct Key {
+    refused: bool,
+    /// Whether requirements other than the tolerances are missed, and the largest error in parts of the tolerance.
+    missed: (bool, f64),
+    error: f64,
+    severity: usize,
+    unmet: usize,
+    worst: f64,
+    size: f64,
+}
+
+impl Key {
+    fn of(candidate: &Candidate, floor: f64) -> Key {
+        let unmet = |c: &Candidate| 1 + c.requirements.iter().filter(|r| !r.met).count();
+        Key {
+            refused: !candidate.accepted,
+            missed: missed(candidate),
+            error: candidate.error.objective.max(floor),
+            severity: severity(candidate),
+            unmet: if candidate.accepted { 0 } else { unmet(candidate) },
+            worst: candidate.transmission_deg.worst,
+            size: size(candidate),
+        }
+    }
+}
+
+/// Returns the severity of a refused candidate's defects: a toggle can be pushed through, an order be put up with;
+/// between two circuits the linkage has to be taken apart. 0 if it is accepted.
+pub(super) fn severity(candidate: &Candidate) -> usize {
+    let of = |defect: &Defect| match defect {
+        Defect::Branch { .. } => 1,
+        Defect::Order { .. } => 2,
+        Defect::Circuit { .. } => 4,
+    };
+    if candidate.accepted { 0 } else { candidate.defects.iter().map(of).sum() }
+}
+
+/// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
+fn missed(candidate: &Candidate) -> (bool, f64) {
+    let row = candidate.requirements.iter().find(|r| !candidate.accepted && r.name == "tolerance");
+    row.map_or((false, 0.0), |row| {
+        let otherwise = candidate.requirements.iter().all(|r| r.met || r.name == "tolerance");
+        let part = match (&row.value, &row.limit) {
+            (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
+            _ => 0.0,
+        };
+        (!otherwise, part)
+    })
+}
+
+impl Ord for Key {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.refused
+            .cmp(&other.refused)
+            .then_with(|| self.missed.0.cmp(&other.missed.0))
+            .then_with(|| self.missed.1.total_cmp(&other.missed.1))
+            .then_with(|| self.error.total_cmp(&other.error))
+            .then_with(|| self.severity.cmp(&other.severity))
+            .then_with(|| self.unmet.cmp(&other.unmet))
+            .then_with(|| other.worst.total_cmp(&self.worst))
+            .then_with(|| self.size.total_cmp(&other.size))
+    }
+}
+
+impl PartialOrd for Key {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Key {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Key {}
+
+/// Returns the longest of the links and the coupler's side.
+pub(super) fn size(candidate: &Candidate) -> f64 {
+    candidate.linkage.longest_link().max(candidate.linkage.crank_side())
+}
+
+/// Compares two candidates, better first. For many candidates: [`sort`].
+pub fn compare(problem: &Problem, one: &Candidate, other: &Candidate) -> Ordering {
+    let floor = exact_objective(problem);
+    Key::of(one, floor).cmp(&Key::of(other, floor))
+}
+
+/// Sorts candidates, better first; equals keep their order.
+pub fn sort(problem: &Problem, candidates: &mut [Candidate]) {
+    let floor = exact_objective(problem);
+    candidates.sort_by_cached_key(|candidate| Key::of(candidate, floor));
+}
+
+/// Returns the indices of the best distinct candidates, at most `wanted`, better first.
+///
+/// If at least one is accepted, only accepted ones are given. If one answer is wanted, no curve is computed and nothing
+/// compared but the ranks.
+pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
+    chosen_but_for(problem, &Symmetries::none(), found, wanted)
+}
+
+/// As [`chosen`]; images under a symmetry of the target count as the same answer too.
+fn chosen_but_for(
+    problem: &Problem,
+    symmetries: &Symmetries,
+    found: &[Candidate],
+    wanted: usize,
+) -> Vec<usize> {
+    let floor = exact_objective(problem);
+    let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
+    // Equals that differ in their last digits are ordered by these, not by the order in which they were found.
+    let numbers = |i: usize| {
+        let n = found[i].linkage.natural_coordinates();
+        let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
+        [ax, ay, bx, by, n.crank, n.coupler, n.follower, n.crank_side, n.follower_side]
+    };
+    let by_numbers = |i: usize, j: usize| {
+        let pairs = numbers(i).into_iter().zip(numbers(j));
+        pairs.map(|(x, y)| x.total_cmp(&y)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    };
+    let by_key =
+        |i: &usize, j: &usize| keys[*i].cmp(&keys[*j]).then_with(|| by_numbers(*i, *j)).then(i.cmp(j));
+    if wanted <= 1 {
+        return (0..found.len()).min_by(by_key).into_iter().take(wanted).collect();
+    }
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    order.sort_by(by_key);
+    let accepted = order.iter().take_while(|&&i| !keys[i].refused).count();
+    if accepted > 0 {
+        order.truncate(accepted);
+    }
+    let looks: Vec<Look<'_>> = found.iter().map(|c| Look::of(Cow::Borrowed(c))).collect();
+    let reach = SAME_CURVE * problem.task().size();
+    let mut taken: Vec<usize> = Vec::new();
+    let mut images: Vec<Look<'_>> = Vec::new();
+    // A candidate that is one answer with a taken one stays so: a taken one is never given back.
+    let mut dropped = vec![false; found.len()];
+    let mut take = |among: &[usize], apart: f64| {
+        for &i in among {
+            if taken.len() == wanted {
+                return;
+            }
+            if dropped[i] || taken.contains(&i) {
+                continue;
+            }
+            let least = taken.iter().map(|&k| looks[i].difference(&looks[k])).fold(f64::INFINITY, f64::min);
+            dropped[i] = least < NEAR;
+            if least < apart {
+                continue;
+            }
+            dropped[i] = taken.iter().any(|&k| looks[i].draws_the_curve_of(&looks[k], reach))
+                || images.iter().any(|image| image.is(&looks[i], NEAR, reach));
+            if !dropped[i] {
+                taken.push(i);
+                images.extend(symmetries.images(problem, &found[i]).map(|c| Look::of(Cow::Owned(c))));
+            }
+        }
+    };
+    let exact = order.iter().take_while(|&&i| !keys[i].refused && keys[i].error <= floor).count();
+    if exact > 1 {
+        for apart in APART {
+            take(&order[..exact], apart);
+        }
+    }
+    take(&order, NEAR);
+    taken.sort_by(by_key);
+    taken
+}
+
+/// Returns the number of distinct candidates, counted up to `wanted`.
+pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> usize {
+    chosen(problem, found, wanted).len()
+}
+
+/// Returns the best distinct candidates, at most `wanted`, ranked from 1, and all others in their order. Of mirror
+/// images that a symmetric target allows one is given.
+pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
+    let places = chosen_but_for(problem, &Symmetries::of(problem), &found, wanted);
+    let mut rank_of = vec![0; found.len()];
+    for (rank, &place) in (1..).zip(&places) {
+        rank_of[place] = rank;
+    }
+    let (mut best, mut others) = (Vec::with_capacity(places.len()), Vec::with_capacity(found.len()));
+    for (candidate, rank) in found.into_iter().zip(rank_of) {
+        if rank > 0 {
+            best.push(Candidate { rank, ..candidate });
+        } else {
+            others.push(candidate);
+        }
+    }
+    best.sort_by_key(|candidate| candidate.rank);
+    (best, others)
+}
+
+/// Returns the best distinct candidates, at most `wanted`, ranked from 1.
+///
+/// If at least one is accepted, only accepted ones are given.
+pub fn distinct(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> Vec<Candidate> {
+    divided(problem, found, wanted).0
+}

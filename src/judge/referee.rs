@@ -1,0 +1,341 @@
+//! The referee: judges order, circuit and branch of a motion through target points.
+//!
+//! Circuits and branches are those of Chase and Mirth (1993), determined from the closed forms of
+//! [`crate::mechanism::four_bar::mobility`]; that the loop stays closed between the points is checked on dense samples. Nothing
+//! here uses an optimiser: every verdict follows from the linkage and its positions alone. Searches use the referee:
+//! they rank by its verdicts and keep its [`ORDER_TOLERANCE`].
+//!
+//! *Order* is judged if the timing is free (prescribed angles are an order by themselves): the parameter of the circuit
+//! (the crank angle, or psi if the input rocks) must run one way through the points and less than once around.
+//!
+//! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its first,
+//! and that has to be taken without reversing: a crank that turns fully turns on; one that rocks comes back only by way
+//! of both toggles, around the whole circuit, if the task allows that ([`Return`]). A motion that returns through all
+//! of its points in reverse is out of order at point 0, unless the task allows that too. Prescribed angles of a closed
+//! target have to run one way for the same reason.
+
+use crate::mechanism::effort::computed;
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::four_bar::transmission::{TransmissionExtremes, angle_opposite};
+use crate::mechanism::{AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility};
+use crate::task::Defect;
+use crate::task::defect::ORDER_TOLERANCE;
+use crate::task::{PathTask, Return, Timing};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Number of samples of the motion between two neighbouring points on which closure is checked.
+const CLOSURE_SAMPLES: usize = 24;
+/// Greatest number of such samples in all: a turn in steps of 0.018 degrees.
+const MOST_CLOSURE_SAMPLES: usize = 20_000;
+
+/// The part of the motion between the first and the last target point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UsedMotion {
+    linkage: FourBar,
+    mobility: Mobility,
+    circuit: Circuit,
+    /// Whether the parameter is psi of the circuit's arc (else the crank angle).
+    rocks: bool,
+    /// The parameter's range, low to high.
+    range: [f64; 2],
+}
+
+/// The referee's verdict on a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// Every defect, whether it is allowed or not.
+    pub defects: Vec<Defect>,
+    /// The direction: +1 if the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 if
+    /// clockwise.
+    pub direction: f64,
+    /// Whether the motion comes back to the first point of a target that ends there only by reversing.
+    pub to_and_fro: bool,
+    /// The motion used.
+    pub motion: UsedMotion,
+}
+
+/// Judges the motion of a linkage through the points of a task at the given crank angles (radians) and assemblies, one
+/// per point.
+///
+/// # Panics
+/// If there are fewer angles or assemblies than points.
+pub fn judge(
+    task: &PathTask,
+    linkage: &FourBar,
+    crank_angles: &[f64],
+    assemblies: &[AssemblyMode],
+) -> Verdict {
+    let n = task.len();
+    let samples = (CLOSURE_SAMPLES * n).min(MOST_CLOSURE_SAMPLES);
+    computed(n + samples);
+    let mobility = linkage.mobility();
+    let linkage = linkage.with_assembly(assemblies[0]);
+    let first = mobility.branch(crank_angles[0], assemblies[0]);
+    let prescribed = matches!(task.timing(), Timing::Prescribed { .. });
+    let arc = mobility.arc(first.circuit);
+    let mut defects = Vec::new();
+
+    let mut off_circuit = Vec::new();
+    let mut off_branch = Vec::new();
+    for j in 0..n {
+        let branch = mobility.branch(crank_angles[j], assemblies[j]);
+        let open = !linkage.position_with(crank_angles[j], assemblies[j]).is_closed();
+        // A rocking crank cannot get from one turn to the next, even if the angles agree modulo a turn.
+        let other_turn = prescribed
+            && arc.is_some_and(|arc| {
+                let turns = |angle: f64| ((angle - arc.offset(angle) - arc.middle) / TAU).round();
+                turns(crank_angles[j]) != turns(crank_angles[0])
+            });
+        if open || other_turn || branch.circuit != first.circuit {
+            off_circuit.push(j);
+        } else if branch.assembly != first.assembly {
+            off_branch.push(j);
+        }
+    }
+
+    let rocks = arc.is_some();
+    let mut parameter: Vec<f64> = (0..n)
+        .map(|j| match arc {
+            None => crank_angles[j],
+            Some(arc) => arc.parameter(crank_angles[j], assemblies[j]),
+        })
+        .collect();
+    if rocks {
+        // psi is periodic: each point is reached the nearer way round from the one before it.
+        for j in 1..n {
+            parameter[j] = parameter[j - 1] + wrapped(parameter[j] - parameter[j - 1]);
+        }
+    }
+    // The closing point is the first one again and does not count for the order.
+    let ordered = if task.repeats_first() { n - 1 } else { n };
+    let one_branch = rocks && off_branch.is_empty();
+    let comes_back = task.comes_back();
+    let mut to_and_fro = false;
+    let course = if prescribed && !rocks {
+        let direction = if parameter[n - 1] < parameter[0] { -1.0 } else { 1.0 };
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        // A closed target is closed by turning on to its first point.
+        let high = if task.closed() { high.max(low + TAU) } else { high };
+        let one_way = task.closed() && comes_back != Return::Any;
+        let jumps = if one_way { Course::within_a_branch(&parameter).jumps } else { Vec::new() };
+        Course { direction, range: [low, high], jumps }
+    } else if prescribed || !off_circuit.is_empty() {
+        // The hull of the parameters used; within a branch psi is monotone in the crank angle.
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
+        to_and_fro = task.returns() && rocks && (one_branch || !off_circuit.is_empty());
+        Course { direction, range: [low, high], jumps: Vec::new() }
+    } else {
+        let within = one_branch.then(|| Course::within_a_branch(&parameter[..ordered]));
+        match within {
+            Some(mut course) if course.jumps.is_empty() => {
+                to_and_fro = task.returns() && comes_back != Return::AroundTheCircuit;
+                if task.returns() && !to_and_fro {
+                    // On from the last point by way of both toggles.
+                    off_branch.push(0);
+                    Course::through(&parameter[..ordered], true)
+                } else {
+                    // On the branch t1 = -1 psi falls where the crank angle rises.
+                    course.direction *= first.assembly.sign();
+                    course
+                }
+            }
+            _ => {
+                // Once back at the first point, the motion has gone the whole way round.
+                let whole = task.returns() && !(one_branch && comes_back == Return::Any);
+                let around = Course::through(&parameter[..ordered], whole);
+                if let Some(within) = within.filter(|_| around.jumps.is_empty()) {
+                    // The order holds around the circuit alone: by way of the toggles and the other branch.
+                    off_branch.extend(within.jumps);
+                }
+                around
+            }
+        }
+    };
+    // Any part beyond a whole turn has been passed already.
+    let [low, high] = course.range;
+    let range = [low, high.min(low + TAU)];
+    let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range };
+
+    if off_circuit.is_empty() && off_branch.is_empty() {
+        let open = (0..=samples).any(|i| motion.joints_at(motion.blend(i, samples)).is_none());
+        if open {
+            off_circuit.extend(1..n);
+        }
+    }
+    if !off_circuit.is_empty() {
+        defects.push(Defect::Circuit { at: off_circuit });
+    }
+    if !off_branch.is_empty() {
+        defects.push(Defect::Branch { at: off_branch });
+    }
+    if !course.jumps.is_empty() {
+        defects.push(Defect::Order { at: course.jumps });
+    } else if to_and_fro && comes_back != Return::Any {
+        defects.push(Defect::to_and_fro());
+    }
+    Verdict { defects, direction: course.direction, to_and_fro, motion }
+}
+
+/// The course of a cyclic parameter through the points: its direction, range and steps back.
+struct Course {
+    direction: f64,
+    range: [f64; 2],
+    jumps: Vec<usize>,
+}
+
+impl Course {
+    /// Returns the course along a branch: its sense is from the first to the last point, and it is out of order where a
+    /// step goes back.
+    fn within_a_branch(parameter: &[f64]) -> Course {
+        let last = parameter[parameter.len() - 1];
+        let direction = if last < parameter[0] { -1.0 } else { 1.0 };
+        let steps = parameter.windows(2).zip(1..);
+        let back = steps.filter(|(w, _)| direction * (w[1] - w[0]) < -ORDER_TOLERANCE);
+        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Course { direction, range: [low, high], jumps: back.map(|(_, j)| j).collect() }
+    }
+
+    /// Returns the course in the direction in which the parameter travels less in total; it is in order if that is less
+    /// than once around.
+    fn through(parameter: &[f64], whole: bool) -> Course {
+        let along = |direction: f64| {
+            let steps: Vec<f64> = parameter
+                .windows(2)
+                .map(|w| {
+                    let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
+                    if step > TAU - ORDER_TOLERANCE { 0.0 } else { step }
+                })
+                .collect();
+            (steps.iter().sum::<f64>(), steps)
+        };
+        let (forward, backward) = (along(1.0), along(-1.0));
+        let (direction, (total, steps)) =
+            if backward.0 < forward.0 { (-1.0, backward) } else { (1.0, forward) };
+        let mut jumps = Vec::new();
+        if total >= TAU {
+            jumps.extend(steps.iter().zip(1..).filter(|(step, _)| **step > PI).map(|(_, j)| j));
+            if jumps.is_empty() {
+                jumps.push(parameter.len() - 1);
+            }
+        }
+        let end = parameter[0] + direction * if whole { TAU } else { total.min(TAU) };
+        Course { direction, range: [parameter[0].min(end), parameter[0].max(end)], jumps }
+    }
+}
+
+impl UsedMotion {
+    fn blend(&self, i: usize, of: usize) -> f64 {
+        self.range[0] + (self.range[1] - self.range[0]) * i as f64 / of as f64
+    }
+
+    /// Returns the crank angle and assembly at a parameter.
+    fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
+        match self.mobility.arc(self.circuit) {
+            Some(arc) if self.rocks => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
+            _ => (parameter, self.linkage.assembly()),
+        }
+    }
+
+    fn joints_at(&self, parameter: f64) -> Option<Joints> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.position_with(crank_angle, assembly).joints()
+    }
+
+    /// Returns the joints at `n` + 1 evenly spaced positions of the motion, without open ones.
+    pub fn joints(&self, n: usize) -> Vec<Joints> {
+        (0..=n).filter_map(|i| self.joints_at(self.blend(i, n))).collect()
+    }
+
+    /// Returns the extremes of the transmission angle over the motion, in closed form: they lie at its ends, where the
+    /// crank lies along the ground, or at a toggle.
+    pub fn transmission(&self) -> TransmissionExtremes {
+        let [low, high] = self.range;
+        let ground = self.linkage.ground_angle();
+        let extreme: Vec<f64> =
+            if self.rocks { vec![0.0, FRAC_PI_2, PI, -FRAC_PI_2] } else { vec![ground, ground + PI] };
+        let inside = extreme.into_iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
+        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for t in [low, high].into_iter().chain(inside) {
+            let s = self.linkage.diagonal(self.position_at(t).0);
+            (least, greatest) = (least.min(s), greatest.max(s));
+        }
+        let (b, c) = (self.linkage.coupler(), self.linkage.follower());
+        TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
+    }
+
+    /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
+    /// ternary search around its sample.
+    pub fn footprint(&self) -> [f64; 4] {
+        const SAMPLES: usize = 720;
+        let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
+        let mut bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        let mut hold = |p: Complex| {
+            bounds = [bounds[0].min(p.re), bounds[1].min(p.im), bounds[2].max(p.re), bounds[3].max(p.im)];
+        };
+        hold(self.linkage.crank_pivot());
+        hold(self.linkage.follower_pivot());
+        let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
+        // Each sample once, for all joints and directions.
+        let [low, high] = self.range;
+        let sampled: Vec<Option<Joints>> =
+            (0..=SAMPLES).map(|i| self.joints_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
+        for joint in 0..3 {
+            for direction in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+                let toward = |joints: &Joints| {
+                    let p = joints_of(joints)[joint];
+                    direction.0 * p.re + direction.1 * p.im
+                };
+                let reach = |t: f64| {
+                    let joints = self.joints_at(t.clamp(self.range[0], self.range[1]));
+                    joints.as_ref().map_or(f64::NEG_INFINITY, toward)
+                };
+                // Of equal ones the last is taken.
+                let samples = (0..=SAMPLES).map(|i| self.blend(i, SAMPLES)).zip(&sampled);
+                let best = samples
+                    .map(|(t, joints)| (t, joints.as_ref().map_or(f64::NEG_INFINITY, toward)))
+                    .max_by(|one, other| one.1.total_cmp(&other.1));
+                let Some((best, _)) = best else { continue };
+                let (mut low, mut high) = (best - step, best + step);
+                for _ in 0..60 {
+                    let third = (high - low) / 3.0;
+                    if reach(low + third) >= reach(high - third) {
+                        high -= third;
+                    } else {
+                        low += third;
+                    }
+                }
+                for t in [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])] {
+                    if let Some(j) = self.joints_at(t) {
+                        hold(joints_of(&j)[joint]);
+                    }
+                }
+            }
+        }
+        bounds
+    }
+
+    /// Returns whether the input turns fully.
+    pub fn input_turns_fully(&self) -> bool {
+        self.mobility.input == InputRange::Full
+    }
+
+    /// Returns the linkage, in the assembly of the first point.
+    pub fn linkage(&self) -> &FourBar {
+        &self.linkage
+    }
+
+    /// Returns the arc on which the crank rocks, whose psi is then the parameter; `None` if the parameter is the crank
+    /// angle.
+    pub fn arc(&self) -> Option<InputArc> {
+        self.mobility.arc(self.circuit).filter(|_| self.rocks)
+    }
+
+    /// Returns the parameter's range, low to high, at most a whole turn.
+    pub fn range(&self) -> [f64; 2] {
+        self.range
+    }
+}

@@ -1,0 +1,55 @@
+//! Verdicts on requirements, compared exactly except for those whose figure lies within rounding of the limit.
+
+use crate::judge::assess::MET_TOLERANCE;
+use crate::record::{Candidate, Figure, Requirement};
+use crate::task::Problem;
+
+/// Returns the scale of the rounding of a requirement's figure: the margin is [`super::ABSOLUTE`] of it.
+pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
+    match (&requirement.value, requirement.name.as_str()) {
+        // Extremes of a motion are found by search, to the square root of the rounding.
+        (Figure::Numbers(_), _) => 1e4 * size,
+        (_, "link_ratio_max") => 1.0,
+        (Figure::Number(value), "transmission_deg_min") => {
+            180.0 / value.min(180.0 - value).max(1e-5).to_radians().sin()
+        }
+        (_, "design.ground_angle_deg") => 180.0,
+        // d, e and the coupler's offset follow from each other by square roots of small differences.
+        (_, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,
+        _ => size,
+    }
+}
+
+/// Returns whether a requirement's figure lies so near to the limit that rounding decides the verdict: a figure may
+/// miss its limit by [`MET_TOLERANCE`] of max(1, |limit|), on either side.
+pub(super) fn is_doubtful(requirement: &Requirement, size: f64) -> bool {
+    let absolute = super::ABSOLUTE * scale(requirement, size);
+    let near = |value: f64, limit: f64| {
+        let turns = MET_TOLERANCE * limit.abs().max(1.0);
+        let margin = super::RELATIVE * value.abs() + absolute;
+        ((value - limit).abs() - turns).abs() <= margin
+    };
+    match (&requirement.value, &requirement.limit) {
+        (Figure::Number(value), Figure::Number(limit)) => near(*value, *limit),
+        (Figure::Number(value), Figure::Numbers(limits)) => limits.iter().any(|l| near(*value, *l)),
+        (Figure::Numbers(values), Figure::Numbers(limits)) => {
+            values.iter().zip(limits).any(|(value, limit)| near(*value, *limit))
+        }
+        _ => false,
+    }
+}
+
+/// Returns the requirements that are not met, and whether the linkage is accepted. For a doubtful requirement the
+/// recorded verdict counts: `not_met` returns whether a name is recorded as not met.
+pub(super) fn verdict(
+    problem: &Problem,
+    found: &Candidate,
+    not_met: &dyn Fn(&str) -> bool,
+) -> (Vec<String>, bool) {
+    let size = problem.task().size();
+    let fails = |r: &&Requirement| if is_doubtful(r, size) { not_met(&r.name) } else { !r.met };
+    let names: Vec<String> = found.requirements.iter().filter(fails).map(|r| r.name.clone()).collect();
+    let forbidden = found.defects.iter().any(|defect| problem.spec().require.forbids(defect));
+    let accepted = names.is_empty() && !forbidden;
+    (names, accepted)
+}

@@ -1,0 +1,95 @@
+//! Warm starts: a candidate as the start of another fit, of the same problem or of one whose limits have moved.
+
+use crate::record::Candidate;
+use crate::task::Timing;
+use crate::task::forms::design_space::Shape;
+use crate::task::forms::requirements::nearest_type;
+use crate::task::forms::start::Start;
+use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::{Problem, Setting};
+
+/// Returns the start at a candidate; `None` if the loop is open at a point or there are fewer positions than points.
+///
+/// The design is clamped to the problem's bounds. The type aimed at is the candidate's own if that is allowed, else the
+/// nearest.
+pub fn start_at(problem: &Problem, candidate: &Candidate) -> Option<Start> {
+    start_beside(problem, candidate, 1.0)
+}
+
+/// As [`start_at`], with the candidate's shortest link multiplied by `part`.
+pub fn start_beside(problem: &Problem, candidate: &Candidate, part: f64) -> Option<Start> {
+    let n = problem.task().len();
+    if candidate.crank_deg.len() != n || candidate.t1_at.len() != n {
+        return None;
+    }
+    let as_it_is = Shape::from(&candidate.linkage);
+    let mut shape = as_it_is;
+    if part != 1.0 {
+        shorten(&mut shape, part);
+    }
+    let types = problem.types();
+    let aim = if types.is_empty() { None } else { nearest_type(shape.links(), types) };
+    let (direction, offset) = direction_and_offset(problem, &candidate.crank_deg);
+    let side = candidate.linkage.side();
+    let setting = Setting { aim, assembly: candidate.t1_at[0], direction, side };
+    let design = problem.space(side).design(&shape, offset);
+    let positions = match problem.task().timing() {
+        Timing::Prescribed { .. } => Vec::new(),
+        Timing::Free => {
+            // A design that was shortened or clamped to its bounds has other curves.
+            let mut positions = positions(candidate, &as_it_is)?;
+            TorusFit::new(problem, setting).settle(&design, &mut positions).then_some(positions)?
+        }
+    };
+    Some(Start { design, setting, positions })
+}
+
+/// Returns the direction of the prescribed increments and the angle that is added to them, in radians.
+fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
+    let Some(timing) = &problem.spec().task.path.timing else { return (problem.directions()[0], 0.0) };
+    let written = &timing.crank_deg;
+    let off = |direction: f64| {
+        let steps = crank_deg.iter().zip(written);
+        steps
+            .map(|(has, asks)| ((has - crank_deg[0]) - direction * (asks - written[0])).abs())
+            .fold(0.0, f64::max)
+    };
+    let mut direction = 1.0;
+    for &other in problem.directions() {
+        if off(other) < off(direction) || !problem.directions().contains(&direction) {
+            direction = other;
+        }
+    }
+    let offset = (crank_deg[0] - direction * written[0]).to_radians();
+    (direction, if problem.offset_is_free() { offset } else { 0.0 })
+}
+
+fn positions(candidate: &Candidate, shape: &Shape) -> Option<Positions> {
+    let at = candidate.crank_deg.iter().zip(&candidate.t1_at);
+    at.map(|(deg, assembly)| {
+        let joints = candidate.linkage.position_with(deg.to_radians(), *assembly).joints()?;
+        let (c, d) = (joints.crank_pin, joints.follower_pin);
+        Some([(c - shape.crank_pivot) / shape.crank, (d - c) / shape.coupler])
+    })
+    .collect()
+}
+
+/// Multiplies the shortest of ground, crank, coupler and follower by `part`; the ground about its middle, the coupler
+/// point to the same relative place beside the coupler.
+fn shorten(shape: &mut Shape, part: f64) {
+    let links = shape.links();
+    let shortest = (0..4).min_by(|&i, &j| links[i].total_cmp(&links[j]));
+    match shortest {
+        Some(0) => {
+            let by = (shape.follower_pivot - shape.crank_pivot) * (0.5 * (1.0 - part));
+            shape.crank_pivot += by;
+            shape.follower_pivot -= by;
+        }
+        Some(1) => shape.crank *= part,
+        Some(2) => {
+            shape.coupler *= part;
+            shape.offset *= part;
+        }
+        _ => shape.follower *= part,
+    }
+}

@@ -1,0 +1,347 @@
+//! Assembly of a chain from its named parts: every point's name resolved once, every part checked.
+
+use super::builder::{ChainBuilder, MAX_POINT_NAME};
+use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
+use super::{coincident_sq, fixed_line};
+use crate::mechanism::{
+    AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, point,
+};
+use std::collections::HashMap;
+
+/// The points of a link with their places in the link's own frame.
+struct Link(Vec<(usize, Complex)>);
+
+/// A chain that is being assembled.
+pub(super) struct Assembly<'a> {
+    source: &'a ChainBuilder,
+    names: Vec<String>,
+    known: HashMap<String, usize>,
+    links: Vec<Link>,
+    /// For each point the indices of the links that carry it.
+    links_of: Vec<Vec<usize>>,
+    /// The largest coordinate or length.
+    scale: f64,
+    steps: Vec<Step>,
+}
+
+/// The part of the chain, and the point that it makes, to which an error is attributed.
+struct Site<'a> {
+    place: ChainPlace,
+    joint: &'a str,
+}
+
+impl Site<'_> {
+    fn error(
+        &self,
+        key: &'static str,
+        index: impl Into<Option<usize>>,
+        fault: ChainFault,
+    ) -> Box<ChainError> {
+        let joint = self.joint.to_owned();
+        Box::new(ChainError { place: self.place.clone(), joint, key, index: index.into(), fault })
+    }
+}
+
+/// Returns whether a number is finite and not too large; false for NaN.
+fn is_usable(value: f64) -> bool {
+    value.abs() <= MAX_MAGNITUDE
+}
+
+const ZERO: Complex = Complex::new(0.0, 0.0);
+
+impl<'a> Assembly<'a> {
+    pub(super) fn new(source: &'a ChainBuilder) -> Self {
+        Assembly {
+            source,
+            names: Vec::new(),
+            known: HashMap::new(),
+            links: vec![Link(Vec::new())],
+            links_of: Vec::new(),
+            scale: 0.0,
+            steps: Vec::new(),
+        }
+    }
+
+    /// Assembles the chain, without its source.
+    pub(super) fn finish(mut self) -> Result<Chain, Box<ChainError>> {
+        let source = self.source;
+        for (name, at) in &source.pivots {
+            let site = Site { place: ChainPlace::Pivot(name.clone()), joint: name };
+            self.numbers(&site, "pivots", at)?;
+            let id = self.name(&site, "pivots", name)?;
+            self.attach(0, id, point(*at));
+        }
+        let site = Site { place: ChainPlace::Crank, joint: &source.crank_joint };
+        let pivots = self.names.clone();
+        let Some(&crank_pivot) = self.known.get(&source.crank_pivot) else {
+            let fault = ChainFault::NotAPivot { name: source.crank_pivot.clone(), known: pivots };
+            return Err(site.error("pivot", None, fault));
+        };
+        self.length(&site, "length", None, source.crank)?;
+        let joint = self.name(&site, "joint", &source.crank_joint)?;
+        self.link(crank_pivot, joint, Complex::new(source.crank, 0.0));
+        for (i, stage) in source.stages.iter().enumerate() {
+            let site = Site { place: ChainPlace::Stage(i), joint: stage.joint() };
+            let step = self.stage(&site, stage)?;
+            self.steps.push(step);
+        }
+        let whole = Site { place: ChainPlace::Chain, joint: "" };
+        let trace = match &source.trace {
+            Some(name) => self.find(&whole, "trace", None, name)?,
+            None => self.names.len() - 1,
+        };
+        let as_ids = |link: &Link| link.0.iter().map(|(i, _)| PointId(*i)).collect();
+        Ok(Chain {
+            pivots: source.pivots.iter().map(|(_, at)| point(*at)).collect(),
+            crank_pivot,
+            crank: source.crank,
+            trace,
+            links: self.links.iter().map(as_ids).collect(),
+            coincident_sq: coincident_sq(self.scale),
+            names: self.names,
+            steps: self.steps,
+            source: ChainBuilder::default(),
+        })
+    }
+
+    fn stage(&mut self, site: &Site<'_>, stage: &Stage) -> Result<Step, Box<ChainError>> {
+        match stage {
+            Stage::Dyad { joint, from, lengths: [b, c], side } => {
+                let [p, q] = self.two(site, "from", from)?;
+                self.length(site, "lengths", 0, *b)?;
+                self.length(site, "lengths", 1, *c)?;
+                let n = self.name(site, "joint", joint)?;
+                self.link(p, n, Complex::new(*b, 0.0));
+                self.link(q, n, Complex::new(*c, 0.0));
+                Ok(Step::Dyad {
+                    p,
+                    q,
+                    radius_sq: b * b,
+                    half_difference: 0.5 * (b * b - c * c),
+                    sine_per_cross: 1.0 / (b * c),
+                    t: side.sign(),
+                })
+            }
+            Stage::Point { name, on, at } => {
+                let [p, q] = self.two(site, "on", on)?;
+                let (link, [from, to]) = self.common_link(site, "on", on, [p, q])?;
+                let base = (to - from).norm();
+                let offset = match *at {
+                    Attachment::Offset(offset) => {
+                        self.numbers(site, "at", &offset)?;
+                        point(offset)
+                    }
+                    Attachment::Distances(distances, side) => {
+                        self.numbers(site, "distances", &distances)?;
+                        offset_from_distances(site, on, base, distances, side)?
+                    }
+                };
+                let z = offset / base;
+                let n = self.name(site, "name", name)?;
+                self.attach(link, n, from + z * (to - from));
+                Ok(Step::Point { p, q, z })
+            }
+            Stage::Slider { joint, from, length, line, side } => {
+                let p = self.find(site, "from", None, from)?;
+                self.length(site, "length", None, *length)?;
+                let line = self.line(site, line)?;
+                let n = self.name(site, "joint", joint)?;
+                self.link(p, n, Complex::new(*length, 0.0));
+                Ok(Step::Slider { p, length_sq: length * length, line, t: side.sign() })
+            }
+            Stage::Guide { joint, pivot, block, at, offset, side } => {
+                let p = self.find(site, "pivot", None, pivot)?;
+                let q = self.find(site, "block", None, block)?;
+                if p == q {
+                    return Err(site.error("block", None, ChainFault::SamePoint { name: block.clone() }));
+                }
+                self.numbers(site, "at", at)?;
+                self.number(site, "offset", None, *offset)?;
+                if *at == [0.0, 0.0] {
+                    return Err(site.error("at", None, ChainFault::NoLength));
+                }
+                let n = self.name(site, "joint", joint)?;
+                self.link(p, n, point(*at));
+                Ok(Step::Guide { p, q, w: point(*at), offset: *offset, t: side.sign() })
+            }
+        }
+    }
+
+    fn line(&mut self, site: &Site<'_>, line: &SliderLine) -> Result<Line, Box<ChainError>> {
+        match line {
+            SliderLine::Fixed { through, angle } => {
+                self.numbers(site, "through", through)?;
+                if !is_usable(*angle) {
+                    return Err(site.error("angle_deg", None, ChainFault::NotFinite { value: *angle }));
+                }
+                Ok(fixed_line(*through, *angle))
+            }
+            SliderLine::OnLink { along, offset } => {
+                let [p, q] = self.two(site, "along", along)?;
+                self.number(site, "offset", None, *offset)?;
+                let (_, [from, to]) = self.common_link(site, "along", along, [p, q])?;
+                Ok(Line::OnLink { p, q, per_length: 1.0 / (to - from).norm(), offset: *offset })
+            }
+        }
+    }
+
+    /// Adds a new point and returns its index.
+    fn name(&mut self, site: &Site<'_>, key: &'static str, name: &str) -> Result<usize, Box<ChainError>> {
+        let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
+        if name.is_empty() || name.chars().count() > MAX_POINT_NAME || !name.chars().all(allowed) {
+            return Err(site.error(key, None, ChainFault::BadName { name: name.to_owned() }));
+        }
+        let id = self.names.len();
+        if self.known.insert(name.to_owned(), id).is_some() {
+            return Err(site.error(key, None, ChainFault::DuplicateName { name: name.to_owned() }));
+        }
+        self.names.push(name.to_owned());
+        self.links_of.push(Vec::new());
+        Ok(id)
+    }
+
+    /// Returns the index of a point that is known already.
+    fn find(
+        &self,
+        site: &Site<'_>,
+        key: &'static str,
+        index: Option<usize>,
+        name: &str,
+    ) -> Result<usize, Box<ChainError>> {
+        if let Some(&id) = self.known.get(name) {
+            return Ok(id);
+        }
+        let known = self.source.all_names();
+        let name = name.to_owned();
+        Err(site.error(
+            key,
+            index,
+            if known.contains(&name) {
+                ChainFault::ForwardReference { itself: site.joint == name, name }
+            } else {
+                ChainFault::UnknownPoint { name, known }
+            },
+        ))
+    }
+
+    /// Returns the indices of two different points that are known already.
+    fn two(
+        &self,
+        site: &Site<'_>,
+        key: &'static str,
+        [first, second]: &[String; 2],
+    ) -> Result<[usize; 2], Box<ChainError>> {
+        let p = self.find(site, key, Some(0), first)?;
+        let q = self.find(site, key, Some(1), second)?;
+        if p == q {
+            return Err(site.error(key, 1, ChainFault::SamePoint { name: second.clone() }));
+        }
+        Ok([p, q])
+    }
+
+    /// Returns a link that carries two points, and their positions on it.
+    fn common_link(
+        &self,
+        site: &Site<'_>,
+        key: &'static str,
+        [first, second]: &[String; 2],
+        [p, q]: [usize; 2],
+    ) -> Result<(usize, [Complex; 2]), Box<ChainError>> {
+        let names = || (first.clone(), second.clone());
+        let Some(&link) = self.links_of[p].iter().find(|l| self.links_of[q].contains(l)) else {
+            let (first, second) = names();
+            return Err(site.error(key, None, ChainFault::NotOnOneLink { first, second }));
+        };
+        let place = |of: usize| self.links[link].0.iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
+        let [from, to] = [place(p), place(q)];
+        if (to - from).norm_sqr() <= coincident_sq(self.scale) {
+            let (first, second) = names();
+            return Err(site.error(key, None, ChainFault::Coincident { first, second }));
+        }
+        Ok((link, [from, to]))
+    }
+
+    fn attach(&mut self, link: usize, id: usize, at: Complex) {
+        self.links[link].0.push((id, at));
+        self.links_of[id].push(link);
+    }
+
+    /// Adds a new link from one point to another, which lies at `at` in its frame.
+    fn link(&mut self, from: usize, to: usize, at: Complex) {
+        self.links.push(Link(Vec::new()));
+        let link = self.links.len() - 1;
+        self.attach(link, from, ZERO);
+        self.attach(link, to, at);
+    }
+
+    fn number(
+        &mut self,
+        site: &Site<'_>,
+        key: &'static str,
+        index: Option<usize>,
+        value: f64,
+    ) -> Result<(), Box<ChainError>> {
+        if !is_usable(value) {
+            return Err(site.error(key, index, ChainFault::NotFinite { value }));
+        }
+        self.scale = self.scale.max(value.abs());
+        Ok(())
+    }
+
+    fn numbers(
+        &mut self,
+        site: &Site<'_>,
+        key: &'static str,
+        values: &[f64; 2],
+    ) -> Result<(), Box<ChainError>> {
+        (0..2).try_for_each(|i| self.number(site, key, Some(i), values[i]))
+    }
+
+    fn length(
+        &mut self,
+        site: &Site<'_>,
+        key: &'static str,
+        index: impl Into<Option<usize>>,
+        value: f64,
+    ) -> Result<(), Box<ChainError>> {
+        let index = index.into();
+        self.number(site, key, index, value)?;
+        if value <= 0.0 {
+            return Err(site.error(key, index, ChainFault::LengthNotPositive { value }));
+        }
+        Ok(())
+    }
+}
+
+/// Computes l2 + i h2 (Romero, equations 16 and 17): the coupler of a four-bar is such a triangle.
+fn offset_from_distances(
+    site: &Site<'_>,
+    [first, second]: &[String; 2],
+    base: f64,
+    [d, e]: [f64; 2],
+    side: CouplerSide,
+) -> Result<Complex, Box<ChainError>> {
+    let triangle = FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [0.0, 0.0],
+        crank: 1.0,
+        coupler: base,
+        follower: 1.0,
+        crank_side: d,
+        follower_side: e,
+        assembly: AssemblyMode::Plus,
+        side,
+    });
+    triangle.map(|t| t.coupler_offset()).map_err(|error| match error {
+        LinkageError::DistanceNegative { key, value } => {
+            site.error("distances", usize::from(key == "e"), ChainFault::DistanceNegative { value })
+        }
+        LinkageError::NotFinite { value, .. } | LinkageError::LengthNotPositive { value, .. } => {
+            site.error("distances", None, ChainFault::NotFinite { value })
+        }
+        LinkageError::NoCouplerTriangle { b, d, e } => {
+            let (first, second) = (first.clone(), second.clone());
+            site.error("distances", None, ChainFault::NoTriangle { first, second, base: b, d, e })
+        }
+    })
+}

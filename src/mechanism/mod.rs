@@ -1,0 +1,29 @@
+//! Mechanisms: the four-bar and the chain, their motion, their links as plates, the units of their lengths.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | [`analysis`] | analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several side by side, in one configuration or in all four |
+//! | [`any`] | A linkage of any kind |
+//! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
+//! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
+//! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |
+//! | [`plates`] | the links as flat plates with holes at the joints, which can be cut out |
+//! | [`mod@unit`] | the units that label lengths |
+
+pub mod analysis;
+mod any;
+pub mod chain;
+pub(crate) mod effort;
+pub mod four_bar;
+pub mod plates;
+mod unit;
+
+pub use crate::numbers::arithmetic::{Complex, cross, dot, length, point, turned, xy};
+pub use any::Linkage;
+pub use chain::{Chain, ChainBuilder};
+pub use four_bar::{
+    AssemblyMode, Branch, Circuit, CouplerCurve, CouplerSide, FLAT_TOLERANCE, FourBar, InputArc, InputRange,
+    Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, Position, Toggle,
+    VectorLoop,
+};
+pub use unit::Unit;

@@ -1,0 +1,199 @@
+//! The sixteen equations, their derivatives, and the 8x8 system that is left when the rotations are eliminated.
+//!
+//! With u = x - a and tau = T - 1 in place of a and T, M = x tau + delta, sigma = 1 / T - 1 = -tau / T and
+//! M* = x* sigma + delta* the equation of one leg at one point is
+//!
+//! ```text
+//! f = (u + M)(u* + M*) - u u* = u M* + u* M + M M*
+//! df/dx = tau R    df/du = M*    df/dx* = sigma L    df/du* = M        L = u + M,  R = u* + M*
+//! p = df/dlog T = x T R - (x* / T) L      df/ddelta = R      df/ddelta* = L
+//! ```
+//!
+//! No large terms cancel in this form: it serves links of ten thousand times the points' extent, whose u is large or
+//! whose tau is small, as well as others.
+//!
+//! T_j occurs in two equations, one per leg, so that p_2 (row of leg 1) - p_1 (row of leg 2) is free of it: eight
+//! rows in the eight pivots. dlog T_j follows from the leg with the larger |p|. The rows are scaled to a largest
+//! entry of one before the elimination.
+
+use super::target::{Displacements, STEPS, Solution};
+use linkwright_arithmetic::Complex;
+use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER, larger, solve};
+use linkwright_arithmetic::lane::F64x8;
+use linkwright_arithmetic::lane::Lane;
+
+/// The number of unknowns.
+pub const UNKNOWNS: usize = ORDER + STEPS;
+/// The number of unknowns of one leg: x, u, x*, u*.
+pub(super) const LEG: usize = 4;
+
+/// Sixteen numbers, eight paths each: [x, u, x*, u*, y, v, y*, v*, tau_1 .. tau_8] with u = x - a, v = y - b,
+/// tau = T - 1, or their changes.
+pub type Unknowns = [ComplexLanes; UNKNOWNS];
+
+/// Returns the unknowns of a solution in the order of [`Unknowns`].
+pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
+    let mut all = [Complex::default(); UNKNOWNS];
+    for leg in 0..2 {
+        all[LEG * leg..LEG * (leg + 1)].copy_from_slice(&[
+            of.pins[leg],
+            of.pins[leg] - of.grounds[leg],
+            of.pins_starred[leg],
+            of.pins_starred[leg] - of.grounds_starred[leg],
+        ]);
+    }
+    all[ORDER..].copy_from_slice(&of.rotations.map(|t| t - 1.0));
+    all
+}
+
+/// Returns the solution with these unknowns.
+pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
+    let pins = |place: usize| [of[place], of[LEG + place]];
+    let grounds = |place: usize| [of[place] - of[place + 1], of[LEG + place] - of[LEG + place + 1]];
+    Solution {
+        pins: pins(0),
+        grounds: grounds(0),
+        pins_starred: pins(2),
+        grounds_starred: grounds(2),
+        rotations: std::array::from_fn(|j| of[ORDER + j] + 1.0),
+    }
+}
+
+/// Evaluates f of both legs at all points, in the units of the solution squared: `[leg][j]`.
+pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
+    std::array::from_fn(|leg| {
+        let (x, a) = (of.pins[leg], of.grounds[leg]);
+        let (x_s, a_s) = (of.pins_starred[leg], of.grounds_starred[leg]);
+        std::array::from_fn(|j| {
+            let t = of.rotations[j];
+            (x * t + at.delta[j] - a) * (x_s / t + at.starred[j] - a_s) - (x - a) * (x_s - a_s)
+        })
+    })
+}
+
+/// The displacements of eight paths.
+#[derive(Clone, Copy, Debug)]
+pub struct DisplacementLanes {
+    /// The displacements delta_j.
+    pub delta: [ComplexLanes; STEPS],
+    /// Their starred twins delta*_j.
+    pub starred: [ComplexLanes; STEPS],
+}
+
+impl DisplacementLanes {
+    /// Returns the same displacements in every lane.
+    #[inline(always)]
+    pub fn splat(of: &Displacements) -> Self {
+        DisplacementLanes {
+            delta: of.delta.map(ComplexLanes::splat),
+            starred: of.starred.map(ComplexLanes::splat),
+        }
+    }
+}
+
+/// The linearised equation of one leg at one point: f = value + row . d(leg) + p dlog T.
+#[derive(Clone, Copy)]
+struct Linearised {
+    row: [ComplexLanes; LEG],
+    p: ComplexLanes,
+    value: ComplexLanes,
+    by_delta: ComplexLanes,
+    by_starred: ComplexLanes,
+}
+
+#[inline(always)]
+fn linearised(
+    z: &Unknowns,
+    at: &DisplacementLanes,
+    leg: usize,
+    j: usize,
+    inverse: ComplexLanes,
+) -> Linearised {
+    let [x, u, x_s, u_s] = [z[LEG * leg], z[LEG * leg + 1], z[LEG * leg + 2], z[LEG * leg + 3]];
+    let tau = z[ORDER + j];
+    let sigma = -tau * inverse;
+    let (m, m_s) = (x * tau + at.delta[j], x_s * sigma + at.starred[j]);
+    let (l, r) = (u + m, u_s + m_s);
+    Linearised {
+        row: [tau * r, m_s, sigma * l, m],
+        p: (x + x * tau) * r - (x_s * inverse) * l,
+        value: u * m_s + m * r,
+        by_delta: r,
+        by_starred: l,
+    }
+}
+
+/// Returns |re| + |im|.
+#[inline(always)]
+fn size(z: ComplexLanes) -> F64x8 {
+    larger(z.re, -z.re) + larger(z.im, -z.im)
+}
+
+/// Solves the linearised equations; the changes of tau_j are dT_j (not dlog T_j).
+///
+/// The first right-hand side is Newton's, -f. With R = 2 the second is Davidenko's, -(df/ddelta delta' + df/ddelta*
+/// delta*') for the velocity given: its answer is dz/dt along the path on which the displacements move so. The
+/// smallest pivot, squared, is returned as well.
+#[expect(clippy::needless_range_loop, reason = "indices follow the equations and the lanes")]
+#[inline(always)]
+pub fn steps<const R: usize>(
+    z: &Unknowns,
+    at: &DisplacementLanes,
+    velocity: &DisplacementLanes,
+) -> ([Unknowns; R], F64x8) {
+    let zero = ComplexLanes::ZERO;
+    let mut matrix = [[zero; ORDER]; ORDER];
+    let mut right = [[zero; R]; ORDER];
+    let mut legs = [[[zero; LEG]; STEPS]; 2];
+    let mut sides = [[[zero; R]; STEPS]; 2];
+    let mut turns = [[zero; STEPS]; 2];
+    for j in 0..STEPS {
+        let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
+        let inverse = t.recip();
+        for leg in 0..2 {
+            let at_leg = linearised(z, at, leg, j, inverse);
+            legs[leg][j] = at_leg.row;
+            turns[leg][j] = at_leg.p;
+            sides[leg][j][0] = -at_leg.value;
+            if R == 2 {
+                sides[leg][j][R - 1] =
+                    -(at_leg.by_delta * velocity.delta[j] + at_leg.by_starred * velocity.starred[j]);
+            }
+        }
+        let (p, q) = (turns[1][j], -turns[0][j]);
+        let mut largest = F64x8::splat(0.0);
+        for i in 0..LEG {
+            matrix[j][i] = p * legs[0][j][i];
+            matrix[j][LEG + i] = q * legs[1][j][i];
+            largest = larger(largest, larger(size(matrix[j][i]), size(matrix[j][LEG + i])));
+        }
+        let scale = largest.recip();
+        for i in 0..ORDER {
+            matrix[j][i] = matrix[j][i].scale(scale);
+        }
+        for r in 0..R {
+            right[j][r] = (p * sides[0][j][r] + q * sides[1][j][r]).scale(scale);
+        }
+    }
+    let smallest = solve(&mut matrix, &mut right);
+    let mut answer = [[zero; UNKNOWNS]; R];
+    for (r, answer) in answer.iter_mut().enumerate() {
+        for i in 0..ORDER {
+            answer[i] = right[i][r];
+        }
+        for j in 0..STEPS {
+            let mut left = [sides[0][j][r], sides[1][j][r]];
+            for (leg, left) in left.iter_mut().enumerate() {
+                for i in 0..LEG {
+                    *left = *left - legs[leg][j][i] * right[LEG * leg + i][r];
+                }
+            }
+            let (one, other) = (turns[0][j].norm_sq(), turns[1][j].norm_sq());
+            let above = ComplexLanes::where_at_least(one, other, left[0], left[1]);
+            let below = ComplexLanes::where_at_least(one, other, turns[0][j], turns[1][j]);
+            let t = z[ORDER + j] + ComplexLanes::splat(Complex::ONE);
+            answer[ORDER + j] = t * above * below.recip();
+        }
+    }
+    (answer, smallest)
+}

@@ -1,0 +1,47 @@
+//! Every four-bar linkage whose coupler point passes exactly through nine given points (Alt's problem).
+//!
+//! Points P_0 .. P_8 as complex numbers, delta_j = P_j - P_0. In the frame of P_0 the linkage has, at its first
+//! point, the moving pins x and y and their ground pivots a and b; the coupler has turned by T_j = e^{i theta_j} when
+//! P is at P_j. Each of the two links keeps its length:
+//!
+//! ```text
+//! (x T_j + delta_j - a)(x* / T_j + delta*_j - a*) = (x - a)(x* - a*),      j = 1 .. 8,   the same for (y, b)
+//! ```
+//!
+//! 16 equations in the 16 unknowns x, y, a, b, their starred twins and T_1 .. T_8. Over the complex numbers the twins
+//! are unknowns of their own; in a real linkage they are the conjugates and |T_j| = 1. Generic points have 8652
+//! solutions: 1442 classes of six, three Roberts cognates times two labels of the links.
+//!
+//! [`refinement`] brings a solution to the last digit, [`certificate`] proves that it exists and is the only one
+//! near, [`conjugation`] that it is real, [`distinct`] that two are of different classes. They are built on
+//! double-double numbers and [`discs`].
+//!
+//! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
+//! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
+
+mod careful;
+pub mod certificate;
+pub mod classes;
+pub mod conjugation;
+pub mod correction;
+pub mod discs;
+pub mod distinct;
+mod double_discs;
+pub mod equations;
+pub mod live;
+pub mod monodromy;
+mod polynomial;
+pub mod refinement;
+mod settle;
+pub mod solve;
+pub mod start;
+pub mod target;
+pub mod tracker;
+
+pub use certificate::{Certificate, Refused, certify, certify_all};
+pub use conjugation::Reality;
+pub use distinct::not_proved_distinct;
+pub use live::{Moved, resolve_from};
+pub use refinement::{Refined, refine};
+pub use solve::{Census, Class, Completeness, Options, Solved, solve};
+pub use target::{Displacements, Solution, Target, TargetError};

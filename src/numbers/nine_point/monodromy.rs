@@ -1,0 +1,135 @@
+//! Monodromy: finds all classes of a target in general position, without a start set.
+//!
+//! A random complex four-bar solves some target G. Carried around a closed loop in the space of displacements a
+//! solution of G comes back as a solution of G, as a rule another one; the loops act on the 1442 classes as one
+//! orbit. A loop leads from G straight to (u D, u* D*), D a random target, jumps by a change of units (the equations
+//! keep their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v*
+//! D*), and goes straight back. The six images of a solution move as one, so that one of them is carried for all.
+
+use super::classes::first_of_class;
+use super::correction::correct;
+use super::target::{Displacements, STEPS, Solution};
+use super::tracker::{Ending, Parameters, Segment, track};
+use linkwright_arithmetic::Complex;
+use std::sync::atomic::AtomicBool;
+
+/// A source of numbers uniform in [0, 1).
+pub type Uniform<'a> = &'a mut dyn FnMut() -> f64;
+
+/// The orbit of a solution under the loops: the result of monodromy.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orbit {
+    /// The displacements of the target: complex, in general position.
+    pub displacements: Displacements,
+    /// One solution per class, in the order in which they were found.
+    pub solutions: Vec<Solution>,
+    /// The number of loops tracked.
+    pub loops: u32,
+    /// The number of last loops in a row that found nothing new.
+    pub idle: u32,
+}
+
+/// The stopping criteria of [`orbit`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The largest number of loops.
+    pub loops: u32,
+    /// The number of loops in a row that find nothing new after which all classes are taken to be found.
+    pub idle: u32,
+    /// The number of classes that is enough, without idle loops.
+    pub enough: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits { loops: 60, idle: 4, enough: usize::MAX }
+    }
+}
+
+/// The number of solutions below which a loop may well find no new one.
+const FEW: usize = 50;
+/// The tolerance within which two solutions are of one class.
+const SAME: f64 = 1e-6;
+
+/// Draws a complex number in the ring between the radii 1/2 and 3/2.
+fn ring(uniform: Uniform) -> Complex {
+    Complex::from_polar(0.5 + uniform(), std::f64::consts::TAU * uniform())
+}
+
+/// Draws a random complex four-bar and computes eight displacements that it solves.
+///
+/// With random pivots and T_j each pair (delta_j, delta*_j) solves L_1 R_1 = c_1, L_2 R_2 = c_2, where L_2 = L_1 + d,
+/// R_2 = R_1 + d*: a quadratic in L_1.
+fn random_answer(uniform: Uniform) -> (Displacements, Solution) {
+    let [x, y, a, b, x_s, y_s, a_s, b_s] = [(); 8].map(|()| ring(uniform));
+    let rotations: [Complex; STEPS] = [(); STEPS].map(|()| ring(uniform));
+    let (c_1, c_2) = ((x - a) * (x_s - a_s), (y - b) * (y_s - b_s));
+    let mut displacements =
+        Displacements { delta: [Complex::default(); STEPS], starred: [Complex::default(); STEPS] };
+    for (j, &t) in rotations.iter().enumerate() {
+        let (d, d_s) = ((y - x) * t - (b - a), (y_s - x_s) / t - (b_s - a_s));
+        // c_1 + d* L + d R + d d* = c_2 with R = c_1 / L.
+        let (half, product) = ((c_1 + d * d_s - c_2) / (d_s * 2.0), d * c_1 / d_s);
+        let l = -half + (half * half - product).sqrt();
+        displacements.delta[j] = l - x * t + a;
+        displacements.starred[j] = c_1 / l - x_s / t + a_s;
+    }
+    let solution = Solution {
+        pins: [x, y],
+        grounds: [a, b],
+        pins_starred: [x_s, y_s],
+        grounds_starred: [a_s, b_s],
+        rotations,
+    };
+    (displacements, solution)
+}
+
+/// Returns the displacements in other units: delta -> by delta, delta* -> by_starred delta*.
+fn scaled(of: &Displacements, by: Complex, by_starred: Complex) -> Displacements {
+    Displacements { delta: of.delta.map(|d| d * by), starred: of.starred.map(|d| d * by_starred) }
+}
+
+/// Draws random displacements of moderate size.
+fn random_displacements(uniform: Uniform) -> Displacements {
+    Displacements { delta: [(); STEPS].map(|()| ring(uniform)), starred: [(); STEPS].map(|()| ring(uniform)) }
+}
+
+/// Tracks monodromy loops until a limit is reached.
+///
+/// The first solution is tracked from the target that its linkage happens to solve to one of moderate size.
+pub fn orbit(uniform: Uniform, limits: &Limits, cancel: &AtomicBool) -> Orbit {
+    let (from, first) = random_answer(uniform);
+    let home = random_displacements(uniform);
+    let solutions = arrived(&[first], &Segment { from, to: home }, cancel);
+    let mut orbit = Orbit { displacements: home, solutions, loops: 0, idle: 0 };
+    let stay = Segment { from: home, to: home };
+    while orbit.loops < limits.loops && orbit.idle < limits.idle && orbit.solutions.len() < limits.enough {
+        let away = random_displacements(uniform);
+        let [v, v_s] = [(); 2].map(|()| ring(uniform));
+        let out = Segment { from: home, to: away };
+        let back = Segment { from: scaled(&away, v, v_s), to: home };
+        let there: Vec<Solution> = arrived(&orbit.solutions, &out, cancel)
+            .iter()
+            .map(|solution| solution.in_other_units(v, v_s))
+            .collect();
+        let returned = arrived(&there, &back, cancel);
+        let known = orbit.solutions.len();
+        for end in correct(&returned, &stay, 2) {
+            if end.newton_step < 1e-9 && end.solution.is_finite() {
+                orbit.solutions.push(end.solution);
+            }
+        }
+        let mut firsts = first_of_class(&orbit.solutions, SAME).into_iter().enumerate();
+        orbit.solutions.retain(|_| firsts.next().is_some_and(|(at, first)| at == first));
+        orbit.loops += 1;
+        // A loop of few solutions that finds no new one is no sign that all are found.
+        let new = orbit.solutions.len() > known;
+        orbit.idle = if new || known < FEW { 0 } else { orbit.idle + 1 };
+    }
+    orbit
+}
+
+fn arrived(starts: &[Solution], along: &Segment, cancel: &AtomicBool) -> Vec<Solution> {
+    let ends = track(starts, along, &Parameters::default(), cancel);
+    ends.into_iter().filter(|end| end.ending == Ending::Arrived).map(|end| end.solution).collect()
+}

@@ -1,0 +1,231 @@
+//! The sixteen equations as polynomials, over any numbers that can be added and multiplied.
+//!
+//! The loop equation of a link (p, g) (a moving pin and its ground pivot) at point j, multiplied by T_j:
+//!
+//! ```text
+//! f = L M - T U V        L = p T + delta - g      M = p* + (delta* - g*) T       U = p - g      V = p* - g*
+//!
+//! df/dp = T (M - V)   df/dg = T V - M   df/dp* = L - T U   df/dg* = T (U - L)   df/dT = p M + L (delta* - g*) - U V
+//! ```
+//!
+//! T = 0 is no solution of the original equations; for T != 0 both forms have the same solutions. The polynomial is
+//! the better one to certify: no inverse of a disc, no quotient in double-double, and three products in all.
+
+use super::target::{Displacements, STEPS, Solution, Target};
+use linkwright_arithmetic::Complex;
+use linkwright_arithmetic::double_double::DoubleComplex;
+use std::ops::{Add, Mul, Sub};
+
+/// The number of unknowns, and of equations: x, y, a, b, their starred twins, T_1 .. T_8.
+pub const UNKNOWNS: usize = 16;
+/// The number of unknowns before T_1.
+pub const PIVOTS: usize = 8;
+
+/// Numbers that can be added, subtracted and multiplied: complex numbers of doubles, of double-doubles, discs.
+pub trait Ring: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
+impl<R: Copy + Add<Output = R> + Sub<Output = R> + Mul<Output = R>> Ring for R {}
+
+/// The displacements without rounding, to which a certificate refers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ExactDisplacements {
+    /// The displacements delta_j.
+    pub delta: [DoubleComplex; STEPS],
+    /// Their starred twins delta*_j.
+    pub starred: [DoubleComplex; STEPS],
+}
+
+impl From<&Displacements> for ExactDisplacements {
+    fn from(given: &Displacements) -> Self {
+        ExactDisplacements { delta: given.delta.map(Into::into), starred: given.starred.map(Into::into) }
+    }
+}
+
+impl From<&Target> for ExactDisplacements {
+    /// Computes the displacements without rounding: the difference of two doubles is a double-double, and the scale
+    /// is a power of two. (A part below 2^-1022 of the scale may underflow; the bound of a residual covers it.)
+    fn from(target: &Target) -> Self {
+        let factor = target.scale.recip();
+        let delta = std::array::from_fn(|j| {
+            DoubleComplex::difference_of(target.points[j + 1], target.points[0]).times_power_of_two(factor)
+        });
+        ExactDisplacements { delta, starred: delta.map(DoubleComplex::conj) }
+    }
+}
+
+/// Returns the unknowns as an array: x, y, a, b, x*, y*, a*, b*, T_1 .. T_8.
+pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
+    let [[x, y], [a, b], [xs, ys], [as_, bs]] = [of.pins, of.grounds, of.pins_starred, of.grounds_starred];
+    let pivots = [x, y, a, b, xs, ys, as_, bs];
+    std::array::from_fn(|i| if i < PIVOTS { pivots[i] } else { of.rotations[i - PIVOTS] })
+}
+
+/// Returns the solution with these unknowns: the inverse of [`unknowns`].
+pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
+    Solution {
+        pins: [of[0], of[1]],
+        grounds: [of[2], of[3]],
+        pins_starred: [of[4], of[5]],
+        grounds_starred: [of[6], of[7]],
+        rotations: std::array::from_fn(|j| of[PIVOTS + j]),
+    }
+}
+
+/// Returns the indices of the unknowns in the equation of link 0 (x, a) or 1 (y, b) at point j: p, g, p*, g*, T.
+#[inline(always)]
+pub fn columns(link: usize, j: usize) -> [usize; 5] {
+    [link, 2 + link, 4 + link, 6 + link, PIVOTS + j]
+}
+
+/// Evaluates f at one link and point.
+#[inline(always)]
+pub fn value<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> R {
+    let (l, m) = (p * t + (delta - g), ps + (starred - gs) * t);
+    l * m - t * ((p - g) * (ps - gs))
+}
+
+/// Evaluates df/dp, df/dg, df/dp*, df/dg*, df/dT at one link and point.
+#[inline(always)]
+pub fn derivatives<R: Ring>([p, g, ps, gs, t]: [R; 5], delta: R, starred: R) -> [R; 5] {
+    let (reach, reach_starred) = (delta - g, starred - gs);
+    let (l, m) = (p * t + reach, ps + reach_starred * t);
+    let (u, v) = (p - g, ps - gs);
+    [t * (m - v), t * v - m, l - t * u, t * (u - l), p * m + l * reach_starred - u * v]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::discs::{Disc, Upper};
+    use crate::refinement::{residual_error, residuals};
+    use linkwright_arithmetic::streams::{Stream, stream, uniform};
+    use num_bigint::BigInt;
+
+    /// A whole number times 2^exponent.
+    #[derive(Clone, Debug)]
+    struct Dyadic(BigInt, i32);
+
+    impl Dyadic {
+        fn of(x: f64) -> Self {
+            let bits = x.to_bits();
+            let exponent = ((bits >> 52) & 0x7ff) as i32;
+            let fraction = (bits & ((1 << 52) - 1)) as i64 | if exponent == 0 { 0 } else { 1 << 52 };
+            let sign = if x < 0.0 { -1 } else { 1 };
+            Dyadic(BigInt::from(sign * fraction), exponent.max(1) - 1075)
+        }
+
+        fn plus(&self, other: &Self, sign: i32) -> Self {
+            let least = self.1.min(other.1);
+            let raised = |of: &Self| of.0.clone() << (of.1 - least);
+            Dyadic(raised(self) + raised(other) * sign, least)
+        }
+
+        fn times(&self, other: &Self) -> Self {
+            Dyadic(&self.0 * &other.0, self.1 + other.1)
+        }
+    }
+
+    /// An exact complex number.
+    #[derive(Clone, Debug)]
+    struct Exact(Dyadic, Dyadic);
+
+    impl Exact {
+        fn of(z: DoubleComplex) -> Self {
+            let part = |hi: f64, lo: f64| Dyadic::of(hi).plus(&Dyadic::of(lo), 1);
+            Exact(part(z.re.hi, z.re.lo), part(z.im.hi, z.im.lo))
+        }
+
+        fn plus(&self, other: &Self, sign: i32) -> Self {
+            Exact(self.0.plus(&other.0, sign), self.1.plus(&other.1, sign))
+        }
+
+        fn times(&self, other: &Self) -> Self {
+            Exact(
+                self.0.times(&other.0).plus(&self.1.times(&other.1), -1),
+                self.0.times(&other.1).plus(&self.1.times(&other.0), 1),
+            )
+        }
+
+        /// Returns whether |z| <= bound.
+        fn is_within(&self, bound: f64) -> bool {
+            let square = self.0.times(&self.0).plus(&self.1.times(&self.1), 1);
+            square.plus(&Dyadic::of(bound).times(&Dyadic::of(bound)), -1).0 <= BigInt::ZERO
+        }
+    }
+
+    fn number(stream: &mut Stream) -> DoubleComplex {
+        let size = 2.0_f64.powf(uniform(stream, -8.0, 8.0));
+        let mut part = || uniform(stream, -size, size);
+        let z = DoubleComplex::from(Complex::new(part(), part()));
+        z + DoubleComplex::from(Complex::new(part(), part())).times_power_of_two(f64::EPSILON / 4.0)
+    }
+
+    #[test]
+    fn a_residual_lies_within_its_bound_of_the_exact_one() {
+        let mut needed = 0;
+        for index in 0..100 {
+            let mut stream = stream(1, index);
+            let midpoint: [DoubleComplex; UNKNOWNS] = std::array::from_fn(|_| number(&mut stream));
+            let displacements = ExactDisplacements {
+                delta: std::array::from_fn(|_| number(&mut stream)),
+                starred: std::array::from_fn(|_| number(&mut stream)),
+            };
+            let found = residuals(&displacements, &midpoint);
+            for (row, of) in found.iter().enumerate() {
+                let (link, j) = (row / STEPS, row % STEPS);
+                let [p, g, ps, gs, t] = columns(link, j).map(|i| Exact::of(midpoint[i]));
+                let (delta, starred) =
+                    (Exact::of(displacements.delta[j]), Exact::of(displacements.starred[j]));
+                // The equation times T, in the form of the module: f = L M - T U V.
+                let l = p.times(&t).plus(&delta, 1).plus(&g, -1);
+                let m = starred.plus(&gs, -1).times(&t).plus(&ps, 1);
+                let exact = l.times(&m).plus(&t.times(&p.plus(&g, -1).times(&ps.plus(&gs, -1))), -1);
+                let error = exact.plus(&Exact::of(*of), -1);
+                let bound = residual_error(&displacements, &midpoint, link, j).get();
+                assert!(error.is_within(bound), "{index} {row}");
+                needed += usize::from(!error.is_within(bound / 2.0_f64.powi(16)));
+            }
+        }
+        // The bound is 64 times that of the analysis for every operation, but no more than it should be.
+        assert!(needed > 400, "{needed}");
+    }
+
+    #[test]
+    fn derivatives_in_discs_hold_those_of_their_members() {
+        for index in 0..300 {
+            let mut stream = stream(2, index);
+            let relative = 2.0_f64.powf(uniform(&mut stream, -60.0, -2.0));
+            let mut both = || {
+                let mid = number(&mut stream);
+                let size = Upper::exactly(relative * mid.to_complex().norm());
+                let turn = Complex::from_polar(size.get() * (1.0 - 1e-15), uniform(&mut stream, -3.0, 3.0));
+                (Disc::about(mid, size), mid + DoubleComplex::from(turn))
+            };
+            let all: [_; 5] = std::array::from_fn(|_| both());
+            let (delta, starred) = (both(), both());
+            let discs = derivatives(all.map(|a| a.0), delta.0, starred.0);
+            let members = derivatives(all.map(|a| a.1), delta.1, starred.1);
+            for (disc, member) in discs.into_iter().zip(members) {
+                // A member's own rounding is 2^-95 of terms that are below 2^50; the discs' is above 2^-53 of them.
+                let off = Exact::of(member).plus(&Exact::of(disc.mid.into()), -1);
+                assert!(off.is_within(disc.radius.get()), "{index}");
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_polynomial() {
+        let mut stream = stream(3, 0);
+        let at: [DoubleComplex; 5] = std::array::from_fn(|_| number(&mut stream));
+        let (delta, starred) = (number(&mut stream), number(&mut stream));
+        let slopes = derivatives(at, delta, starred);
+        for (i, slope) in slopes.into_iter().enumerate() {
+            // Quadratic in each unknown at most: the central difference is exact but for rounding.
+            let by = DoubleComplex::from(Complex::new(0.25, 0.5));
+            let (mut above, mut below) = (at, at);
+            (above[i], below[i]) = (at[i] + by, at[i] - by);
+            let difference = (value(above, delta, starred) - value(below, delta, starred)) / (by + by);
+            let (off, size) = ((difference - slope).to_complex().norm(), slope.to_complex().norm());
+            assert!(off <= 1e-24 * (1.0 + size), "{i}: {off:e} of {size:e}");
+        }
+    }
+}

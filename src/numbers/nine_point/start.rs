@@ -1,0 +1,219 @@
+//! The start set: one solution of each of the 1442 classes at a fixed complex target in general position.
+//!
+//! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
+//! root) and Newton's method restores full precision. `cargo run --release --example nine-point-start-set -- FILE`
+//! makes it anew from nothing (see [`super::monodromy`]).
+//!
+//! | bytes | content (little endian) |
+//! |---|---|
+//! | 0..4 | "LWNP" |
+//! | 4..8 | version, u32: 1 |
+//! | 8..12 | number of classes n, u32 |
+//! | 12..16 | zero |
+//! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
+//! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
+
+use super::classes::first_of_class;
+use super::correction::correct;
+use super::equations::{UNKNOWNS, residuals, solution, unknowns};
+use super::target::{Displacements, STEPS, Solution};
+use super::tracker::Segment;
+use linkwright_arithmetic::Complex;
+use linkwright_arithmetic::complex_lanes::ORDER;
+use std::sync::OnceLock;
+use thiserror::Error;
+
+/// The number of classes of a target in general position: 8652 solutions (Wampler, Morgan & Sommese 1992) over the
+/// six images.
+pub const CLASSES: usize = 1442;
+
+/// The bytes of the embedded file.
+pub const EMBEDDED: &[u8] = include_bytes!("start-set.bin");
+
+const MAGIC: &[u8; 4] = b"LWNP";
+const VERSION: u32 = 1;
+const HEADER: usize = 16;
+const PIVOTS: usize = HEADER + 32 * 8;
+const ENTRY: usize = 2 * ORDER * 4;
+
+/// The start solutions for homotopy path tracking: solutions of one target, from which paths lead to any other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StartSet {
+    /// The displacements of the target.
+    pub displacements: Displacements,
+    /// One solution per class.
+    pub solutions: Vec<Solution>,
+}
+
+/// The reason for which bytes are no start set.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum StartSetError {
+    /// The bytes do not begin as such a file does.
+    #[error("this is no nine-point start set of version {VERSION}")]
+    Header,
+    /// The number of bytes is wrong.
+    #[error("a start set of {classes} classes has {wanted} bytes, not {found}")]
+    Length {
+        /// The number of classes in the header.
+        classes: usize,
+        /// The number of bytes for these classes.
+        wanted: usize,
+        /// The number of bytes found.
+        found: usize,
+    },
+    /// An entry is no solution, and Newton's method does not converge from it to one.
+    #[error("entry {0} of the start set is no solution")]
+    Entry(usize),
+}
+
+impl StartSet {
+    /// Returns the embedded set, which is read once. A test checks that the file is whole.
+    ///
+    /// # Panics
+    /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
+    pub fn embedded() -> &'static StartSet {
+        static SET: OnceLock<StartSet> = OnceLock::new();
+        SET.get_or_init(|| StartSet::built_in(EMBEDDED))
+    }
+
+    /// Reads the set within the program.
+    fn built_in(bytes: &[u8]) -> StartSet {
+        match StartSet::parse(bytes) {
+            Ok(set) => set,
+            Err(why) => panic!("the nine-point start set within the program is damaged: {why}"),
+        }
+    }
+
+    /// Reads the bytes of a start set and corrects its solutions by Newton's method.
+    ///
+    /// # Errors
+    ///
+    /// When the bytes are no such file or an entry is no solution.
+    pub fn parse(bytes: &[u8]) -> Result<StartSet, StartSetError> {
+        let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..at + 4)?.first_chunk()?));
+        if bytes.get(..4) != Some(MAGIC) || word(4) != Some(VERSION) || word(12) != Some(0) {
+            return Err(StartSetError::Header);
+        }
+        let classes = word(8).ok_or(StartSetError::Header)? as usize;
+        let wanted = PIVOTS + classes * ENTRY;
+        if bytes.len() != wanted {
+            return Err(StartSetError::Length { classes, wanted, found: bytes.len() });
+        }
+        let doubles: Vec<f64> =
+            bytes[HEADER..PIVOTS].as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect();
+        let singles: Vec<f64> =
+            bytes[PIVOTS..].as_chunks::<4>().0.iter().map(|b| f64::from(f32::from_le_bytes(*b))).collect();
+        let number = |from: &[f64], at: usize| Complex::new(from[2 * at], from[2 * at + 1]);
+        let displacements = Displacements {
+            delta: std::array::from_fn(|j| number(&doubles, j)),
+            starred: std::array::from_fn(|j| number(&doubles, STEPS + j)),
+        };
+        let rough: Vec<Solution> = singles
+            .chunks_exact(2 * ORDER)
+            .map(|entry| {
+                let mut all = [Complex::default(); UNKNOWNS];
+                for (i, z) in all.iter_mut().take(ORDER).enumerate() {
+                    *z = number(entry, i);
+                }
+                with_rotations(solution(&all), &displacements)
+            })
+            .collect();
+        let stay = Segment { from: displacements, to: displacements };
+        let exact = correct(&rough, &stay, NEWTON_STEPS);
+        match exact.iter().position(|c| !(c.newton_step < 1e-9 && c.solution.is_finite())) {
+            Some(entry) => Err(StartSetError::Entry(entry)),
+            None => Ok(StartSet { displacements, solutions: exact.iter().map(|c| c.solution).collect() }),
+        }
+    }
+
+    /// Returns the number of classes of this set that the other does not have, both being sets of the same target;
+    /// duplicates within this set count as well.
+    pub fn distinct_from(&self, other: &StartSet) -> usize {
+        let all: Vec<Solution> = other.solutions.iter().chain(&self.solutions).copied().collect();
+        let others = other.solutions.len();
+        let first = first_of_class(&all, SAME);
+        let mut met = vec![false; others];
+        let mut new = 0;
+        for &first in &first[others..] {
+            if first < others && !met[first] {
+                met[first] = true;
+            } else {
+                new += 1;
+            }
+        }
+        new
+    }
+
+    /// Returns the bytes of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        for word in [VERSION, self.solutions.len() as u32, 0] {
+            bytes.extend(word.to_le_bytes());
+        }
+        for z in self.displacements.delta.iter().chain(&self.displacements.starred) {
+            bytes.extend(z.re.to_le_bytes());
+            bytes.extend(z.im.to_le_bytes());
+        }
+        for solution in &self.solutions {
+            for z in &unknowns(solution)[..ORDER] {
+                bytes.extend((z.re as f32).to_le_bytes());
+                bytes.extend((z.im as f32).to_le_bytes());
+            }
+        }
+        bytes
+    }
+}
+
+/// The tolerance within which two solutions are of one class.
+const SAME: f64 = 1e-7;
+
+/// The number of Newton steps: from single precision, a few are enough.
+const NEWTON_STEPS: usize = 5;
+
+/// Computes the T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with
+/// alpha = delta_j - a, beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to
+/// being one is taken.
+pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
+    let mut answer = pivots;
+    for j in 0..STEPS {
+        let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
+            let (x, a) = (pivots.pins[leg], pivots.grounds[leg]);
+            let (x_s, a_s) = (pivots.pins_starred[leg], pivots.grounds_starred[leg]);
+            let (alpha, beta) = (at.delta[j] - a, at.starred[j] - a_s);
+            let (square, half, constant) =
+                (x * beta, (x * x_s + alpha * beta - (x - a) * (x_s - a_s)) * 0.5, alpha * x_s);
+            let root = (half * half - square * constant).sqrt();
+            let sum = if (half.conj() * root).re >= 0.0 { -(half + root) } else { root - half };
+            [sum / square, constant / sum]
+        });
+        let mut nearest = f64::INFINITY;
+        for one in roots[0] {
+            for other in roots[1] {
+                let gap = (one - other).norm() / (one.norm() + other.norm());
+                if gap < nearest {
+                    nearest = gap;
+                    answer.rotations[j] = (one + other) * 0.5;
+                }
+            }
+        }
+    }
+    answer
+}
+
+/// Returns the largest |f| of the sixteen equations.
+pub fn largest_residual(of: &Solution, at: &Displacements) -> f64 {
+    residuals(of, at).iter().flatten().map(|f| f.norm()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
+        for damaged in [&EMBEDDED[..EMBEDDED.len() - 1], &EMBEDDED[1..], &[][..]] {
+            let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
+            assert!(made.is_err(), "{} bytes", damaged.len());
+        }
+    }
+}

@@ -1,0 +1,384 @@
+//! The linear system of a step: normal equations with the points' own unknowns eliminated, pools of points that may
+//! not pass each other, the geodesic acceleration of a step, and the step inside the bounds.
+
+use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
+use crate::ordered::Ordered;
+use nalgebra::{SMatrix, SVector};
+
+pub(super) struct Normal<const N: usize> {
+    pub(super) matrix: SMatrix<f64, N, N>,
+    pub(super) gradient: SVector<f64, N>,
+    /// The mean of |t_j|^2 over the points.
+    pub(super) tangent_sq: f64,
+}
+
+/// The buffers of an inner solve, kept from step to step.
+pub(super) struct Workspace<const N: usize> {
+    pub(super) blocks: Vec<PointBlock<N>>,
+    /// The constraints with a penalty, shift - g > 0: (shift - g, dg/dx).
+    pub(super) lacking: Vec<(f64, [f64; N])>,
+    /// The stiffness of each point, w_j (|t_j|^2 + nu).
+    pub(super) stiffness: Vec<f64>,
+    /// The steps tau_j of the points' own unknowns.
+    pub(super) tau: Vec<f64>,
+    pub(super) gaps: Vec<f64>,
+    pub(super) order: Ordered,
+    rows: Rows<N>,
+}
+
+impl<const N: usize> Workspace<N> {
+    pub(super) fn new(points: usize) -> Self {
+        Workspace {
+            blocks: Vec::with_capacity(points),
+            lacking: Vec::new(),
+            stiffness: vec![0.0; points],
+            tau: vec![0.0; points],
+            gaps: Vec::with_capacity(points),
+            order: Ordered::new(points),
+            rows: Rows::new(),
+        }
+    }
+
+    /// Computes each point's own step that is best for its present residual.
+    pub(super) fn own_steps(&mut self, nu: f64) {
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            self.stiffness[j] = block.weight * (t_sq + nu);
+            self.tau[j] = if t_sq == 0.0 {
+                0.0
+            } else {
+                -(t[0] * block.residual[0] + t[1] * block.residual[1]) / (t_sq + nu)
+            };
+        }
+    }
+
+    /// Computes each point's own step after a shared step `dx`; pooled points end in one place.
+    pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64, ordered: bool) {
+        let along = |block: &PointBlock<N>| {
+            let mut moved = block.residual;
+            for (value, row) in moved.iter_mut().zip(&block.jacobian) {
+                let mut sum = 0.0;
+                for (by, d) in row.iter().zip(dx) {
+                    sum += by * d;
+                }
+                *value += sum;
+            }
+            block.tangent[0] * moved[0] + block.tangent[1] * moved[1]
+        };
+        for (j, block) in self.blocks.iter().enumerate() {
+            let t_sq = block.tangent[0].powi(2) + block.tangent[1].powi(2);
+            self.tau[j] =
+                if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
+        }
+        if ordered {
+            self.order.pool(&self.gaps, &mut self.tau, &self.stiffness);
+        }
+    }
+
+    /// Computes the right-hand side of the geodesic acceleration: J^T of the residuals' second derivative along a
+    /// step, the points' own unknowns eliminated; `bend` receives that derivative. `ahead` holds the residuals at the
+    /// part [`AHEAD`] of the step.
+    pub(super) fn bending(
+        &self,
+        ahead: &[[f64; 2]],
+        dx: &[f64; N],
+        nu: f64,
+        bend: &mut Vec<[f64; 2]>,
+    ) -> SVector<f64, N> {
+        let mut gradient = SVector::<f64, N>::zeros();
+        bend.clear();
+        for ((block, tau), r) in self.blocks.iter().zip(&self.tau).zip(ahead) {
+            let t = block.tangent;
+            let mut second = [0.0; 2];
+            for axis in 0..2 {
+                let mut slope = t[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    slope += by * d;
+                }
+                second[axis] = 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope);
+            }
+            bend.push(second);
+            // The part that the point's own unknown does not take up.
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
+            for axis in 0..2 {
+                let left = block.weight * (second[axis] - t[axis] * taken);
+                for (sum, by) in gradient.iter_mut().zip(&block.jacobian[axis]) {
+                    *sum += left * by;
+                }
+            }
+        }
+        gradient
+    }
+
+    /// Adds half the geodesic acceleration to the points' own steps.
+    pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
+        for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            if t_sq == 0.0 {
+                continue;
+            }
+            let mut along = 0.0;
+            for axis in 0..2 {
+                let mut moved = 0.5 * second[axis];
+                for (by, d) in block.jacobian[axis].iter().zip(half) {
+                    moved += by * d;
+                }
+                along += t[axis] * moved;
+            }
+            *tau = (*tau - along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
+        }
+    }
+
+    /// Computes the reduction of the cost and the penalty that the linear model predicts.
+    pub(super) fn promised(&self, dx: &[f64; N], rho: f64) -> f64 {
+        let mut promised = 0.0;
+        for (block, tau) in self.blocks.iter().zip(&self.tau) {
+            for axis in 0..2 {
+                let mut change = block.tangent[axis] * tau;
+                for (by, d) in block.jacobian[axis].iter().zip(dx) {
+                    change += by * d;
+                }
+                promised -= block.weight * change * (2.0 * block.residual[axis] + change);
+            }
+        }
+        for (lack, gradient) in &self.lacking {
+            let change: f64 = gradient.iter().zip(dx).map(|(by, d)| by * d).sum();
+            promised += rho * change * (2.0 * lack - change);
+        }
+        promised
+    }
+}
+
+/// The number of lanes in which a sum of products runs.
+const LANES: usize = 8;
+
+/// Rows of a Jacobian with their residuals, in blocks of [`LANES`] rows, column by column within a block; the last
+/// block is padded with zeros.
+pub(super) struct Rows<const N: usize> {
+    jacobian: Vec<[[f64; LANES]; N]>,
+    residual: Vec<[f64; LANES]>,
+    count: usize,
+}
+
+impl<const N: usize> Rows<N> {
+    fn new() -> Self {
+        Rows { jacobian: Vec::new(), residual: Vec::new(), count: 0 }
+    }
+
+    fn clear(&mut self) {
+        self.jacobian.clear();
+        self.residual.clear();
+        self.count = 0;
+    }
+
+    #[inline(always)]
+    fn push(&mut self, row: impl Fn(usize) -> f64, residual: f64) {
+        let lane = self.count % LANES;
+        if lane == 0 {
+            self.jacobian.push([[0.0; LANES]; N]);
+            self.residual.push([0.0; LANES]);
+        }
+        self.count += 1;
+        if let (Some(block), Some(residuals)) = (self.jacobian.last_mut(), self.residual.last_mut()) {
+            for (i, column) in block.iter_mut().enumerate() {
+                column[lane] = row(i);
+            }
+            residuals[lane] = residual;
+        }
+    }
+
+    /// Computes J^T J and J^T r. Each sum runs in [`LANES`] lanes on every machine, so its rounding is the same
+    /// everywhere.
+    #[inline(always)]
+    fn squared(&self) -> ([[f64; N]; N], [f64; N]) {
+        let mut matrix = [[0.0; N]; N];
+        let mut gradient = [0.0; N];
+        for i in 0..N {
+            let mut sums = [[0.0; LANES]; N];
+            let mut by_residual = [0.0; LANES];
+            for (block, residual) in self.jacobian.iter().zip(&self.residual) {
+                let column = &block[i];
+                for k in i..N {
+                    for lane in 0..LANES {
+                        sums[k][lane] += column[lane] * block[k][lane];
+                    }
+                }
+                for lane in 0..LANES {
+                    by_residual[lane] += column[lane] * residual[lane];
+                }
+            }
+            for k in i..N {
+                matrix[i][k] = sums[k].iter().sum();
+                matrix[k][i] = matrix[i][k];
+            }
+            gradient[i] = by_residual.iter().sum();
+        }
+        (matrix, gradient)
+    }
+}
+
+fn add_row<const N: usize>(
+    matrix: &mut [[f64; N]; N],
+    gradient: &mut [f64; N],
+    weight: f64,
+    row: &[f64; N],
+    residual: f64,
+) {
+    for i in 0..N {
+        let w = weight * row[i];
+        gradient[i] += w * residual;
+        for k in 0..N {
+            matrix[i][k] += w * row[k];
+        }
+    }
+}
+
+pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
+    problem: &P,
+    at: &LmResult<N, P::State>,
+    penalty: &Penalty,
+    nu: f64,
+    work: &mut Workspace<N>,
+) -> Option<Normal<N>> {
+    work.blocks.clear();
+    let complete = problem.linearise(&at.x, &at.state, &mut |block| work.blocks.push(*block));
+    if !complete {
+        return None;
+    }
+    work.gaps.clear();
+    let ordered = problem.gaps(&at.x, &at.state, &mut work.gaps);
+    if ordered {
+        work.own_steps(nu);
+        work.order.pool(&work.gaps, &mut work.tau, &work.stiffness);
+    }
+    let mut tangent_sum = 0.0;
+    let Workspace { blocks, rows, order, stiffness, .. } = work;
+    rows.clear();
+    for (index, block) in blocks.iter().enumerate() {
+        let t = block.tangent;
+        let t_sq = t[0] * t[0] + t[1] * t[1];
+        tangent_sum += t_sq;
+        if ordered && !order.is_alone(index) {
+            continue;
+        }
+        let (r, j) = (&block.residual, &block.jacobian);
+        if t_sq == 0.0 {
+            let scale = block.weight.sqrt();
+            rows.push(|i| scale * j[0][i], scale * r[0]);
+            rows.push(|i| scale * j[1][i], scale * r[1]);
+            continue;
+        }
+        let length = t_sq.sqrt();
+        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+            let scale = (block.weight * weight).sqrt();
+            let axis = [scale * axis[0], scale * axis[1]];
+            rows.push(|i| axis[0] * j[0][i] + axis[1] * j[1][i], axis[0] * r[0] + axis[1] * r[1]);
+        }
+    }
+    let mut eliminated = Vec::new();
+    if ordered {
+        for pool in order.pools() {
+            // r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and one tau for all.
+            let mut by_tau = [0.0; N];
+            let (mut along, mut stiff) = (0.0, 0.0);
+            for &(index, way) in pool {
+                let block = &blocks[index];
+                let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
+                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
+                let scale = w.sqrt();
+                rows.push(|i| scale * j[0][i], scale * r[0]);
+                rows.push(|i| scale * j[1][i], scale * r[1]);
+                for i in 0..N {
+                    by_tau[i] += w * (t[0] * j[0][i] + t[1] * j[1][i]);
+                }
+                along += w * (t[0] * r[0] + t[1] * r[1]);
+                stiff += stiffness[index];
+            }
+            if stiff > 0.0 {
+                eliminated.push((stiff, by_tau, along));
+            }
+        }
+    }
+    let (mut matrix, mut gradient) = problem.wide(
+        #[inline(always)]
+        || rows.squared(),
+    );
+    for (stiff, by_tau, along) in &eliminated {
+        add_row(&mut matrix, &mut gradient, -1.0 / stiff, by_tau, *along);
+    }
+    let mut i = 0;
+    work.lacking.clear();
+    problem.constraints(&at.x, &at.state, &mut |row| {
+        let lack = penalty.shift[i] - row.value;
+        i += 1;
+        if lack > 0.0 {
+            let row = row.followed(&work.blocks, nu);
+            work.lacking.push((lack, row.gradient));
+            add_row(&mut matrix, &mut gradient, penalty.rho, &row.gradient.map(|g| -g), lack);
+        }
+    });
+    let usable = matrix.iter().flatten().chain(gradient.iter()).all(|v| v.is_finite());
+    usable.then(|| Normal {
+        matrix: SMatrix::from_fn(|i, k| matrix[i][k]),
+        gradient: SVector::from(gradient),
+        tangent_sq: tangent_sum / work.blocks.len().max(1) as f64,
+    })
+}
+
+/// Computes the damped step inside the bounds: unknowns that a step would push through a bound are put onto it and
+/// the rest is solved again, so that the step is the model's minimum on the face that it ends on. `None` if the
+/// damped matrix is not positive definite.
+pub(super) fn bounded_step<const N: usize>(
+    system: &Normal<N>,
+    x: &[f64; N],
+    bounds: &[(f64, f64); N],
+    damping: f64,
+) -> Option<SVector<f64, N>> {
+    let mut damped = system.matrix;
+    let diagonal_max = (0..N).map(|i| damped[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
+    let mut held = [false; N];
+    let mut dx = SVector::<f64, N>::zeros();
+    for i in 0..N {
+        let (low, high) = bounds[i];
+        held[i] = low == high
+            || damped[(i, i)] == 0.0
+            || (x[i] <= low && system.gradient[i] >= 0.0)
+            || (x[i] >= high && system.gradient[i] <= 0.0);
+        damped[(i, i)] += damping * damped[(i, i)].max(1e-10 * diagonal_max);
+    }
+    for _ in 0..=N {
+        let mut matrix = damped;
+        let mut right =
+            -(system.gradient + damped * SVector::from_fn(|i, _| if held[i] { dx[i] } else { 0.0 }));
+        for i in (0..N).filter(|&i| held[i]) {
+            for k in 0..N {
+                matrix[(i, k)] = 0.0;
+                matrix[(k, i)] = 0.0;
+            }
+            matrix[(i, i)] = 1.0;
+            right[i] = dx[i];
+        }
+        dx = matrix.cholesky()?.solve(&right);
+        let mut crossed = false;
+        for i in 0..N {
+            if held[i] {
+                continue;
+            }
+            let (low, high) = bounds[i];
+            let to = x[i] + dx[i];
+            if to < low || to > high {
+                dx[i] = if to < low { low - x[i] } else { high - x[i] };
+                held[i] = true;
+                crossed = true;
+            }
+        }
+        if !crossed {
+            break;
+        }
+    }
+    Some(dx)
+}

@@ -1,0 +1,412 @@
+//! The truth on disk: what a run was asked, what it did and what it found.
+//!
+//! A record holds no time, host or path; the same binary writes the same bytes for the same problem and
+//! seed, whatever the number of threads.
+
+use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
+use crate::task::Defect;
+use crate::task::spec::{Method, ProblemSpec, TransmissionOver};
+use serde::{Deserialize, Serialize};
+
+mod certificate;
+pub mod digest;
+mod exact;
+mod extras;
+mod limits;
+mod repeats;
+pub mod statistics;
+pub mod suite;
+
+pub use certificate::{Certificate, CertificatePart, Difference};
+pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
+pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
+pub use limits::BeyondLimits;
+pub use repeats::Repeats;
+
+/// A requirement is met within this part of max(1, |limit|), and figures this near to each other are equal to a reader.
+pub const MET_TOLERANCE: f64 = 1e-7;
+
+/// A fit whose mean squared error is below this part of size^2 is exact: rounding is all that is left.
+pub const EXACT_MEAN_SQ: f64 = 1e-24;
+
+/// The format that this program writes and reads.
+pub const FORMAT: u32 = 1;
+
+/// A run: problem, method, termination, candidates.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Record {
+    /// [`FORMAT`].
+    pub format: u32,
+    /// What wrote it.
+    pub tool: Tool,
+    /// What was asked.
+    pub problem: ProblemRecord,
+    /// The seed of every draw.
+    pub seed: u64,
+    /// How it was searched.
+    pub method: MethodRecord,
+    /// Why the search ended.
+    pub termination: Termination,
+    /// What it cost.
+    pub evaluations: Evaluations,
+    /// Said where the answers are members of a whole family of exact answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub family: Option<Family>,
+    /// Where the first candidate has warnings: the best one found without that. Its rank is the one that it has
+    /// among the candidates, 0 where it is none of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub buildable: Option<Candidate>,
+    /// Nine precision points: every linkage through them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub exact: Option<ExactRecord>,
+    /// The answers, best first.
+    pub candidates: Vec<Candidate>,
+    /// Where nothing is acceptable: requirements that cannot be met together, as far as was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conflict: Option<Conflict>,
+    /// Where nothing is acceptable: the least changes that were found to help, nearest first. Each was tried
+    /// with the settings of this run and ended with an accepted candidate.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub relaxations: Vec<Relaxation>,
+    /// What is proved about the best candidate, where `certify` was run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// Why there is none, where the problem asks for one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_certificate: Option<String>,
+    /// How often the best answer came back from independent starts, where the search counted that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeats: Option<Repeats>,
+}
+
+/// Name and version of the program.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Tool {
+    /// linkwright.
+    pub name: String,
+    /// The version.
+    pub version: String,
+}
+
+/// The problem as it was run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ProblemRecord {
+    /// Its name.
+    pub name: String,
+    /// Where it comes from, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<String>,
+    /// The label of lengths: mm, cm, m or in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// SHA-256 of what decides the search: task, design, require, objective, method and its parameters, seed.
+    pub digest: String,
+    /// Every key with its default filled in.
+    pub resolved: ProblemSpec,
+}
+
+/// The method asked for and the methods that ran.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct MethodRecord {
+    /// As in the problem file.
+    pub asked: Method,
+    /// What ran, in order.
+    pub used: Vec<String>,
+}
+
+/// Why a search ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reason {
+    /// The best answer was found again and again from different starts.
+    Converged,
+    /// The target was met: exact answers, as many as were asked for.
+    TargetReached,
+    /// The search ran out of ideas before its budget.
+    Stalled,
+    /// The budget of evaluations was used up.
+    EvaluationLimit,
+    /// The time limit bit.
+    TimeLimit,
+    /// It was cancelled.
+    Cancelled,
+    /// Nothing was searched for: `snap` brought lengths of an answer to stock sizes and fitted the rest.
+    Snapped,
+    /// Nothing was searched for: the linkage was fitted under the hand, in the studio.
+    ByHand,
+}
+
+impl Reason {
+    /// Whether the same problem and seed give the same record again: not after a clock, a cancellation or a hand.
+    pub fn is_repeatable(self) -> bool {
+        match self {
+            Reason::Converged
+            | Reason::TargetReached
+            | Reason::Stalled
+            | Reason::EvaluationLimit
+            | Reason::Snapped => true,
+            Reason::TimeLimit | Reason::Cancelled | Reason::ByHand => false,
+        }
+    }
+}
+
+/// Why the search ended and whether the run can be repeated to the digit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Termination {
+    /// Why.
+    pub reason: Reason,
+    /// Whether the same problem and seed give the same record ([`Reason::is_repeatable`]).
+    pub reproducible: bool,
+}
+
+/// What a search cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Evaluations {
+    /// How often the objective was computed.
+    pub objective: u64,
+    /// How many positions of the linkage were computed for that.
+    pub positions: u64,
+}
+
+/// One answer with every figure and verdict, all recomputed by the referee.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Candidate {
+    /// 1 is the best.
+    pub rank: usize,
+    /// The linkage.
+    pub linkage: FourBar,
+    /// The crank angle at each target point, degrees from the x axis, unwrapped.
+    pub crank_deg: Vec<f64>,
+    /// The assembly at each target point.
+    pub t1_at: Vec<AssemblyMode>,
+    /// How far the coupler point is from the target.
+    pub error: ErrorRecord,
+    /// The type.
+    #[serde(rename = "type")]
+    pub linkage_type: LinkageType,
+    /// p + q - s - l.
+    pub grashof_margin: f64,
+    /// The transmission angle's extremes.
+    pub transmission_deg: TransmissionRecord,
+    /// Longest over shortest link.
+    pub link_ratio: f64,
+    /// Every defect found, whether it is allowed or not.
+    pub defects: Vec<Defect>,
+    /// Why it may be a poor one to build although its error is good.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<Warning>,
+    /// Other linkages of the same curve (its cognates), the better first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alternatives: Vec<Alternative>,
+    /// Whether the target is symmetric and the linkage's mirror image, which is another one, is accepted too and as good:
+    /// it is not listed.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub mirror_serves: bool,
+    /// Each requirement with its value and limit.
+    pub requirements: Vec<Requirement>,
+    /// Every requirement met, no defect that is disallowed, within the tolerance if one was asked.
+    pub accepted: bool,
+    /// The proof that an exact linkage stands there, where there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certified: Option<Certified>,
+    /// What the limits that it stands on cost.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<Cost>,
+}
+
+/// The word of a requirement's value for a motion that returns to its first point by reversing.
+pub const TO_AND_FRO: &str = "to-and-fro";
+
+impl Candidate {
+    /// Whether the motion returns to the first point of a closed path by reversing, and the problem allows that.
+    pub fn goes_to_and_fro(&self) -> bool {
+        let is_word = |figure: &Figure| *figure == Figure::Word(TO_AND_FRO.to_owned());
+        self.requirements.iter().any(|r| r.name == "closing" && is_word(&r.value))
+    }
+}
+
+/// The errors of a candidate, in the file's unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct ErrorRecord {
+    /// What was minimised: the weighted sum of squared distances; or the largest distance, in parts of its
+    /// point's tolerance where tolerances are given.
+    pub objective: f64,
+    /// The unweighted sum of squared distances at the points.
+    pub sum_sq: f64,
+    /// sqrt(sum_sq / n).
+    pub rms: f64,
+    /// The largest distance at a point.
+    pub max: f64,
+    /// Where it is, counted from 0.
+    pub max_at: usize,
+    /// rms over the diagonal of the target's bounding box.
+    pub rms_over_size: f64,
+    /// Distances to the whole coupler curve of the circuit, whatever the timing.
+    pub to_curve: CurveErrorRecord,
+    /// Where the target was smoothed or resampled: distances of the points as they were given to that same curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_raw: Option<CurveErrorRecord>,
+}
+
+/// Distances to the whole coupler curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct CurveErrorRecord {
+    /// The sum of squares.
+    pub sum_sq: f64,
+    /// sqrt(sum_sq / n).
+    pub rms: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// The transmission angle's extremes, degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct TransmissionRecord {
+    /// The least.
+    pub min: f64,
+    /// The greatest.
+    pub max: f64,
+    /// min(mu, 180 - mu) at its worst.
+    pub worst: f64,
+    /// Over which motion.
+    pub over: TransmissionOver,
+}
+
+/// A value or a limit of a requirement.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(untagged)]
+pub enum Figure {
+    /// A number.
+    Number(f64),
+    /// Several, such as a box.
+    Numbers(Vec<f64>),
+    /// A word, such as a type.
+    Word(String),
+    /// Several words.
+    Words(Vec<String>),
+}
+
+impl std::fmt::Display for Figure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        match self {
+            Figure::Number(number) => write!(f, "{number}"),
+            Figure::Numbers(numbers) => f.write_str(&list(numbers.iter().map(f64::to_string).collect())),
+            Figure::Word(word) => f.write_str(word),
+            Figure::Words(words) => f.write_str(&list(words.clone())),
+        }
+    }
+}
+
+/// A requirement of a candidate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Requirement {
+    /// The key in the problem file.
+    pub name: String,
+    /// What the candidate has.
+    pub value: Figure,
+    /// What was asked.
+    pub limit: Figure,
+    /// Whether it is met.
+    pub met: bool,
+}
+
+/// What a limit costs that a candidate stands on.
+///
+/// Errors here are sqrt(objective / sum of weights), which is the rms error where no point has a weight.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Cost {
+    /// The requirement: its key in `[require]`, or `design.` with the parameter.
+    pub name: String,
+    /// Which of its sides: xmin, ymin, xmax, ymax of a box, min or max of bounds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub side: Option<String>,
+    /// Where that side stands; 0 for the Grashof margin of a type.
+    pub limit: f64,
+    /// The change of the rms error for one unit more of room (a box side or an upper bound moved out, a lower
+    /// bound or a least angle lowered), as a rate at the limit: never positive. Absent where it cannot be told.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rms_per_unit: Option<f64>,
+    /// What one unit is.
+    pub unit_of_limit: LimitUnit,
+    /// The least rms error that was found without the requirement.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rms_without: Option<f64>,
+}
+
+/// What the unit of a limit is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitUnit {
+    /// The file's unit of length.
+    Length,
+    /// A degree.
+    Degree,
+    /// One more of longest over shortest.
+    Ratio,
+}
+
+/// Requirements that cannot be met together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Conflict {
+    /// Their keys in the problem file. Without any one of them the others could be met; a single one cannot be
+    /// met by itself.
+    pub among: Vec<String>,
+}
+
+/// A change of the problem after which something acceptable is found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Relaxation {
+    /// The keys to set.
+    pub set: Vec<Change>,
+    /// The best sum of squares then.
+    pub sum_sq: f64,
+    /// Its rms error.
+    pub rms: f64,
+}
+
+/// A key of the problem file with another value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+pub struct Change {
+    /// The key, as in `--set KEY=VALUE`.
+    pub key: String,
+    /// What it is in the problem.
+    pub from: TypedValue,
+    /// What to set it to.
+    pub to: TypedValue,
+}
+
+/// A value of a problem file's key. It is displayed as it is typed in `--set KEY=VALUE`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
+#[serde(untagged)]
+pub enum TypedValue {
+    /// A number.
+    Number(f64),
+    /// Several, such as a box or bounds.
+    Numbers(Vec<f64>),
+    /// The bounds of a point.
+    Pairs(Vec<[f64; 2]>),
+    /// A word.
+    Word(String),
+    /// Several words, such as types.
+    Words(Vec<String>),
+}
+
+impl std::fmt::Display for TypedValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
+        let numbers = |numbers: &[f64]| list(numbers.iter().map(f64::to_string).collect());
+        match self {
+            TypedValue::Number(number) => write!(f, "{number}"),
+            TypedValue::Numbers(values) => f.write_str(&numbers(values)),
+            TypedValue::Pairs(pairs) => f.write_str(&list(pairs.iter().map(|p| numbers(p)).collect())),
+            TypedValue::Word(word) => f.write_str(word),
+            TypedValue::Words(words) => {
+                f.write_str(&list(words.iter().map(|w| format!("\"{w}\"")).collect()))
+            }
+        }
+    }
+}
+
+/// The name of this search in a record.
+pub const RELAXED: &str = "relaxed-requirements";

@@ -1,0 +1,195 @@
+//! Statistics of many runs: medians, hits, the best run.
+//!
+//! Sums of squares are compared with a tolerance of [`WITHIN`], and below the problem's exactness floor every sum
+//! counts as zero: there, only rounding is left.
+
+use super::suite::Run;
+use serde::Serialize;
+
+/// The relative tolerance within which a sum of squares reaches another: published optima have seven digits and more.
+pub const WITHIN: f64 = 1e-6;
+
+/// The sums of squares with which the runs of a problem are compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bar {
+    /// The sum of squares that counts as a hit.
+    pub goal: f64,
+    /// The least sum of squares that is known.
+    pub best_known: f64,
+    /// The sum of squares below which a fit is exact.
+    pub exact: f64,
+}
+
+impl Bar {
+    /// Returns whether sum_sq <= goal (1 + [`WITHIN`]) + exact.
+    pub fn is_reached_by(&self, sum_sq: f64) -> bool {
+        sum_sq <= self.goal * (1.0 + WITHIN) + self.exact
+    }
+
+    /// Returns whether sum_sq <= best known (1 + [`WITHIN`]) + exact.
+    pub fn best_known_is_reached_by(&self, sum_sq: f64) -> bool {
+        sum_sq <= self.best_known * (1.0 + WITHIN) + self.exact
+    }
+
+    /// Returns whether sum_sq < best known (1 - [`WITHIN`]) - exact: smaller than anything known, and not by rounding.
+    pub fn is_beaten_by(&self, sum_sq: f64) -> bool {
+        sum_sq < self.best_known * (1.0 - WITHIN) - self.exact
+    }
+}
+
+/// The summary of the runs of one method on one problem. Sums are of accepted candidates only.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// The number of runs whose first candidate is accepted.
+    pub accepted: usize,
+    /// The accepted run with the least sum of squares, the first of equal ones.
+    pub best: Option<Best>,
+    /// The median sum of squares of the accepted runs.
+    pub median_sum_sq: Option<f64>,
+    /// The number of accepted runs that reach the goal.
+    pub hits: usize,
+    /// The number of accepted runs that reach the best known sum.
+    pub hits_of_best_known: usize,
+    /// The median time of a search over all runs, in seconds.
+    pub median_search_s: Option<f64>,
+    /// The longest time of a search, in seconds.
+    pub worst_search_s: Option<f64>,
+    /// The median number of evaluations of the objective, over all runs.
+    pub median_evaluations: Option<u64>,
+}
+
+/// The run with the best accepted answer of several runs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Best {
+    /// The seed.
+    pub seed: u64,
+    /// The sum of squares at the crank angles.
+    pub sum_sq: f64,
+    /// The sum of squared distances of the points to the whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+}
+
+impl Summary {
+    /// Returns the summary of these runs.
+    pub fn of(runs: &[Run], bar: &Bar) -> Self {
+        let accepted = || runs.iter().filter(|run| run.accepted);
+        let sums: Vec<f64> = accepted().filter_map(|run| run.sum_sq).collect();
+        let times: Vec<f64> = runs.iter().map(|run| run.search_s).collect();
+        let evaluations: Vec<u64> = runs.iter().map(|run| run.evaluations).collect();
+        let reached = |by: fn(&Bar, f64) -> bool| sums.iter().filter(|sum| by(bar, **sum)).count();
+        let of = |run: &Run| {
+            let best = Best { seed: run.seed, sum_sq: run.sum_sq?, to_curve_sum_sq: run.to_curve_sum_sq };
+            Some(best)
+        };
+        Summary {
+            accepted: accepted().count(),
+            best: accepted().filter_map(of).min_by(|one, other| one.sum_sq.total_cmp(&other.sum_sq)),
+            median_sum_sq: median(&sums),
+            hits: reached(Bar::is_reached_by),
+            hits_of_best_known: reached(Bar::best_known_is_reached_by),
+            median_search_s: median(&times),
+            worst_search_s: times.into_iter().max_by(f64::total_cmp),
+            median_evaluations: median_whole(&evaluations),
+        }
+    }
+}
+
+/// Returns the median: the middle value, or the mean of the two middle values of an even number. `None` without values.
+///
+/// ```
+/// use linkwright::internals::record::statistics::median;
+/// assert_eq!(median(&[9.0, 1.0, 2.0]), Some(2.0));
+/// assert_eq!(median(&[9.0, 1.0, 2.0, 4.0]), Some(3.0));
+/// assert_eq!(median(&[]), None);
+/// ```
+pub fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (low, high) = middle(&sorted)?;
+    Some(0.5 * low + 0.5 * high)
+}
+
+/// Returns the median of whole numbers, as [`median`] does, rounded down.
+pub fn median_whole(values: &[u64]) -> Option<u64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable();
+    let (low, high) = middle(&sorted)?;
+    Some(low + (high - low) / 2)
+}
+
+/// Returns the two middle values of a sorted list; the same value twice if their number is odd.
+fn middle<T: Copy>(sorted: &[T]) -> Option<(T, T)> {
+    let n = sorted.len();
+    Some((*sorted.get(n.checked_sub(1)? / 2)?, *sorted.get(n / 2)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::Reason;
+
+    const BAR: Bar = Bar { goal: 3.0, best_known: 2.0, exact: 1e-20 };
+
+    fn run(seed: u64, accepted: bool, sum_sq: f64) -> Run {
+        Run {
+            seed,
+            accepted,
+            sum_sq: Some(sum_sq),
+            to_curve_sum_sq: Some(0.5 * sum_sq),
+            evaluations: 100 * seed,
+            search_s: 0.25 * seed as f64,
+            reason: Reason::Converged,
+        }
+    }
+
+    #[test]
+    fn only_accepted_runs_have_sums_and_hits_and_every_run_has_a_time() {
+        let runs = [
+            run(1, true, 2.5),
+            run(2, false, 1.0),
+            run(3, true, 2.0),
+            run(4, true, 7.0),
+            run(5, true, 2.0),
+            Run { sum_sq: None, to_curve_sum_sq: None, ..run(6, false, 0.0) },
+        ];
+        let summary = Summary::of(&runs, &BAR);
+        assert_eq!((summary.accepted, summary.hits, summary.hits_of_best_known), (4, 3, 2));
+        let best = summary.best.expect("four are accepted");
+        assert_eq!(
+            (best.seed, best.sum_sq, best.to_curve_sum_sq),
+            (3, 2.0, Some(1.0)),
+            "the first of equals"
+        );
+        assert_eq!(summary.median_sum_sq, Some(2.25));
+        assert_eq!((summary.median_search_s, summary.worst_search_s), (Some(0.875), Some(1.5)));
+        assert_eq!(summary.median_evaluations, Some(350));
+    }
+
+    #[test]
+    fn nothing_accepted_has_no_median_and_no_best() {
+        let summary = Summary::of(&[run(1, false, 0.0)], &BAR);
+        assert_eq!((summary.best, summary.median_sum_sq, summary.hits), (None, None, 0));
+        assert_eq!(Summary::of(&[], &BAR).worst_search_s, None);
+    }
+
+    #[test]
+    fn a_hit_is_within_a_millionth_and_a_new_best_is_beyond_it() {
+        assert!(BAR.is_reached_by(3.0 * (1.0 + 0.9e-6)) && !BAR.is_reached_by(3.0 * (1.0 + 1.1e-6)));
+        assert!(BAR.best_known_is_reached_by(2.0) && !BAR.best_known_is_reached_by(2.0 * (1.0 + 1.1e-6)));
+        assert!(BAR.is_beaten_by(2.0 * (1.0 - 1.1e-6)) && !BAR.is_beaten_by(2.0 * (1.0 - 0.9e-6)));
+    }
+
+    #[test]
+    fn an_exact_answer_is_hit_by_rounding_alone_and_never_beaten() {
+        let bar = Bar { goal: 0.0, best_known: 0.0, exact: 1e-20 };
+        assert!(bar.is_reached_by(9e-21) && !bar.is_reached_by(2e-20));
+        assert!(!bar.is_beaten_by(0.0));
+    }
+
+    #[test]
+    fn the_median_of_whole_numbers_does_not_overflow() {
+        assert_eq!(median_whole(&[u64::MAX, u64::MAX - 2]), Some(u64::MAX - 1));
+        assert_eq!(median_whole(&[7]), Some(7));
+        assert_eq!(median_whole(&[]), None);
+    }
+}

@@ -1,0 +1,129 @@
+//! The figures of a suite: problems with a known answer, many seeds each.
+
+use super::statistics::Summary;
+use super::{Certificate, Reason, Tool};
+use crate::task::spec::Method;
+use serde::Serialize;
+
+/// The version of the suite's JSON format.
+pub const FORMAT: u32 = 1;
+
+/// A suite: problems, seeds and figures.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Suite {
+    /// The version of the format: [`FORMAT`].
+    pub format: u32,
+    /// The program that made it, with its version.
+    pub tool: Tool,
+    /// The command that makes it again.
+    pub command: String,
+    /// The number of seeds that was asked for: seeds 1 to this.
+    pub seeds: u64,
+    /// The number of threads of every search: 1.
+    pub threads: usize,
+    /// Whether every run was finished; `false` after a cancellation.
+    pub complete: bool,
+    /// The problems in the given order; after a cancellation, those that were begun.
+    pub problems: Vec<ProblemResult>,
+}
+
+/// The results for one problem of a suite.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProblemResult {
+    /// The name of the problem.
+    pub name: String,
+    /// The source of the problem.
+    pub source: Option<String>,
+    /// The number of target points.
+    pub points: usize,
+    /// The least sum of squares that is known.
+    pub best_known_sum_sq: f64,
+    /// The sum of squares that a run has to reach to count as a hit.
+    pub goal_sum_sq: f64,
+    /// The results of the method that the file asks for, from every seed.
+    pub search: MethodResult,
+    /// The results of the population searches with the median number of evaluations of `search`.
+    pub populations: Vec<MethodResult>,
+    /// The smallest accepted answer of all runs, if it is smaller than the best known by more than one part in a
+    /// million.
+    pub smaller_than_best_known: Option<Smaller>,
+    /// The published answers, evaluated again.
+    pub published: Vec<PublishedResult>,
+    /// The one of `published` with the least sum by our evaluation; if none can be evaluated, the one with the least
+    /// printed sum.
+    pub best_published: Option<PublishedResult>,
+    /// The certificate of the least accepted sum of `search`, if certificates are asked for and there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// The reason why there is no certificate, if certificates are asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_certificate: Option<String>,
+}
+
+/// The results of one method on one problem.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MethodResult {
+    /// The method.
+    pub method: Method,
+    /// The largest number of evaluations of the objective in each run.
+    pub evaluations_at_most: u64,
+    /// The summary of all runs.
+    pub summary: Summary,
+    /// The runs, in the order of their seeds.
+    pub runs: Vec<Run>,
+}
+
+/// The results of one run: one problem, one method, one seed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// The seed.
+    pub seed: u64,
+    /// Whether the first candidate is accepted; `false` without a candidate.
+    pub accepted: bool,
+    /// The sum of squares of the first candidate at the crank angles; `None` without a candidate.
+    pub sum_sq: Option<f64>,
+    /// The sum of squared distances of the points to that candidate's whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+    /// The number of evaluations of the objective.
+    pub evaluations: u64,
+    /// The time from the checked problem to the ranked candidates with their figures, in seconds.
+    pub search_s: f64,
+    /// The reason why the search ended.
+    pub reason: Reason,
+}
+
+/// An accepted answer that is smaller than the best known.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Smaller {
+    /// The method that found it.
+    pub method: Method,
+    /// The seed of its run.
+    pub seed: u64,
+    /// Its sum of squares.
+    pub sum_sq: f64,
+}
+
+/// A published answer, evaluated again.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PublishedResult {
+    /// Author and year.
+    pub source: String,
+    /// The printed sum of squares, if it could be read in the source.
+    pub printed_sum_sq: Option<f64>,
+    /// The sum of squares of the published vector by our referee; `None` without a vector that can be assembled at
+    /// every point.
+    pub sum_sq: Option<f64>,
+    /// The sum of squared distances of the points to the whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+    /// Whether the answer meets the problem's own requirements.
+    pub accepted: Option<bool>,
+    /// The requirements that it does not meet.
+    pub unmet: Vec<String>,
+}
+
+impl Suite {
+    /// Returns whether every seed of every problem has an accepted answer, and no run is missing.
+    pub fn is_accepted(&self) -> bool {
+        self.complete && self.problems.iter().all(|p| p.search.summary.accepted == p.search.runs.len())
+    }
+}

@@ -1,0 +1,198 @@
+//! An analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply.
+//!
+//! | sheet | after | when |
+//! |---|---|---|
+//! | positions with the path of P | De Castro, figure 2.2 | always |
+//! | construction by arcs | graphical position analysis by ruler and compasses | a row closes |
+//! | velocities, accelerations | De Castro, figures 3.2 and 4.1 | the input moves |
+//! | the four configurations | Romero, figure 3 | all four were asked for |
+//! | curves over the cycle | | from [`CYCLE_ROWS`] rows on |
+//!
+//! The figures are those of the analysis; only curves are computed from the linkage's own kinematics.
+
+mod chart;
+mod configurations;
+mod construction;
+mod cycle;
+mod positions;
+mod vectors;
+
+pub use super::cognates_sheet::cognates_svg;
+
+use super::canvas::{Canvas, Spot, View, palette};
+use super::labels::Labels;
+use super::parts::{letter, stand};
+use super::sheet::{FULL, HALF, Heading, Sheet, page};
+use super::text::{brief, clean, significant};
+use super::words;
+use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
+use crate::mechanism::{Complex, FourBar, Joints};
+
+/// The least number of rows that are drawn as curves against the crank angle.
+pub const CYCLE_ROWS: usize = 24;
+
+/// Returns the page of an analysis: title, the linkage's mobility, and the sheets that apply.
+///
+/// Rows without a position are left out of drawings and are gaps in curves; vectors are those of the first row that has
+/// them.
+///
+/// ```
+/// # use linkwright::{analysis::{Request, analyze}, linkage::{motion::CrankMotion, *}};
+/// let linkage = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
+///     point([2.5, 4.3]), AssemblyMode::Plus)?;
+/// let request = Request { name: "mine".into(), unit: None, linkage, crank_deg: vec![30.0, 60.0],
+///     input: CrankMotion::steady(1.0), methods: vec![], all_configurations: false };
+/// let svg = linkwright::internals::report::analysis_sheets::analysis_svg(&analyze(&request));
+/// assert!(svg.contains("Construction by arcs") && svg.contains("Velocities"));
+/// # Ok::<(), LinkageError>(())
+/// ```
+pub fn analysis_svg(analysis: &Analysis) -> String {
+    page(&heading(analysis), sheets(analysis))
+}
+
+fn sheets(analysis: &Analysis) -> Vec<Sheet> {
+    let Some(configuration) = analysis.configurations.first() else { return Vec::new() };
+    type Maker = fn(&Analysis, &Configuration, f64) -> Option<Sheet>;
+    let makers: [Maker; 4] =
+        [positions::sheet, construction::sheet, vectors::velocities, vectors::accelerations];
+    let mut sheets: Vec<Sheet> =
+        makers.iter().filter_map(|make| make(analysis, configuration, HALF)).collect();
+    if sheets.len() % 2 == 1 {
+        // The first sheet takes the whole width.
+        sheets.splice(..1, positions::sheet(analysis, configuration, FULL));
+    }
+    sheets.extend(configurations::sheet(analysis));
+    sheets.extend(cycle::sheet(analysis, configuration));
+    sheets
+}
+
+fn heading(analysis: &Analysis) -> Heading {
+    let name = clean(&analysis.name);
+    let mobility = &analysis.mobility;
+    let unit = words::length_suffix(analysis.unit);
+    let mut lines = Vec::new();
+    if let Some(configuration) = analysis.configurations.first() {
+        lines.push(dimensions(&configuration.linkage));
+        let worst = mobility
+            .worst_transmission_deg
+            .map_or(String::new(), |worst| format!(", worst transmission angle {}°", significant(worst, 3)));
+        let range = match (&mobility.linkage_type, mobility.input_turns_fully) {
+            (None, _) => "the links cannot be joined".to_owned(),
+            (_, true) => "the input turns fully".to_owned(),
+            _ => {
+                let arcs: Vec<String> = mobility
+                    .input_arcs_deg
+                    .iter()
+                    .map(|[from, to]| format!("{}° to {}°", brief(*from, 5), brief(*to, 5)))
+                    .collect();
+                format!("input from {}", arcs.join(" or from "))
+            }
+        };
+        let margin = brief(mobility.grashof_margin, 4);
+        lines.push(format!("Grashof margin {margin}{unit}, {range}{worst}"));
+        lines.push(format!("{}; {}", counted(&configuration.rows), input(analysis)));
+    } else {
+        lines.push("no configuration to draw".to_owned());
+    }
+    Heading {
+        title: if name.is_empty() { "unnamed linkage".to_owned() } else { name },
+        standing: mobility.linkage_type.map_or("no assembly", |t| t.name()).to_owned(),
+        lines,
+    }
+}
+
+/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
+pub(super) fn dimensions(linkage: &FourBar) -> String {
+    let p = linkage.natural_coordinates();
+    let number = |x: f64| brief(x, 6);
+    let at = |[x, y]: [f64; 2]| format!("({}, {})", number(x), number(y));
+    format!(
+        "A {}, B {}, a {}, b {}, c {}, d {}, e {}, t1 {}, t2 {}",
+        at(p.crank_pivot),
+        at(p.follower_pivot),
+        number(p.crank),
+        number(p.coupler),
+        number(p.follower),
+        number(p.crank_side),
+        number(p.follower_side),
+        sign(p.assembly.sign()),
+        sign(p.side.sign())
+    )
+}
+
+/// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
+fn counted(rows: &[Row]) -> String {
+    let all = [Status::Ok, Status::Singular, Status::Open, Status::Undetermined, Status::NotFinite];
+    let counts: Vec<(Status, usize)> = all
+        .into_iter()
+        .map(|status| (status, rows.iter().filter(|row| row.status == status).count()))
+        .filter(|(_, count)| *count > 0)
+        .collect();
+    let total = match rows.len() {
+        0 => "no crank angle asked".to_owned(),
+        1 => "1 position".to_owned(),
+        n => format!("{n} positions"),
+    };
+    match counts.as_slice() {
+        [] | [(Status::Ok, _)] => total,
+        [(status, _)] => format!("{total}, {}", status.word()),
+        several => {
+            let parts: Vec<String> = several.iter().map(|(s, n)| format!("{n} {}", s.word())).collect();
+            format!("{total}: {}", parts.join(", "))
+        }
+    }
+}
+
+fn input(analysis: &Analysis) -> String {
+    let mut text = format!("ω2 = {} rad/s", brief(analysis.omega2_rad_s, 5));
+    if analysis.alpha2_rad_s2 != 0.0 {
+        text.push_str(&format!(", α2 = {} rad/s²", brief(analysis.alpha2_rad_s2, 5)));
+    }
+    text
+}
+
+/// Returns a sign as `+1`, or as `−1` with a true minus.
+fn sign(value: f64) -> &'static str {
+    if value < 0.0 { "−1" } else { "+1" }
+}
+
+/// Returns an angle such as `90°`.
+fn degrees(value: f64) -> String {
+    format!("{}°", brief(value, 5))
+}
+
+/// Returns the rows that have a position, with A, B, C, D, P there.
+fn closed(configuration: &Configuration) -> Vec<(&Row, [Complex; 5])> {
+    let rows = configuration.rows.iter();
+    rows.filter_map(|row| Some((row, joints_of(&configuration.linkage, row)?)))
+        .filter(|(_, joints)| joints.iter().all(|p| p.re.is_finite() && p.im.is_finite()))
+        .collect()
+}
+
+fn as_joints([_, _, crank_pin, follower_pin, coupler_point]: [Complex; 5]) -> Joints {
+    Joints { crank_pin, follower_pin, coupler_point }
+}
+
+/// Returns the crank angle in radians and the assembly of rows, from which their circuits follow.
+fn positions_of<'a>(
+    configuration: &'a Configuration,
+    closed: &'a [(&'a Row, [Complex; 5])],
+) -> impl Iterator<Item = (f64, crate::mechanism::AssemblyMode)> + 'a {
+    closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), configuration.linkage.assembly()))
+}
+
+/// Draws A and B, if there is no position to draw.
+fn pivots(canvas: &mut Canvas, labels: &mut Labels, view: &View, linkage: &FourBar, weight: f64) {
+    for (name, pivot) in [("A", linkage.crank_pivot()), ("B", linkage.follower_pivot())] {
+        let at = view.spot(pivot);
+        stand(canvas, at, weight);
+        let pin = format!(r#"fill="{}" stroke="{}" stroke-width="1.5""#, palette::PAPER, palette::BAR_EDGE);
+        canvas.circle(at, 5.2 * weight, &pin);
+        letter(canvas, labels, name, at, Spot::new(0.0, -1.0));
+    }
+}
+
+/// Returns the middle of two places.
+fn between(a: Spot, b: Spot) -> Spot {
+    Spot::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
+}

@@ -1,0 +1,123 @@
+//! The cut list: the sizes of the plates and the places of their holes.
+
+use super::model::Model;
+use crate::mechanism::plates::{Placement, Plate};
+use crate::report::csv::written;
+use crate::report::text::cell;
+
+/// The columns; there is one row for each plate and pair of its holes.
+const COLUMNS: [&str; 10] = [
+    "plate",
+    "holes",
+    "from",
+    "to",
+    "distance_mm",
+    "hole_mm",
+    "length_mm",
+    "width_mm",
+    "thickness_mm",
+    "area_mm2",
+];
+
+/// Returns the names of each pair of distinct holes with their distance in millimetres.
+fn distances(plate: &Plate) -> Vec<(String, String, f64)> {
+    let holes = plate.distinct_holes();
+    let mut pairs = Vec::new();
+    for (i, (from, at)) in holes.iter().enumerate() {
+        for (to, there) in &holes[i + 1..] {
+            pairs.push((from.clone(), to.clone(), (there - at).norm()));
+        }
+    }
+    pairs
+}
+
+/// Returns the length and width of the piece of stock: along the line of the first two holes, and across it.
+fn size(plate: &Plate) -> [f64; 2] {
+    let [low, high] = plate.bounds();
+    [high.re - low.re, high.im - low.im]
+}
+
+/// Returns the area of the plate without its holes.
+fn area(model: &Model<'_>, plate: &Plate) -> f64 {
+    let hole = std::f64::consts::PI * (0.5 * model.hole).powi(2);
+    plate.area() - hole * plate.distinct_holes().len() as f64
+}
+
+fn number(value: f64) -> String {
+    format!("{value:.3}")
+}
+
+/// Returns the number of pins that join the plates, and whether P has a hole of its own.
+fn pins(model: &Model<'_>) -> (usize, bool) {
+    let linkage = &model.linkage;
+    let joined = |holes: &[(String, crate::mechanism::Complex)]| {
+        holes.iter().any(|(name, _)| name.contains('P') && name.len() > 1)
+    };
+    let coupler =
+        Plate::of(linkage, crate::mechanism::plates::Link::Coupler, 0.5 * model.hole + model.margin);
+    let ground = Plate::of(linkage, crate::mechanism::plates::Link::Ground, 0.5 * model.hole + model.margin);
+    // Coincident pivots A and B share one pin.
+    (2 + ground.distinct_holes().len(), !joined(&coupler.distinct_holes()))
+}
+
+/// Returns the list as text.
+pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
+    let mut out = format!("Cut list: {}\n{}\n\n", model.heading(), crate::files::generator::mark());
+    let thickness = number(model.thickness);
+    out.push_str(&format!(
+        "material {thickness} mm thick, holes {} mm in diameter, {} mm from a hole's edge to the plate's\n\n",
+        number(model.hole),
+        number(model.margin)
+    ));
+    out.push_str(&format!(
+        "{:<10}{:>12}{:>12}{:>14}   {}\n",
+        "plate", "length mm", "width mm", "area mm2", "holes, mm apart"
+    ));
+    for (plate, _) in plates {
+        let [length, width] = size(plate);
+        let pairs = distances(plate);
+        let mut holes: Vec<String> =
+            pairs.iter().map(|(from, to, apart)| format!("{from} to {to} {}", number(*apart))).collect();
+        if holes.is_empty() {
+            holes = plate.distinct_holes().into_iter().map(|(name, _)| format!("{name} alone")).collect();
+        }
+        out.push_str(&format!(
+            "{:<10}{:>12}{:>12}{:>14}   {}\n",
+            plate.link.name(),
+            number(length),
+            number(width),
+            number(area(model, plate)),
+            holes.join(", ")
+        ));
+    }
+    let (pins, tracer) = pins(model);
+    out.push_str(&format!(
+        "\n{} plates, {pins} pins of {} mm through at least two plates ({} mm)",
+        plates.len(),
+        number(model.hole),
+        number(2.0 * model.thickness)
+    ));
+    out.push_str(if tracer { ", a pen or a pin at P\n" } else { "; P is on a pin\n" });
+    out
+}
+
+/// Returns the list as CSV, one row for each pair of holes of a plate.
+pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
+    let rows = plates.iter().flat_map(|(plate, _)| {
+        let holes = plate.distinct_holes();
+        let mut pairs = distances(plate);
+        if pairs.is_empty() {
+            pairs = holes.iter().map(|(name, _)| (name.clone(), name.clone(), 0.0)).collect();
+        }
+        let [length, width] = size(plate);
+        let area = area(model, plate);
+        let count = holes.len();
+        pairs.into_iter().map(move |(from, to, apart)| {
+            let mut row = vec![plate.link.name().to_owned(), count.to_string(), cell(&from), cell(&to)];
+            let numbers = [apart, model.hole, length, width, model.thickness, area];
+            row.extend(numbers.into_iter().map(crate::report::text::exact));
+            row
+        })
+    });
+    written(&COLUMNS, rows)
+}

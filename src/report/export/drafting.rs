@@ -1,0 +1,75 @@
+//! The DXF drawings: the skeleton for a sketch in a CAD program, and the plates for a cutter.
+
+use super::dxf::Drawing;
+use super::model::Model;
+use crate::files::generator::mark;
+use crate::mechanism::plates::{Link, Placement, Plate};
+use crate::mechanism::{Complex, Joints};
+use crate::report::text::exact;
+
+/// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points.
+pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
+    let mut drawing = Drawing::new(&[("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)]);
+    let (a, b) = (model.linkage.crank_pivot(), model.linkage.follower_pivot());
+    let Joints { crank_pin: c, follower_pin: d, coupler_point: p } = *joints;
+    for (from, to) in [(a, b), (a, c), (c, d), (b, d), (c, p), (d, p)] {
+        // Some programs refuse a line without length.
+        if from != to {
+            drawing.line("SKELETON", from, to);
+        }
+    }
+    for curve in &model.curves {
+        drawing.polyline("CURVE", &straight(curve), true);
+    }
+    for at in [a, b, c, d, p] {
+        drawing.circle("JOINTS", at, 0.5 * model.hole);
+    }
+    for at in &model.target {
+        drawing.point("TARGET", *at);
+    }
+    if model.target.len() > 1 {
+        drawing.polyline("TARGET", &straight(&model.target), model.subject.closed);
+    }
+    drawing.document(&[mark(), model.heading()])
+}
+
+fn straight(points: &[Complex]) -> Vec<(Complex, f64)> {
+    points.iter().map(|p| (*p, 0.0)).collect()
+}
+
+/// Returns the name of a plate's layer.
+fn layer(link: Link) -> &'static str {
+    match link {
+        Link::Ground => "GROUND",
+        Link::Crank => "CRANK",
+        Link::Coupler => "COUPLER",
+        Link::Follower => "FOLLOWER",
+    }
+}
+
+/// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf.
+pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
+    let colours = [8, 1, 5, 3];
+    let layers: Vec<(&str, u8)> = plates.iter().map(|(plate, _)| layer(plate.link)).zip(colours).collect();
+    let mut drawing = Drawing::new(&layers);
+    for (plate, at) in plates {
+        let layer = layer(plate.link);
+        let edges = model.cut(plate).outline();
+        let contour: Vec<(Complex, f64)> =
+            edges.iter().map(|edge| (at.of(edge.from()), edge.bulge())).collect();
+        drawing.polyline(layer, &contour, true);
+        for (_, hole) in plate.distinct_holes() {
+            drawing.circle(layer, at.of(hole), model.cut_hole());
+        }
+    }
+    drawing.document(&[
+        mark(),
+        model.heading(),
+        format!(
+            "holes {} mm, margin {} mm, paths moved outward by half a kerf of {} mm",
+            exact(model.hole),
+            exact(model.margin),
+            exact(model.kerf)
+        ),
+    ])
+}

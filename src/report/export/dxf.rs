@@ -1,0 +1,352 @@
+//! A DXF document of AutoCAD 2000 (AC1015): the tables and blocks that readers require, and entities in model space.
+//!
+//! Source of the group codes: Autodesk, "AutoCAD 2000 DXF Reference" (1999). Lengths are millimetres
+//! (`$INSUNITS` = 4); text is ASCII, other characters as `\U+XXXX`.
+
+use crate::mechanism::Complex;
+use std::fmt::Write;
+
+/// Handles of the fixed objects; those of entities and layers follow from [`FIRST_FREE`].
+const MODEL_SPACE: u32 = 0x1F;
+const PAPER_SPACE: u32 = 0x1B;
+const FIRST_FREE: u32 = 0x100;
+
+/// A drawing under construction.
+pub(super) struct Drawing {
+    layers: Vec<(&'static str, u8)>,
+    entities: Tags,
+    next: u32,
+    low: Complex,
+    high: Complex,
+}
+
+/// Pairs of group code and value, as text.
+#[derive(Default)]
+struct Tags(String);
+
+impl Tags {
+    fn text(&mut self, code: u16, value: &str) {
+        let _ = writeln!(self.0, "{code:>3}\n{value}");
+    }
+
+    fn number(&mut self, code: u16, value: f64) {
+        // Never with an exponent; the shortest text that reads back as the same number; -0 is written as 0.
+        self.text(code, &format!("{}", value + 0.0));
+    }
+
+    fn whole(&mut self, code: u16, value: i64) {
+        self.text(code, &value.to_string());
+    }
+
+    fn handle(&mut self, code: u16, value: u32) {
+        self.text(code, &format!("{value:X}"));
+    }
+
+    /// Writes a point at codes 10, 20, 30 (or 11, 21, 31).
+    fn point(&mut self, code: u16, at: Complex) {
+        self.number(code, at.re);
+        self.number(code + 10, at.im);
+        self.number(code + 20, 0.0);
+    }
+
+    /// Writes a table's entry with its classes.
+    fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
+        self.text(0, kind);
+        self.handle(if kind == "DIMSTYLE" { 105 } else { 5 }, handle);
+        self.handle(330, owner);
+        self.text(100, "AcDbSymbolTableRecord");
+        self.text(100, class);
+        self.text(2, name);
+    }
+
+    fn table(&mut self, kind: &str, handle: u32, count: usize) {
+        self.text(0, "TABLE");
+        self.text(2, kind);
+        self.handle(5, handle);
+        self.handle(330, 0);
+        self.text(100, "AcDbSymbolTable");
+        self.whole(70, count as i64);
+    }
+
+    fn section(&mut self, name: &str) {
+        self.text(0, "SECTION");
+        self.text(2, name);
+    }
+}
+
+impl Drawing {
+    /// Returns an empty drawing with layers, each with a name and a colour (AutoCAD's index).
+    pub(super) fn new(layers: &[(&'static str, u8)]) -> Self {
+        Drawing {
+            layers: layers.to_vec(),
+            entities: Tags::default(),
+            next: FIRST_FREE + layers.len() as u32,
+            low: Complex::new(f64::INFINITY, f64::INFINITY),
+            high: Complex::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+        }
+    }
+
+    fn entity(&mut self, kind: &str, layer: &str, class: &str) {
+        self.entities.text(0, kind);
+        self.entities.handle(5, self.next);
+        self.next += 1;
+        self.entities.handle(330, MODEL_SPACE);
+        self.entities.text(100, "AcDbEntity");
+        self.entities.text(8, layer);
+        self.entities.text(100, class);
+    }
+
+    fn hold(&mut self, at: Complex) {
+        self.low = Complex::new(self.low.re.min(at.re), self.low.im.min(at.im));
+        self.high = Complex::new(self.high.re.max(at.re), self.high.im.max(at.im));
+    }
+
+    /// Draws a line segment.
+    pub(super) fn line(&mut self, layer: &str, from: Complex, to: Complex) {
+        self.entity("LINE", layer, "AcDbLine");
+        self.entities.point(10, from);
+        self.entities.point(11, to);
+        self.hold(from);
+        self.hold(to);
+    }
+
+    /// Draws a circle.
+    pub(super) fn circle(&mut self, layer: &str, centre: Complex, radius: f64) {
+        self.entity("CIRCLE", layer, "AcDbCircle");
+        self.entities.point(10, centre);
+        self.entities.number(40, radius);
+        let reach = Complex::new(radius, radius);
+        self.hold(centre - reach);
+        self.hold(centre + reach);
+    }
+
+    /// Draws a point.
+    pub(super) fn point(&mut self, layer: &str, at: Complex) {
+        self.entity("POINT", layer, "AcDbPoint");
+        self.entities.point(10, at);
+        self.hold(at);
+    }
+
+    /// Draws a polyline of vertices, each with the bulge of the segment after it.
+    pub(super) fn polyline(&mut self, layer: &str, vertices: &[(Complex, f64)], closed: bool) {
+        self.entity("LWPOLYLINE", layer, "AcDbPolyline");
+        self.entities.whole(90, vertices.len() as i64);
+        self.entities.whole(70, i64::from(closed));
+        for (at, bulge) in vertices {
+            self.entities.number(10, at.re);
+            self.entities.number(20, at.im);
+            if *bulge != 0.0 {
+                self.entities.number(42, *bulge);
+            }
+            self.hold(*at);
+        }
+    }
+
+    /// Returns the whole document; remarks are foreign text, written on one line each.
+    pub(super) fn document(self, remarks: &[String]) -> String {
+        let mut out = Tags::default();
+        for remark in remarks {
+            out.text(999, &ascii(remark));
+        }
+        self.header(&mut out);
+        self.tables(&mut out);
+        blocks(&mut out);
+        out.section("ENTITIES");
+        out.0.push_str(&self.entities.0);
+        out.text(0, "ENDSEC");
+        objects(&mut out);
+        out.text(0, "EOF");
+        out.0
+    }
+
+    fn header(&self, out: &mut Tags) {
+        let (low, high) = if self.low.re <= self.high.re {
+            (self.low, self.high)
+        } else {
+            (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0))
+        };
+        out.section("HEADER");
+        out.text(9, "$ACADVER");
+        out.text(1, "AC1015");
+        out.text(9, "$DWGCODEPAGE");
+        out.text(3, "ANSI_1252");
+        for (name, at) in [("$EXTMIN", low), ("$EXTMAX", high)] {
+            out.text(9, name);
+            out.point(10, at);
+        }
+        // Millimetres; metric line types; points as small crosses of 1% of the screen.
+        for (name, value) in [("$INSUNITS", 4), ("$MEASUREMENT", 1), ("$PDMODE", 3)] {
+            out.text(9, name);
+            out.whole(70, value);
+        }
+        out.text(9, "$HANDSEED");
+        out.handle(5, self.next);
+        out.text(0, "ENDSEC");
+        out.section("CLASSES");
+        out.text(0, "ENDSEC");
+    }
+
+    fn tables(&self, out: &mut Tags) {
+        out.section("TABLES");
+        out.table("VPORT", 0x8, 1);
+        self.view(out);
+        out.text(0, "ENDTAB");
+        out.table("LTYPE", 0x5, 3);
+        for (handle, name, about) in
+            [(0x14, "ByBlock", ""), (0x15, "ByLayer", ""), (0x16, "Continuous", "Solid line")]
+        {
+            out.entry("LTYPE", handle, 0x5, "AcDbLinetypeTableRecord", name);
+            out.whole(70, 0);
+            out.text(3, about);
+            out.whole(72, 65);
+            out.whole(73, 0);
+            out.number(40, 0.0);
+        }
+        out.text(0, "ENDTAB");
+        out.table("LAYER", 0x2, self.layers.len() + 1);
+        let own = self.layers.iter().enumerate();
+        let layers =
+            own.map(|(i, (name, colour))| (FIRST_FREE + i as u32, *name, *colour)).chain([(0x10, "0", 7)]);
+        for (handle, name, colour) in layers {
+            out.entry("LAYER", handle, 0x2, "AcDbLayerTableRecord", name);
+            out.whole(70, 0);
+            out.whole(62, i64::from(colour));
+            out.text(6, "Continuous");
+            out.handle(390, 0xF);
+        }
+        out.text(0, "ENDTAB");
+        out.table("STYLE", 0x3, 1);
+        out.entry("STYLE", 0x11, 0x3, "AcDbTextStyleTableRecord", "Standard");
+        out.whole(70, 0);
+        for (code, value) in [(40, 0.0), (41, 1.0), (50, 0.0)] {
+            out.number(code, value);
+        }
+        out.whole(71, 0);
+        out.number(42, 2.5);
+        out.text(3, "txt");
+        out.text(4, "");
+        out.text(0, "ENDTAB");
+        for (kind, handle) in [("VIEW", 0x6), ("UCS", 0x7)] {
+            out.table(kind, handle, 0);
+            out.text(0, "ENDTAB");
+        }
+        out.table("APPID", 0x9, 1);
+        out.entry("APPID", 0x12, 0x9, "AcDbRegAppTableRecord", "ACAD");
+        out.whole(70, 0);
+        out.text(0, "ENDTAB");
+        out.table("DIMSTYLE", 0xA, 1);
+        out.text(100, "AcDbDimStyleTable");
+        out.entry("DIMSTYLE", 0x27, 0xA, "AcDbDimStyleTableRecord", "Standard");
+        out.whole(70, 0);
+        out.text(0, "ENDTAB");
+        out.table("BLOCK_RECORD", 0x1, 2);
+        for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
+            out.entry("BLOCK_RECORD", handle, 0x1, "AcDbBlockTableRecord", name);
+        }
+        out.text(0, "ENDTAB");
+        out.text(0, "ENDSEC");
+    }
+
+    /// Writes the view with which a program opens the drawing: all of it.
+    fn view(&self, out: &mut Tags) {
+        let size = self.high - self.low;
+        let (centre, height) = if size.re >= 0.0 {
+            ((self.low + self.high) * 0.5, 1.1 * size.im.max(size.re / 1.5).max(1e-6))
+        } else {
+            (Complex::new(0.0, 0.0), 1.0)
+        };
+        out.entry("VPORT", 0x29, 0x8, "AcDbViewportTableRecord", "*Active");
+        out.whole(70, 0);
+        let pairs = [
+            (10, Complex::new(0.0, 0.0)),
+            (11, Complex::new(1.0, 1.0)),
+            (12, centre),
+            (13, Complex::new(0.0, 0.0)),
+            (14, Complex::new(10.0, 10.0)),
+            (15, Complex::new(10.0, 10.0)),
+        ];
+        for (code, at) in pairs {
+            out.number(code, at.re);
+            out.number(code + 10, at.im);
+        }
+        for (code, z) in [(16, 1.0), (17, 0.0)] {
+            out.number(code, 0.0);
+            out.number(code + 10, 0.0);
+            out.number(code + 20, z);
+        }
+        out.number(40, height);
+        out.number(41, 1.5);
+        out.number(42, 50.0);
+    }
+}
+
+fn blocks(out: &mut Tags) {
+    out.section("BLOCKS");
+    for (name, owner, handle) in [("*Model_Space", MODEL_SPACE, 0x20), ("*Paper_Space", PAPER_SPACE, 0x1C)] {
+        out.text(0, "BLOCK");
+        out.handle(5, handle);
+        out.handle(330, owner);
+        out.text(100, "AcDbEntity");
+        out.text(8, "0");
+        out.text(100, "AcDbBlockBegin");
+        out.text(2, name);
+        out.whole(70, 0);
+        out.point(10, Complex::new(0.0, 0.0));
+        out.text(3, name);
+        out.text(1, "");
+        out.text(0, "ENDBLK");
+        out.handle(5, handle + 1);
+        out.handle(330, owner);
+        out.text(100, "AcDbEntity");
+        out.text(8, "0");
+        out.text(100, "AcDbBlockEnd");
+    }
+    out.text(0, "ENDSEC");
+}
+
+fn objects(out: &mut Tags) {
+    out.section("OBJECTS");
+    let dictionary = |out: &mut Tags, handle: u32, owner: u32, entries: &[(&str, u32)]| {
+        out.text(0, "DICTIONARY");
+        out.handle(5, handle);
+        out.handle(330, owner);
+        out.text(100, "AcDbDictionary");
+        out.whole(281, 1);
+        for (name, entry) in entries {
+            out.text(3, name);
+            out.handle(350, *entry);
+        }
+    };
+    dictionary(out, 0xC, 0, &[("ACAD_GROUP", 0xD), ("ACAD_PLOTSTYLENAME", 0xE)]);
+    dictionary(out, 0xD, 0xC, &[]);
+    out.text(0, "ACDBDICTIONARYWDFLT");
+    out.handle(5, 0xE);
+    out.handle(330, 0xC);
+    out.text(100, "AcDbDictionary");
+    out.whole(281, 1);
+    out.text(3, "Normal");
+    out.handle(350, 0xF);
+    out.text(100, "AcDbDictionaryWithDefault");
+    out.handle(340, 0xF);
+    out.text(0, "ACDBPLACEHOLDER");
+    out.handle(5, 0xF);
+    out.handle(330, 0xE);
+    out.text(0, "ENDSEC");
+}
+
+/// Returns text on one line as DXF of 2000 writes it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.
+fn ascii(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut units = [0u16; 2];
+    for c in text.chars() {
+        match c {
+            ' '..='~' => out.push(c),
+            other => {
+                for unit in other.encode_utf16(&mut units) {
+                    let _ = write!(out, "\\U+{unit:04X}");
+                }
+            }
+        }
+    }
+    out
+}

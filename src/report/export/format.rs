@@ -1,0 +1,156 @@
+//! The export formats, and the settings that each accepts.
+
+use crate::files::generator::FileKind;
+
+/// A format of an exported file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Skeleton, coupler curve, joints and target as SVG in millimetres.
+    Svg,
+    /// The plates, laid out, as SVG in millimetres.
+    SvgPlates,
+    /// Skeleton, coupler curve, joints and target as DXF.
+    Dxf,
+    /// The plates, laid out, as DXF, ready to be cut.
+    DxfPlates,
+    /// The plates, laid out, as closed bodies.
+    Stl,
+    /// A parametric OpenSCAD script.
+    Scad,
+    /// The cycle: positions, velocities and accelerations.
+    Csv,
+    /// The linkage as a linkage file.
+    Toml,
+    /// The linkage as JSON.
+    Json,
+    /// Hole distances and sizes of each plate, as text.
+    CutList,
+    /// Hole distances and sizes of each plate, as CSV for a spreadsheet.
+    CutListCsv,
+    /// A picture (PNG).
+    #[cfg(feature = "images")]
+    Png,
+    /// An animation of the linkage (GIF).
+    #[cfg(feature = "images")]
+    Gif,
+}
+
+/// The error that a word is not the name of a format of this build.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum UnknownFormat {
+    /// The word names no format.
+    #[error("there is no format {0:?}: choose from {list}", list = Format::list())]
+    Unknown(String),
+    /// The format was left out when the program was built.
+    #[error("this build writes no {0} files: install linkwright with `--features images`")]
+    NotBuilt(String),
+}
+
+impl Format {
+    /// All formats of this build.
+    pub const ALL: &'static [Format] = &[
+        Format::Svg,
+        Format::SvgPlates,
+        Format::Dxf,
+        Format::DxfPlates,
+        Format::Stl,
+        Format::Scad,
+        Format::Csv,
+        Format::Toml,
+        Format::Json,
+        Format::CutList,
+        Format::CutListCsv,
+        #[cfg(feature = "images")]
+        Format::Png,
+        #[cfg(feature = "images")]
+        Format::Gif,
+    ];
+
+    /// Returns the name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Svg => "svg",
+            Format::SvgPlates => "svg-plates",
+            Format::Dxf => "dxf",
+            Format::DxfPlates => "dxf-plates",
+            Format::Stl => "stl",
+            Format::Scad => "scad",
+            Format::Csv => "csv",
+            Format::Toml => "toml",
+            Format::Json => "json",
+            Format::CutList => "cut-list",
+            Format::CutListCsv => "cut-list-csv",
+            #[cfg(feature = "images")]
+            Format::Png => "png",
+            #[cfg(feature = "images")]
+            Format::Gif => "gif",
+        }
+    }
+
+    /// Returns whether the file is text, which may go to standard output.
+    pub fn is_text(self) -> bool {
+        match self {
+            #[cfg(feature = "images")]
+            Format::Png | Format::Gif => false,
+            _ => true,
+        }
+    }
+
+    /// Returns the kind of its files.
+    pub fn kind(self) -> FileKind {
+        match self {
+            Format::Svg | Format::SvgPlates => FileKind::Svg,
+            Format::Dxf | Format::DxfPlates => FileKind::Dxf,
+            Format::Stl => FileKind::Stl,
+            Format::Scad => FileKind::Scad,
+            Format::Csv | Format::CutListCsv => FileKind::Csv,
+            Format::Toml => FileKind::Linkage,
+            Format::Json => FileKind::LinkageJson,
+            Format::CutList => FileKind::CutList,
+            #[cfg(feature = "images")]
+            Format::Png => FileKind::Png,
+            #[cfg(feature = "images")]
+            Format::Gif => FileKind::Gif,
+        }
+    }
+
+    /// Returns the names of the settings that apply to it.
+    pub fn settings(self) -> &'static [&'static str] {
+        match self {
+            Format::Svg | Format::Dxf => &["scale", "unit", "hole_mm", "crank_deg", "samples"],
+            Format::SvgPlates | Format::DxfPlates => {
+                &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm"]
+            }
+            Format::Stl => &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm"],
+            Format::Scad => {
+                &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"]
+            }
+            Format::Csv => &["scale", "positions", "omega_rad_s"],
+            Format::Toml | Format::Json => &["scale", "unit"],
+            Format::CutList | Format::CutListCsv => {
+                &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"]
+            }
+            #[cfg(feature = "images")]
+            Format::Png => &["size_px", "crank_deg", "samples"],
+            #[cfg(feature = "images")]
+            Format::Gif => &["size_px", "frames", "samples"],
+        }
+    }
+
+    /// Returns the names of all formats, separated by commas.
+    pub fn list() -> String {
+        Format::ALL.iter().map(|format| format.name()).collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl std::str::FromStr for Format {
+    type Err = UnknownFormat;
+    fn from_str(text: &str) -> Result<Self, UnknownFormat> {
+        let word = text.trim();
+        match Format::ALL.iter().find(|format| format.name() == word) {
+            Some(format) => Ok(*format),
+            None if matches!(word, "png" | "gif") => Err(UnknownFormat::NotBuilt(word.to_owned())),
+            None => Err(UnknownFormat::Unknown(word.to_owned())),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists.
+//!
+//! Every file is derived from a linkage and, if there is a run, from its record; the same record gives the same bytes.
+//! CAD formats are in millimetres: a length x of the file becomes x times its unit times [`Settings::scale`]; a file
+//! without a unit is taken to be in millimetres, which a note mentions. Every size of a plate is a setting with a
+//! default that follows from the linkage; [`Exported::notes`] and the file itself state the sizes that were chosen.
+//!
+//! | format | contents | module |
+//! |---|---|---|
+//! | `svg`, `svg-plates` | drawings, one unit of the view box a millimetre | `svg` |
+//! | `dxf`, `dxf-plates` | AutoCAD 2000 drawings, `$INSUNITS` millimetres | `dxf`, `drafting` |
+//! | `stl` | the plates as closed bodies, laid out side by side | `mesh`, `stl` |
+//! | `scad` | an OpenSCAD script with every size as a parameter | `openscad` |
+//! | `cut-list`, `cut-list-csv` | hole distances and sizes of each plate | `cut_list` |
+//! | `csv`, `toml`, `json` | the cycle and the linkage, in the file's own unit | |
+//! | `png`, `gif` | a picture, the linkage in motion (feature `images`) | `images` |
+
+mod cut_list;
+mod drafting;
+mod dxf;
+mod format;
+#[cfg(feature = "images")]
+mod images;
+mod mesh;
+mod model;
+mod openscad;
+mod settings;
+mod stl;
+mod subject;
+mod svg;
+
+pub use format::{Format, UnknownFormat};
+pub use settings::{Refusal, Settings};
+pub use subject::Subject;
+
+use crate::files::generator;
+use crate::mechanism::analysis::{Request, analyze, full_turn};
+use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::report::analysis_csv::analysis_csv;
+use model::Model;
+
+/// An exported file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// The contents of the file: text if [`Format::is_text`].
+    pub bytes: Vec<u8>,
+    /// The assumptions that were made, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Writes a subject in a format.
+///
+/// # Errors
+/// [`Refusal`] if a setting does not fit the linkage (holes that run into each other, a crank angle at which the loop
+/// is open), or if the linkage has no position or no sensible size in millimetres.
+pub fn export(subject: &Subject, format: Format, settings: &Settings) -> Result<Exported, Refusal> {
+    match format {
+        Format::Csv | Format::Toml | Format::Json => own_unit(subject, format, settings),
+        _ => {
+            let model = Model::new(subject, settings)?;
+            let bytes = in_millimetres(&model, format, settings)?;
+            Ok(Exported { bytes, notes: model.notes(format) })
+        }
+    }
+}
+
+fn in_millimetres(model: &Model<'_>, format: Format, settings: &Settings) -> Result<Vec<u8>, Refusal> {
+    let text = match format {
+        Format::Svg => svg::drawing(model, &model.pose(settings)?),
+        Format::SvgPlates => svg::plates(model, &model.plates()?),
+        Format::Dxf => drafting::sketch(model, &model.pose(settings)?),
+        Format::DxfPlates => drafting::plates(model, &model.plates()?),
+        Format::Stl => stl::plates(model, &model.plates()?)?,
+        Format::Scad => openscad::script(model, settings)?,
+        Format::CutList => cut_list::text(model, &model.plates()?),
+        Format::CutListCsv => cut_list::csv(model, &model.plates()?),
+        #[cfg(feature = "images")]
+        Format::Png => return images::png(model, settings),
+        #[cfg(feature = "images")]
+        Format::Gif => return images::gif(model, settings),
+        Format::Csv | Format::Toml | Format::Json => String::new(),
+    };
+    Ok(text.into_bytes())
+}
+
+/// Writes a subject in one of the formats that keep the file's own unit.
+fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Exported, Refusal> {
+    let linkage = model::scaled(&subject.linkage, settings.scale())?;
+    let unit = model::unit_of(subject, settings)?;
+    let mut notes = Vec::new();
+    let text = match format {
+        Format::Csv => {
+            let speed_rad_s = settings.omega_rad_s.unwrap_or(1.0);
+            if settings.omega_rad_s.is_none() {
+                notes.push("omega_rad_s = 1: velocities are those at 1 rad/s".to_owned());
+            }
+            let request = Request {
+                name: subject.name.clone(),
+                unit,
+                linkage,
+                crank_deg: full_turn(settings.positions()),
+                input: CrankMotion::steady(speed_rad_s),
+                methods: Vec::new(),
+                all_configurations: false,
+            };
+            analysis_csv(&analyze(&request))
+        }
+        Format::Toml => crate::files::linkage_file::to_toml(&subject.legal_name(), unit, &linkage),
+        _ => {
+            let mut object = serde_json::Map::new();
+            object.insert("format".into(), crate::files::linkage_file::FORMAT.into());
+            let version = env!("CARGO_PKG_VERSION");
+            object.insert("tool".into(), serde_json::json!({"name": generator::NAME, "version": version}));
+            object.insert("name".into(), subject.legal_name().into());
+            if let Some(unit) = unit {
+                object.insert("unit".into(), unit.label().into());
+            }
+            // Nine finite numbers and two signs can always be written as JSON.
+            object.insert("linkage".into(), serde_json::to_value(linkage).unwrap_or_default());
+            format!("{:#}\n", serde_json::Value::Object(object))
+        }
+    };
+    Ok(Exported { bytes: text.into_bytes(), notes })
+}

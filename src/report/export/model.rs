@@ -1,0 +1,301 @@
+//! The linkage in millimetres, with all sizes of its plates.
+
+use super::settings::{Refusal, Settings};
+use super::{Format, Subject};
+use crate::mechanism::Unit;
+use crate::mechanism::plates::{Placement, Plate};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, NaturalCoordinates, point};
+use crate::report::scene::{circuits_through, middle_position};
+use crate::report::text::{brief, exact};
+
+/// The allowed longest link in millimetres: from a hundredth of a millimetre to ten kilometres.
+const LONGEST_MM: std::ops::RangeInclusive<f64> = 1e-2..=1e7;
+/// The largest allowed coordinate: here, a millionth of a millimetre is still above the rounding.
+const FARTHEST_MM: f64 = 1e9;
+/// The default diameter of a hole, if a unit is given and the linkage has room for it.
+const HOLE_MM: f64 = 4.0;
+/// The default diameter of a hole if no unit is given, as a fraction of the longest link.
+const HOLE_SHARE: f64 = 1.0 / 40.0;
+/// The largest default diameter of a hole, as a fraction of the distance of the nearest two.
+const HOLE_BESIDE: f64 = 1.0 / 3.0;
+/// The chord error as a fraction of a hole's diameter: 0.01 mm at 4 mm.
+const CHORD_SHARE: f64 = 1.0 / 400.0;
+
+/// A subject in millimetres.
+pub(super) struct Model<'a> {
+    pub(super) subject: &'a Subject,
+    /// The linkage in millimetres.
+    pub(super) linkage: FourBar,
+    /// The length of one unit of the file in millimetres, at this scale.
+    pub(super) mm_per_unit: f64,
+    pub(super) target: Vec<Complex>,
+    /// The closed paths of P along every circuit that is used.
+    pub(super) curves: Vec<Vec<Complex>>,
+    pub(super) hole: f64,
+    pub(super) margin: f64,
+    pub(super) kerf: f64,
+    pub(super) thickness: f64,
+    pub(super) gap: f64,
+    pub(super) chord: f64,
+    assumed: Vec<(&'static str, String)>,
+    crowded: Option<Refusal>,
+}
+
+impl<'a> Model<'a> {
+    pub(super) fn new(subject: &'a Subject, settings: &Settings) -> Result<Self, Refusal> {
+        let mut assumed = Vec::new();
+        let unit = unit_of(subject, settings)?;
+        if unit.is_none() {
+            assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
+        }
+        let mm_per_unit = settings.scale() * unit.map_or(1.0, millimetres);
+        let linkage = scaled(&subject.linkage, mm_per_unit)?;
+        check_size(&linkage, settings)?;
+        let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
+        if target.iter().any(|p| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM)) {
+            return Err(too_far(settings));
+        }
+
+        let (nearest, crowd) = nearest_holes(&linkage);
+        let mut default = |key: &'static str, set: Option<f64>, value: f64| {
+            set.unwrap_or_else(|| {
+                let value = rounded_down(value);
+                assumed.push((key, format!("{key} = {}", exact(value))));
+                value
+            })
+        };
+        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest(&linkage) };
+        let hole = default("hole_mm", settings.hole_mm, largest.min(HOLE_BESIDE * nearest));
+        let margin = default("margin_mm", settings.margin_mm, hole);
+        let kerf = settings.kerf_mm.unwrap_or(0.0);
+        let thickness = default("thickness_mm", settings.thickness_mm, 0.75 * hole);
+        let gap = default("gap_mm", settings.gap_mm, margin) + kerf;
+        let chord = default("chord_mm", settings.chord_mm, CHORD_SHARE * hole);
+        if kerf >= hole {
+            return Err(Refusal::about(
+                settings,
+                "kerf_mm",
+                format!("a kerf of {} mm leaves nothing to cut of holes of {} mm", exact(kerf), exact(hole)),
+                "choose kerf_mm below hole_mm",
+            ));
+        }
+        let crowded = (hole >= nearest).then(|| {
+            let apart = brief(nearest, 3);
+            Refusal::about(
+                settings,
+                "hole_mm",
+                format!("holes of {} mm run into each other: {crowd} are {apart} mm apart", exact(hole)),
+                format!("choose hole_mm below {apart}, or a larger scale"),
+            )
+        });
+
+        let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
+        let all = std::iter::once(first).chain(subject.positions.iter().copied());
+        let circuits = circuits_through(&linkage, all, settings.samples());
+        let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
+        Ok(Model {
+            subject,
+            linkage,
+            mm_per_unit,
+            target,
+            curves,
+            hole,
+            margin,
+            kerf,
+            thickness,
+            gap,
+            chord,
+            assumed,
+            crowded,
+        })
+    }
+
+    /// Returns the assumptions that matter for a format, one sentence each.
+    pub(super) fn notes(&self, format: Format) -> Vec<String> {
+        let matters = |key: &&'static str| format.settings().contains(key);
+        let (unit, sizes): (Vec<_>, Vec<_>) =
+            self.assumed.iter().filter(|(key, _)| matters(key)).partition(|(key, _)| *key == "unit");
+        let mut notes: Vec<String> = unit.into_iter().map(|(_, note)| note.clone()).collect();
+        if !sizes.is_empty() {
+            let sizes: Vec<&str> = sizes.into_iter().map(|(_, note)| note.as_str()).collect();
+            notes.push(format!("by default {}", sizes.join(", ")));
+        }
+        notes
+    }
+
+    /// Returns a heading such as `my-path, candidate 1 of 5, lengths in mm, 1 in the file is 25.4 mm`; foreign text in
+    /// it is cleaned.
+    pub(super) fn heading(&self) -> String {
+        format!(
+            "{}, {}, lengths in mm, 1 in the file is {} mm",
+            self.subject.title(),
+            self.subject.standing,
+            exact(self.mm_per_unit)
+        )
+    }
+
+    /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
+    /// is reached, otherwise in the middle of the motion.
+    pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
+        if let Some(angle) = settings.crank_deg {
+            let joints = self.linkage.position(angle.to_radians()).joints();
+            return joints.ok_or_else(|| {
+                Refusal::about(
+                    settings,
+                    "crank_deg",
+                    format!("the links cannot be joined at a crank angle of {} degrees", exact(angle)),
+                    match self.start() {
+                        Ok(((other, _), _)) => {
+                            let other = brief(other.to_degrees(), 4);
+                            format!("choose another crank_deg, such as {other}, or leave it out")
+                        }
+                        Err(_) => {
+                            "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned()
+                        }
+                    },
+                )
+            });
+        }
+        self.start().map(|(_, joints)| joints)
+    }
+
+    /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
+    pub(super) fn start(&self) -> Result<((f64, AssemblyMode), Joints), Refusal> {
+        let middle = middle_position(&self.linkage);
+        let mut tried = self.subject.positions.iter().copied().chain([middle]);
+        let found = tried.find_map(|(angle, assembly)| {
+            Some(((angle, assembly), self.linkage.position_with(angle, assembly).joints()?))
+        });
+        found.ok_or_else(|| {
+            Refusal::new(
+                "the links of this linkage cannot be joined: there is no position to draw",
+                "its plates can be exported: svg-plates, dxf-plates, stl, cut-list",
+            )
+        })
+    }
+
+    /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf).
+    pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
+        if let Some(refusal) = &self.crowded {
+            return Err(refusal.clone());
+        }
+        let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
+        let mut top = 0.0;
+        let placed = plates.into_iter().map(|plate| {
+            let [low, high] = plate.bounds();
+            let origin = Complex::new(-low.re, top - low.im);
+            top += high.im - low.im + self.gap;
+            (plate, Placement { origin, ..Placement::HOME })
+        });
+        Ok(placed.collect())
+    }
+
+    /// Returns the outline of a plate along which the tool's centre moves: grown by half the kerf.
+    pub(super) fn cut(&self, plate: &Plate) -> Plate {
+        plate.with_radius(plate.radius + 0.5 * self.kerf)
+    }
+
+    /// Returns the radius of a hole along which the tool's centre moves.
+    pub(super) fn cut_hole(&self) -> f64 {
+        0.5 * (self.hole - self.kerf)
+    }
+}
+
+/// Returns the length of a unit in millimetres.
+fn millimetres(unit: Unit) -> f64 {
+    match unit {
+        Unit::Mm => 1.0,
+        Unit::Cm => 10.0,
+        Unit::M => 1000.0,
+        Unit::In => 25.4,
+    }
+}
+
+/// Returns the unit of the file, or that of the settings if the file has none.
+pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<Unit>, Refusal> {
+    match (subject.unit, settings.unit) {
+        (Some(own), Some(set)) if own != set => Err(Refusal::about(
+            settings,
+            "unit",
+            format!("the lengths are in {} already", own.label()),
+            "`unit` says what lengths without a unit are in; use `scale` to enlarge",
+        )),
+        (own, set) => Ok(own.or(set)),
+    }
+}
+
+/// Returns a linkage with all lengths multiplied by a factor.
+pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
+    let p = linkage.natural_coordinates();
+    let parameters = NaturalCoordinates {
+        crank_pivot: p.crank_pivot.map(|x| x * factor),
+        follower_pivot: p.follower_pivot.map(|x| x * factor),
+        crank: p.crank * factor,
+        coupler: p.coupler * factor,
+        follower: p.follower * factor,
+        crank_side: p.crank_side * factor,
+        follower_side: p.follower_side * factor,
+        ..p
+    };
+    FourBar::new(parameters).map_err(|e| {
+        Refusal::new(
+            format!("scaled {} times, this is no linkage: {e}", exact(factor)),
+            "choose another scale",
+        )
+    })
+}
+
+fn longest(linkage: &FourBar) -> f64 {
+    linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+}
+
+fn check_size(linkage: &FourBar, settings: &Settings) -> Result<(), Refusal> {
+    let longest = longest(linkage);
+    if !LONGEST_MM.contains(&longest) {
+        return Err(Refusal::about(
+            settings,
+            "scale",
+            format!("the longest link would be {} mm long", brief(longest, 3)),
+            "set scale=.. so that it is between 0.01 and 10000000 mm",
+        ));
+    }
+    let coordinates = [linkage.crank_pivot(), linkage.follower_pivot()];
+    if coordinates.iter().any(|p| p.re.abs().max(p.im.abs()) > FARTHEST_MM) {
+        return Err(too_far(settings));
+    }
+    Ok(())
+}
+
+fn too_far(settings: &Settings) -> Refusal {
+    Refusal::about(
+        settings,
+        "scale",
+        "the drawing lies more than 1000 km from the origin",
+        "set a smaller scale, or move the problem to the origin",
+    )
+}
+
+/// Returns the distance of the nearest two distinct holes of one plate, and their names.
+fn nearest_holes(linkage: &FourBar) -> (f64, String) {
+    let mut nearest = (f64::INFINITY, String::new());
+    for plate in Plate::all(linkage, 0.0) {
+        let holes = plate.distinct_holes();
+        for (i, (name, at)) in holes.iter().enumerate() {
+            for (other, there) in &holes[..i] {
+                let distance = (at - there).norm();
+                if distance < nearest.0 {
+                    nearest = (distance, format!("{other} and {name} of the {}", plate.link.name()));
+                }
+            }
+        }
+    }
+    nearest
+}
+
+/// Returns the largest number of two significant digits that is not larger than a value.
+fn rounded_down(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32 - 1;
+    // Slightly increased, so that 0.3 is not taken for 0.29999.
+    let digits = (value / 10f64.powi(exponent) * (1.0 + 1e-12)).floor();
+    format!("{digits}e{exponent}").parse().unwrap_or(value)
+}

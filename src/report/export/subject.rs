@@ -1,0 +1,71 @@
+//! The subject of an export: a linkage with the known facts about its target.
+
+use crate::files::linkage_file::LinkageFile;
+use crate::files::name;
+use crate::mechanism::Unit;
+use crate::mechanism::{AssemblyMode, FourBar};
+use crate::record::{Candidate, Record};
+use crate::report::text::clean;
+
+/// A linkage to export.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// The name of its problem or file: foreign text.
+    pub name: String,
+    /// A short description of the linkage: `candidate 2 of 5`.
+    pub standing: String,
+    /// The unit of its lengths.
+    pub unit: Option<Unit>,
+    /// The linkage.
+    pub linkage: FourBar,
+    /// The target points; empty without a run.
+    pub target: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// The crank angle (radians) and assembly at each target point.
+    pub positions: Vec<(f64, AssemblyMode)>,
+}
+
+impl Subject {
+    /// Returns the subject of a candidate of a record.
+    pub fn of_candidate(record: &Record, candidate: &Candidate) -> Self {
+        let path = &record.problem.resolved.task.path;
+        let angles = candidate.crank_deg.iter().map(|angle| angle.to_radians());
+        Subject {
+            name: record.problem.name.clone(),
+            standing: match candidate.rank {
+                0 => "the buildable candidate".to_owned(),
+                rank => format!("candidate {rank} of {}", record.candidates.len()),
+            },
+            unit: record.problem.unit,
+            linkage: candidate.linkage,
+            target: path.points.clone(),
+            closed: path.closed,
+            positions: angles.zip(candidate.t1_at.iter().copied()).filter(|(a, _)| a.is_finite()).collect(),
+        }
+    }
+
+    /// Returns the subject of a linkage without a run.
+    pub fn of_linkage(file: &LinkageFile) -> Self {
+        Subject {
+            name: file.name.clone(),
+            standing: "a linkage file".to_owned(),
+            unit: file.unit,
+            linkage: file.linkage,
+            target: Vec::new(),
+            closed: false,
+            positions: Vec::new(),
+        }
+    }
+
+    /// Returns the name on one line, without characters that act on a terminal; never empty.
+    pub fn title(&self) -> String {
+        let name = clean(&self.name);
+        if name.is_empty() { "unnamed".to_owned() } else { name }
+    }
+
+    /// Returns the name in a form that is legal in a linkage file.
+    pub fn legal_name(&self) -> String {
+        name::legal(&self.name, "linkage")
+    }
+}

@@ -1,0 +1,62 @@
+//! The parts of a record beside its ranked candidates: warnings, the family of exact answers, and a buildable
+//! candidate.
+
+use super::buildable::buildable;
+use super::{Budget, Observer, SearchOutcome};
+use crate::judge::family::family;
+use crate::judge::symmetry::mirror_image_serves;
+use crate::judge::warnings::warnings;
+use crate::record::{Candidate, Family};
+use crate::task::Problem;
+use crate::task::spec::Method;
+
+/// The results reported beside the ranked candidates.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// The family that the first candidate belongs to.
+    pub family: Option<Family>,
+    /// The best buildable candidate, if the first candidate has warnings.
+    pub buildable: Option<Candidate>,
+}
+
+/// Annotates a candidate with its warnings and with whether its mirror image serves as well.
+pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
+    candidate.warnings = warnings(problem, candidate);
+    candidate.mirror_serves = mirror_image_serves(problem, candidate);
+}
+
+/// Annotates the candidates and returns the family and the buildable candidate.
+///
+/// If the first candidate has warnings, the method is `auto` and advice is asked for, a second search looks for a
+/// buildable linkage. It uses at most as many evaluations as the first search used and the budget still has; they are
+/// added to the outcome's. If the time limit or a cancellation cuts it short, that becomes the outcome's reason.
+pub fn beside(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Beside {
+    for candidate in &mut outcome.candidates {
+        annotate(problem, candidate);
+    }
+    let family = outcome.candidates.first().and_then(|best| family(problem, best));
+    let solve = &problem.spec().solve;
+    if !solve.advice
+        || solve.method != Method::Auto
+        || outcome.candidates.first().is_none_or(|c| c.warnings.is_empty())
+    {
+        return Beside { family, buildable: None };
+    }
+    let used = outcome.evaluations.objective;
+    let allowance = used.min(solve.evaluations.saturating_sub(used));
+    let mut found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
+    if let Some(candidate) = &mut found.candidate {
+        candidate.mirror_serves = mirror_image_serves(problem, candidate);
+    }
+    outcome.evaluations.objective += found.evaluations.objective;
+    outcome.evaluations.positions += found.evaluations.positions;
+    if let Some(reason) = budget.stop_reason().filter(|_| found.searched) {
+        outcome.reason = reason;
+    }
+    Beside { family, buildable: found.candidate }
+}

@@ -1,0 +1,523 @@
+//! An atlas of coupler curves: a table of linkages from which those whose curves resemble a given target are taken as
+//! starts.
+//!
+//! *Closed targets.* Each entry is a linkage in the frame A = 0, B = 1 with the magnitudes of its curve's Fourier
+//! coefficients,
+//!
+//! ```text
+//! F_k = sum_m P_m e^{-2 pi i k m / M},   k = +-1 .. +-K,   divided by sqrt(sum |F_k|^2)
+//! ```
+//!
+//! at M points spaced evenly along the curve. They do not change if the curve is moved, turned, scaled or started
+//! elsewhere; if it is run backwards, F_k and F_-k change places. (Descriptors of closed curves: Zahn and Roskies 1972;
+//! for coupler curves McGarva and Mullineux 1993.) The nearest entries are then fitted to the target by similarity at
+//! every shift (Procrustes), and the best give starts.
+//!
+//! *Open targets.* A second atlas holds `ARCS` arcs of each entry's curve, of random begin and length, each as M points
+//! c_m evenly along it, centred and of unit norm. For a target t_m normalised alike, the relative residual after the
+//! best similarity is 1 - |sum conj(c_m) t_m|^2.
+//!
+//! Both are drawn from a fixed stream, once in a process, when they are first needed, on all cores.
+
+use super::starts::{Starts, draw_ratios};
+use crate::mechanism::four_bar::mobility::{Mobility, linkage_type};
+use crate::mechanism::{Circuit, Complex, InputArc, LinkageType};
+use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
+use crate::task::forms::linear_fit::{Ratios, coupler_direction};
+use crate::task::forms::start::Start;
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+/// Number of entries drawn.
+pub const ENTRIES: usize = 30_000;
+/// Entries drawn from one random stream.
+const CHUNK: usize = 500;
+/// The seed of the atlas: it is the same for every problem and run.
+const SEED: u64 = 0x61_746c_6173;
+/// Positions at which a curve is sampled.
+const TRACED: usize = 72;
+/// Points evenly along a curve.
+const EVEN: usize = 32;
+/// Fourier harmonics of each sign.
+const HARMONICS: usize = 6;
+/// Number of nearest entries that are fitted to the target by similarity.
+const LAID: usize = 2400;
+
+type Descriptor = [f32; 2 * HARMONICS];
+
+/// The x and y coordinates of points evenly along a closed curve, centred and of unit norm.
+#[derive(Clone, Copy, Debug)]
+struct Even([[f32; EVEN]; 2]);
+
+impl Even {
+    fn of(points: &[Complex]) -> Option<Even> {
+        let middle = points.iter().sum::<Complex>() / points.len() as f64;
+        let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
+        let mut out = [[0.0; EVEN]; 2];
+        for (m, p) in points.iter().enumerate().take(EVEN) {
+            let q = (p - middle) / norm;
+            (out[0][m], out[1][m]) = (q.re as f32, q.im as f32);
+        }
+        norm.is_normal().then_some(Even(out))
+    }
+
+    /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
+    /// `ahead`: in the same direction, else reversed.
+    fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
+        // Twice around, so that every shift is a contiguous range.
+        let mut around = [[0.0f32; 2 * EVEN]; 2];
+        for (around, own) in around.iter_mut().zip(&self.0) {
+            around[..EVEN].copy_from_slice(own);
+            around[EVEN..].copy_from_slice(own);
+        }
+        let (mut re, mut im) = ([0.0f32; EVEN], [0.0f32; EVEN]);
+        for m in 0..EVEN {
+            let (tx, ty) = (target.0[0][m], target.0[1][m]);
+            let from = if ahead { m } else { EVEN - m };
+            let (x, y) = (&around[0][from..from + EVEN], &around[1][from..from + EVEN]);
+            for shift in 0..EVEN {
+                re[shift] += x[shift] * tx + y[shift] * ty;
+                im[shift] += x[shift] * ty - y[shift] * tx;
+            }
+        }
+        std::array::from_fn(|shift| 1.0 - (re[shift] * re[shift] + im[shift] * im[shift]))
+    }
+}
+
+/// A linkage of the atlas with the circuit that it runs on.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    kind: LinkageType,
+    ratios: Ratios,
+    /// The coupler point P from C in the coupler's frame, in units of the ground.
+    offset: Complex,
+    /// Assembly sign t1, if the crank turns fully.
+    assembly: f64,
+    arc: Option<InputArc>,
+    descriptor: Descriptor,
+    even: Even,
+}
+
+/// A sampled curve with its arc length.
+struct Traced {
+    points: Vec<Complex>,
+    /// The arc length up to each point over the whole length; one more than points.
+    along: Vec<f64>,
+}
+
+impl Entry {
+    /// Returns the position at a parameter in [0, 1): the crank and coupler directions (e, u) relative to the ground
+    /// line.
+    fn at(&self, parameter: f64) -> Option<[Complex; 2]> {
+        let (e, t) = match self.arc {
+            None => (Complex::from_polar(1.0, TAU * parameter), self.assembly),
+            Some(arc) => {
+                // Slightly off the toggles, where the assembly is undecided.
+                let psi = TAU * parameter;
+                let angle = arc.middle + (1.0 - 1e-9) * arc.half_width * psi.sin();
+                (Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+            }
+        };
+        Some([e, coupler_direction(&self.ratios, e, t)?])
+    }
+
+    fn trace(&self) -> Option<Traced> {
+        let mut points = Vec::with_capacity(TRACED);
+        for (i, circle) in unit_circle().iter().enumerate() {
+            // Half a step off, so that no sample lies on a toggle.
+            let [e, u] = match self.arc {
+                None => [*circle, coupler_direction(&self.ratios, *circle, self.assembly)?],
+                Some(_) => self.at((i as f64 + 0.5) / TRACED as f64)?,
+            };
+            points.push(e * self.ratios.crank + u * self.offset);
+        }
+        let along = lengths(&points)?;
+        Some(Traced { points, along })
+    }
+}
+
+/// Returns the crank directions at which a full turn is sampled.
+fn unit_circle() -> &'static [Complex; TRACED] {
+    static CIRCLE: OnceLock<[Complex; TRACED]> = OnceLock::new();
+    CIRCLE.get_or_init(|| {
+        std::array::from_fn(|i| Complex::from_polar(1.0, TAU * ((i as f64 + 0.5) / TRACED as f64)))
+    })
+}
+
+impl Traced {
+    /// Returns the index of the sample before a place in [0, 1) of the curve, and the fraction of the way to the next.
+    fn locate(&self, place: f64) -> (usize, f64) {
+        let corner = self.along.partition_point(|length| *length <= place).clamp(1, TRACED) - 1;
+        let (from, to) = (self.along[corner], self.along[corner + 1]);
+        (corner, if to > from { (place - from) / (to - from) } else { 0.0 })
+    }
+
+    fn point(&self, place: f64) -> Complex {
+        let (corner, part) = self.locate(place);
+        let (from, to) = (self.points[corner], self.points[(corner + 1) % TRACED]);
+        from + (to - from) * part
+    }
+
+    fn parameter(&self, place: f64) -> f64 {
+        let (corner, part) = self.locate(place);
+        ((corner as f64 + 0.5 + part) / TRACED as f64).rem_euclid(1.0)
+    }
+}
+
+/// Returns the length along a closed polygon up to each corner and back at the first, in parts of the whole.
+fn lengths(points: &[Complex]) -> Option<Vec<f64>> {
+    let mut along = vec![0.0];
+    for i in 0..points.len() {
+        let step = (points[(i + 1) % points.len()] - points[i]).norm_sqr().sqrt();
+        along.push(along[i] + step);
+    }
+    let whole = along[points.len()];
+    (whole > 0.0 && whole.is_finite()).then(|| along.iter().map(|s| s / whole).collect())
+}
+
+/// Returns `count` points evenly along a closed polygon, from its first corner on.
+fn evenly(points: &[Complex], along: &[f64], count: usize) -> Vec<Complex> {
+    let mut corner = 0;
+    (0..count)
+        .map(|m| {
+            let s = m as f64 / count as f64;
+            while along[corner + 1] <= s {
+                corner += 1;
+            }
+            let (from, to) = (points[corner], points[(corner + 1) % points.len()]);
+            from + (to - from) * ((s - along[corner]) / (along[corner + 1] - along[corner]))
+        })
+        .collect()
+}
+
+fn descriptor(even: &[Complex]) -> Option<Descriptor> {
+    let mut out = [0.0f32; 2 * HARMONICS];
+    let mut magnitudes = [0.0; 2 * HARMONICS];
+    let turn = Complex::from_polar(1.0, -TAU / even.len() as f64);
+    let mut step = Complex::new(1.0, 0.0);
+    for k in 0..HARMONICS {
+        step *= turn;
+        let (mut ahead, mut back) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
+        let mut phase = Complex::new(1.0, 0.0);
+        for p in even {
+            ahead += p * phase;
+            back += p * phase.conj();
+            phase *= step;
+        }
+        magnitudes[k] = ahead.norm_sqr();
+        magnitudes[HARMONICS + k] = back.norm_sqr();
+    }
+    let whole: f64 = magnitudes.iter().sum();
+    for (out, m) in out.iter_mut().zip(magnitudes) {
+        *out = (m / whole).sqrt() as f32;
+    }
+    whole.is_normal().then_some(out)
+}
+
+const KINDS: [LinkageType; 5] = [
+    LinkageType::CrankRocker,
+    LinkageType::DoubleCrank,
+    LinkageType::RockerCrank,
+    LinkageType::DoubleRocker,
+    LinkageType::TripleRocker,
+];
+
+/// One in this many entries is close to a change point: such curves have the sharpest corners.
+const NEAR_CHANGE_POINT_EVERY: usize = 4;
+/// Range of the distance |s + l - p - q| from the change point, in units of the shortest link.
+const FROM_CHANGE_POINT: (f64, f64) = (1e-4, 0.1);
+
+/// Returns the same links with the longest one changed so that s + l - p - q is almost zero, on either side.
+fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, LinkageType)> {
+    let mut links = [1.0, ratios.crank, ratios.coupler, ratios.follower];
+    let (mut shortest, mut longest) = (0, 0);
+    for i in 1..4 {
+        shortest = if links[i] < links[shortest] { i } else { shortest };
+        longest = if links[i] > links[longest] { i } else { longest };
+    }
+    let off = uniform(stream, FROM_CHANGE_POINT.0.ln(), FROM_CHANGE_POINT.1.ln()).exp();
+    let side = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
+    let others: f64 = links.iter().sum::<f64>() - links[longest] - links[shortest];
+    links[longest] = others - links[shortest] + side * off * links[shortest];
+    let kind = linkage_type(links).filter(|kind| *kind != LinkageType::ChangePoint)?;
+    let ground = links[0];
+    let ratios = Ratios { crank: links[1] / ground, coupler: links[2] / ground, follower: links[3] / ground };
+    Some((ratios, kind))
+}
+
+fn draw(stream: &mut Stream) -> Option<Entry> {
+    let kind = KINDS[below(stream, KINDS.len())];
+    let assembly = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
+    let which = below(stream, 2) as u8;
+    let reach = uniform(stream, 0.05_f64.ln(), 3.0_f64.ln()).exp();
+    let angle = uniform(stream, -PI, PI);
+    let mut ratios = draw_ratios(stream, kind)?;
+    let mut kind = kind;
+    if below(stream, NEAR_CHANGE_POINT_EVERY) == 0 {
+        (ratios, kind) = near_change_point(stream, &ratios)?;
+    }
+    let longest = ratios.crank.max(ratios.coupler).max(ratios.follower).max(1.0);
+    let offset = Complex::new(0.5 * ratios.coupler, 0.0) + Complex::from_polar(reach * longest, angle);
+    let arc = if kind.input_turns_fully() {
+        None
+    } else {
+        let mobility: Mobility = super::starts::unit_linkage(&ratios)?;
+        Some(mobility.arc(Circuit { index: which % mobility.circuits().max(1) })?)
+    };
+    let even = Even([[0.0; EVEN]; 2]);
+    let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS], even };
+    let traced = entry.trace()?;
+    let points = evenly(&traced.points, &traced.along, EVEN);
+    entry.descriptor = descriptor(&points)?;
+    entry.even = Even::of(&points)?;
+    Some(entry)
+}
+
+fn atlas() -> &'static [Entry] {
+    static ATLAS: OnceLock<Vec<Entry>> = OnceLock::new();
+    ATLAS.get_or_init(|| {
+        let chunk = |index: usize| -> Vec<Entry> {
+            let mut draws = stream(SEED, index as u64);
+            (0..CHUNK).filter_map(|_| draw(&mut draws)).collect()
+        };
+        (0..ENTRIES / CHUNK).into_par_iter().flat_map_iter(chunk).collect()
+    })
+}
+
+/// An arc of an entry's curve.
+#[derive(Clone, Copy, Debug)]
+struct Arc {
+    entry: u32,
+    /// Begin and length of the arc, in parts of the curve's length.
+    begin: f32,
+    span: f32,
+    /// Whether the arc stays on one branch (assembly).
+    one_branch: bool,
+    points: [[f32; 2]; ON_ARC],
+}
+
+/// Number of points on an arc.
+const ON_ARC: usize = 12;
+/// Number of arcs per entry.
+const ARCS: usize = 3;
+/// Least and greatest length of an arc, in parts of the curve's.
+const SPANS: (f64, f64) = (0.1, 0.97);
+
+/// Returns the points centred and scaled to unit norm; `None` if all points coincide.
+fn normalised(points: &[Complex]) -> Option<[[f32; 2]; ON_ARC]> {
+    let middle = points.iter().sum::<Complex>() / points.len() as f64;
+    let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
+    let mut out = [[0.0; 2]; ON_ARC];
+    for (out, p) in out.iter_mut().zip(points) {
+        let q = (p - middle) / norm;
+        *out = [q.re as f32, q.im as f32];
+    }
+    norm.is_normal().then_some(out)
+}
+
+impl Arc {
+    fn of(index: usize, entry: &Entry, traced: &Traced, stream: &mut Stream) -> Option<Arc> {
+        let begin = uniform(stream, 0.0, 1.0);
+        let span = uniform(stream, SPANS.0, SPANS.1);
+        let mut points = [Complex::new(0.0, 0.0); ON_ARC];
+        for (m, p) in points.iter_mut().enumerate() {
+            *p = traced.point((begin + span * m as f64 / (ON_ARC - 1) as f64).rem_euclid(1.0));
+        }
+        let one_branch = entry.arc.is_none() || {
+            // psi = 2 pi parameter: the toggles are at a quarter and at three quarters.
+            let half = |s: f64| (traced.parameter(s.rem_euclid(1.0)) + 0.25).rem_euclid(1.0) < 0.5;
+            let halves: Vec<bool> = (0..=24).map(|m| half(begin + span * f64::from(m) / 24.0)).collect();
+            halves.iter().all(|h| *h == halves[0])
+        };
+        let points = normalised(&points)?;
+        Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })
+    }
+
+    /// Returns the relative residual of a target after the best similarity, for the arc in the target's direction and
+    /// reversed.
+    fn misfits(&self, target: &[[f32; 2]; ON_ARC]) -> [f32; 2] {
+        let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
+        for ((t, c), r) in target.iter().zip(&self.points).zip(self.points.iter().rev()) {
+            ahead = [ahead[0] + c[0] * t[0] + c[1] * t[1], ahead[1] + c[0] * t[1] - c[1] * t[0]];
+            back = [back[0] + r[0] * t[0] + r[1] * t[1], back[1] + r[0] * t[1] - r[1] * t[0]];
+        }
+        [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
+    }
+}
+
+fn arcs() -> &'static [Arc] {
+    static ARC_ATLAS: OnceLock<Vec<Arc>> = OnceLock::new();
+    ARC_ATLAS.get_or_init(|| {
+        let of_chunk = |(chunk, entries): (usize, &[Entry])| -> Vec<Arc> {
+            let mut draws = stream(SEED + 1, chunk as u64);
+            let mut out = Vec::with_capacity(ARCS * entries.len());
+            for (i, entry) in entries.iter().enumerate() {
+                let Some(traced) = entry.trace() else { continue };
+                for _ in 0..ARCS {
+                    out.extend(Arc::of(chunk * CHUNK + i, entry, &traced, &mut draws));
+                }
+            }
+            out
+        };
+        atlas().par_chunks(CHUNK).enumerate().flat_map_iter(of_chunk).collect()
+    })
+}
+
+/// An entry fitted to a target by similarity.
+#[derive(Clone, Copy, Debug)]
+struct Laid {
+    entry: &'static Entry,
+    /// The place on the curve at which the target begins, in parts of its length from its first sample.
+    begin: f64,
+    /// The part of the curve's length that the target covers.
+    span: f64,
+    /// The direction: +1 if the target runs as the parameter grows, -1 if against it.
+    direction: f64,
+    /// The residual of the similarity fit, relative to the target's spread.
+    misfit: f64,
+}
+
+/// The nearest entries to a target, best first.
+#[derive(Debug)]
+pub struct Matches {
+    laid: Vec<Laid>,
+}
+
+impl Matches {
+    /// Finds the matches for the target of a problem; empty if no entry may be used.
+    pub fn of(starts: &Starts<'_>) -> Matches {
+        let task = starts.problem().task();
+        if task.closed() || task.repeats_first() { Matches::closed(starts) } else { Matches::open(starts) }
+    }
+
+    fn open(starts: &Starts<'_>) -> Matches {
+        let none = Matches { laid: Vec::new() };
+        let problem = starts.problem();
+        let (points, along) = (problem.task().points(), starts.arc());
+        // ON_ARC points evenly along the target.
+        let mut even = Vec::with_capacity(ON_ARC);
+        for m in 0..ON_ARC {
+            let s = m as f64 / (ON_ARC - 1) as f64;
+            let next = along.partition_point(|length| *length < s).clamp(1, points.len() - 1);
+            let (from, to) = (along[next - 1], along[next]);
+            let part = if to > from { ((s - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+            even.push(points[next - 1] + (points[next] - points[next - 1]) * part);
+        }
+        let Some(target) = normalised(&even) else { return none };
+        let types = problem.types();
+        let senses = [1.0, -1.0].map(|sense| problem.directions().contains(&sense));
+        let mut near: Vec<(f32, usize, f64)> = Vec::new();
+        for (index, arc) in arcs().iter().enumerate() {
+            let [ahead, back] = arc.misfits(&target);
+            let (misfit, direction) = match senses {
+                [true, true] => {
+                    if back < ahead {
+                        (back, -1.0)
+                    } else {
+                        (ahead, 1.0)
+                    }
+                }
+                [true, false] => (ahead, 1.0),
+                _ => (back, -1.0),
+            };
+            let kind = || atlas()[arc.entry as usize].kind;
+            let usable =
+                (arc.one_branch || problem.branch_any()) && (types.is_empty() || types.contains(&kind()));
+            if usable {
+                near.push((misfit, index, direction));
+            }
+        }
+        let order = |one: &(f32, usize, f64), other: &(f32, usize, f64)| {
+            one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
+        };
+        if near.len() > LAID {
+            near.select_nth_unstable_by(LAID, order);
+            near.truncate(LAID);
+        }
+        near.sort_by(order);
+        let lay = |&(misfit, index, direction): &(f32, usize, f64)| {
+            let arc = &arcs()[index];
+            let (begin, span) = (f64::from(arc.begin), f64::from(arc.span));
+            let begin = if direction > 0.0 { begin } else { begin + span };
+            Laid { entry: &atlas()[arc.entry as usize], begin, span, direction, misfit: f64::from(misfit) }
+        };
+        Matches { laid: near.iter().map(lay).collect() }
+    }
+
+    fn closed(starts: &Starts<'_>) -> Matches {
+        let none = Matches { laid: Vec::new() };
+        let problem = starts.problem();
+        let points: Vec<Complex> = starts.loop_points().to_vec();
+        let Some(along) = lengths(&points) else { return none };
+        let even = evenly(&points, &along, EVEN);
+        let (Some(wanted), Some(target)) = (descriptor(&even), Even::of(&even)) else { return none };
+        let types = problem.types();
+        let senses: &[f64] = problem.directions();
+        let usable = |entry: &Entry| {
+            (types.is_empty() || types.contains(&entry.kind)) && (entry.arc.is_none() || problem.branch_any())
+        };
+        let apart = |entry: &Entry| -> f32 {
+            let d = &entry.descriptor;
+            let (mut same, mut reversed) = (0.0, 0.0);
+            for k in 0..2 * HARMONICS {
+                same += (d[k] - wanted[k]).powi(2);
+                reversed += (d[(k + HARMONICS) % (2 * HARMONICS)] - wanted[k]).powi(2);
+            }
+            same.min(reversed)
+        };
+        let mut near: Vec<(f32, usize)> = atlas()
+            .iter()
+            .enumerate()
+            .filter(|(_, entry)| usable(entry))
+            .map(|(index, entry)| (apart(entry), index))
+            .collect();
+        let order =
+            |one: &(f32, usize), other: &(f32, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+        if near.len() > LAID {
+            near.select_nth_unstable_by(LAID, order);
+            near.truncate(LAID);
+        }
+        near.sort_by(order);
+        let lay = |&(_, index): &(f32, usize)| -> Option<Laid> {
+            let entry: &'static Entry = &atlas()[index];
+            let mut best: Option<Laid> = None;
+            for &direction in senses {
+                for (shift, misfit) in entry.even.misfits(&target, direction > 0.0).into_iter().enumerate() {
+                    let misfit = f64::from(misfit);
+                    if best.is_none_or(|b| misfit < b.misfit) {
+                        let begin = shift as f64 / EVEN as f64;
+                        best = Some(Laid { entry, begin, span: 1.0, direction, misfit });
+                    }
+                }
+            }
+            best
+        };
+        let mut laid: Vec<Laid> = near.iter().filter_map(lay).collect();
+        laid.sort_by(|one, other| one.misfit.total_cmp(&other.misfit));
+        Matches { laid }
+    }
+
+    /// Returns the number of matches.
+    pub fn len(&self) -> usize {
+        self.laid.len()
+    }
+
+    /// Returns whether there are no matches.
+    pub fn is_empty(&self) -> bool {
+        self.laid.is_empty()
+    }
+
+    /// Returns the start made from the match of a rank, counted from 0.
+    pub fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
+        let laid = self.laid.get(rank)?;
+        let traced = laid.entry.trace()?;
+        let mut positions = Vec::with_capacity(starts.arc().len());
+        for s in starts.arc() {
+            let place = (laid.begin + laid.direction * laid.span * s).rem_euclid(1.0);
+            let parameter = traced.parameter(place);
+            positions.push(laid.entry.at(parameter)?);
+        }
+        starts.from_positions(&laid.entry.ratios, laid.entry.kind, laid.direction, &positions)
+    }
+}

@@ -1,0 +1,100 @@
+//! Coarsening of dense targets: a search explores the problem with fewer points and fits the answer to all points.
+//!
+//! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group has the total
+//! weight of its points. The pivots, bounds and requirements stay the problem's own.
+
+use crate::mechanism::Complex;
+use crate::task::Problem;
+use crate::task::Timing;
+use crate::task::forms::start::Start;
+use crate::task::forms::torus::{Positions, TorusFit};
+use std::ops::Range;
+
+/// The number of points above which a target is explored in groups.
+const DENSE: usize = 48;
+/// Number of groups.
+const GROUPS: usize = 32;
+
+/// The coarse problem of a dense one, with the groups of points.
+#[derive(Clone, Debug)]
+pub struct Coarse {
+    /// The problem whose points are the groups' means.
+    pub problem: Problem,
+    groups: Vec<Range<usize>>,
+    cyclic: bool,
+}
+
+/// Returns the number of points of a target, a repeated closing point not counted twice.
+fn points_of(problem: &Problem) -> usize {
+    let task = problem.task();
+    if task.repeats_first() { task.len() - 1 } else { task.len() }
+}
+
+impl Coarse {
+    /// Returns whether a target has free timing and so many points that it is explored in groups.
+    pub fn is_for(problem: &Problem) -> bool {
+        points_of(problem) > DENSE && matches!(problem.task().timing(), Timing::Free)
+    }
+
+    /// Returns the coarse problem; `None` if the target has few points, is timed, or cannot be grouped.
+    pub fn of(problem: &Problem) -> Option<Coarse> {
+        let task = problem.task();
+        let n = points_of(problem);
+        if !Coarse::is_for(problem) {
+            return None;
+        }
+        let groups: Vec<Range<usize>> = (0..GROUPS).map(|k| k * n / GROUPS..(k + 1) * n / GROUPS).collect();
+        let weight = |group: &Range<usize>| task.weights()[group.clone()].iter().sum::<f64>();
+        let mut spec = problem.spec().clone();
+        spec.task.path.points = groups
+            .iter()
+            .map(|group| {
+                let pairs = task.points()[group.clone()].iter().zip(&task.weights()[group.clone()]);
+                let mean = pairs.map(|(p, w)| p * w).sum::<Complex>() / weight(group);
+                [mean.re, mean.im]
+            })
+            .collect();
+        spec.task.path.weight = Some(groups.iter().map(weight).collect());
+        spec.task.path.tolerance = None;
+        let cyclic = task.closed() || task.repeats_first();
+        spec.task.path.closed = cyclic;
+        Some(Coarse { problem: Problem::new(spec).ok()?, groups, cyclic })
+    }
+
+    /// Returns the start of the dense problem from one of the coarse problem: the positions are interpolated between a
+    /// group's and the next group's, in equal steps of crank and coupler, and brought back to the curve.
+    pub fn refine(&self, dense: &Problem, coarse: &Start) -> Option<Start> {
+        let (at, count) = (&coarse.positions, self.groups.len());
+        let between = |from: [Complex; 2], to: [Complex; 2], part: f64| -> [Complex; 2] {
+            [0, 1].map(|i| from[i] * Complex::from_polar(1.0, part * (to[i] * from[i].conj()).arg()))
+        };
+        let mut positions: Positions = Vec::with_capacity(dense.task().len());
+        for (k, group) in self.groups.iter().enumerate() {
+            for (i, _) in group.clone().enumerate() {
+                // From -1/2 to 1/2 across the group.
+                let part = (i as f64 + 0.5) / group.len() as f64 - 0.5;
+                let neighbour =
+                    if part < 0.0 { k.checked_sub(1) } else { Some(k + 1).filter(|k| *k < count) };
+                let neighbour = match neighbour {
+                    None if self.cyclic => Some(if part < 0.0 { count - 1 } else { 0 }),
+                    other => other,
+                };
+                positions.push(match neighbour {
+                    Some(next) => between(at[k], at[next], part.abs()),
+                    // Beyond the ends the motion is extrapolated.
+                    None if part < 0.0 => between(at[k], at[k + 1], part),
+                    None => between(at[k], at[k - 1], -part),
+                });
+            }
+        }
+        if dense.task().repeats_first() {
+            positions.push(positions[0]);
+        }
+        let fit = TorusFit::new(dense, coarse.setting);
+        fit.settle(&coarse.design, &mut positions).then_some(Start {
+            design: coarse.design,
+            setting: coarse.setting,
+            positions,
+        })
+    }
+}

@@ -1,0 +1,545 @@
+//! Conflict analysis: which requirements cannot be met together, and the least relaxation after which an answer is
+//! acceptable.
+//!
+//! A demand *helps* if a search without it ends with something acceptable. Every set of demands that cannot be met
+//! together (a conflict) contains all that help. A minimal conflict is found by deletion: each demand that can be left
+//! out without ending the conflict is left out, one after the other. For each demand that helps the smallest loosening
+//! is looked for between its limits and the values attained without it: steps inward, each taken if a fit from known
+//! candidates, or else a short search, ends acceptable there. The limits are then rounded outward to few digits, and
+//! proposed only if the search itself, run with them as it would be when they are typed, ends with an accepted
+//! candidate. If no single demand helps, pairs are tried.
+//!
+//! Every design that a trial finds is also judged by the problem itself, and the nearest ones are fitted under all of
+//! its requirements. An acceptable one refutes the conflict: it becomes an answer, and nothing is explained.
+//!
+//! The results are findings, not proofs: a search that finds nothing does not prove that there is nothing to find.
+
+use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::offered_cognates;
+use super::relaxed::led_in;
+use super::{Budget, Observer, Progress, SearchOutcome, plan};
+use crate::judge::assess::assess;
+use crate::judge::error::rms;
+use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
+use crate::judge::rank::divided;
+use crate::judge::warm::start_at;
+use crate::numbers::optimise::population::PopulationError;
+use crate::record::RELAXED;
+use crate::record::{Candidate, Conflict, Relaxation};
+use crate::task::Problem;
+use crate::task::spec::{ClosingPolicy, DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
+
+/// Most evaluations of a trial.
+const TRIAL: u64 = 20_000;
+/// A trial also uses at most one part in this many of the problem's own budget.
+const TRIAL_SHARE: u64 = 4;
+/// Budget of all trials, in trials: no new one begins once it is spent. (A proof is the whole search, and counted
+/// apart.)
+const ALLOWANCE: u64 = 40;
+/// A fit from a known candidate gets one part in this many of a trial: one that succeeds does so soon.
+const FIT_SHARE: u64 = 16;
+/// Most evaluations of a fit that starts from a design of a trial under all requirements of the problem: each is a
+/// convex program.
+const LED_IN: u64 = 150;
+/// Number of answers of a trial from which further fits start.
+const WARM: usize = 4;
+/// Most limits tried between the asked and the attained ones.
+const STEPS: usize = 30;
+/// Relative step below which the steps inward end.
+const SHORTEST_STEP: f64 = 0.02;
+/// Least relative step at which a short search is worth its cost.
+const SEARCHED_STEP: f64 = 0.2;
+/// Factor of the next step after one that succeeded, and after one that did not.
+const LONGER: f64 = 1.5;
+const SHORTER: f64 = 0.5;
+/// Most proposals.
+const PROPOSALS: usize = 5;
+/// Distance from a bound, in parts of its scale, within which the bound is active.
+const STANDS_ON: f64 = 1e-6;
+/// The distance counted for a change that has no measure (another type, any order): one of the whole.
+const WHOLE: f64 = 1.0;
+
+/// The conflict and the relaxations found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Explained {
+    /// Requirements that cannot be met together.
+    pub conflict: Option<Conflict>,
+    /// Changes that help, nearest first.
+    pub relaxations: Vec<Relaxation>,
+}
+
+/// Explains a search that found nothing acceptable; returns nothing if it found something or the budget has stopped.
+///
+/// If a trial finds a design that is acceptable after all, there is nothing to explain, and if the method is `auto` the
+/// outcome's candidates are chosen anew with it.
+///
+/// If the time limit or a cancellation ends it early there is no explanation, and that becomes the reason why the
+/// search ended: the record cannot be repeated then.
+///
+/// # Errors
+/// As [`plan::search`].
+pub fn explain(
+    problem: &Problem,
+    outcome: &mut SearchOutcome,
+    budget: &Budget<'_>,
+    observer: &Observer<'_>,
+) -> Result<Explained, PopulationError> {
+    // All exact linkages are known, each with the requirements that it does not meet.
+    let listed = problem.spec().solve.method == Method::Continuation;
+    if listed || budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
+        return Ok(Explained::default());
+    }
+    let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
+    let mut inquiry = Inquiry {
+        problem,
+        budget,
+        observer,
+        trial,
+        spent: 0,
+        allowance: ALLOWANCE * trial,
+        refused: outcome.candidates.clone(),
+        met: Vec::new(),
+        tried: Vec::new(),
+    };
+    let explained = inquiry.explain()?;
+    let Inquiry { met, .. } = inquiry;
+    if let Some(reason) = budget.stop_reason() {
+        outcome.reason = reason;
+    }
+    if met.is_empty() {
+        return Ok(if budget.stopped() { Explained::default() } else { explained });
+    }
+    if problem.spec().solve.method != Method::Auto {
+        // The answers have to be those of the method that was asked for.
+        return Ok(Explained::default());
+    }
+    let mut found = std::mem::take(&mut outcome.candidates);
+    found.append(&mut outcome.others);
+    found.extend(met);
+    (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+    offered_cognates::offer(problem, &mut outcome.candidates, budget);
+    // The repeated hits were counted for another best answer.
+    outcome.repeats = None;
+    if !outcome.used.iter().any(|used| used == RELAXED) {
+        outcome.used.push(RELAXED.into());
+    }
+    Ok(Explained::default())
+}
+
+struct Inquiry<'a> {
+    problem: &'a Problem,
+    budget: &'a Budget<'a>,
+    observer: &'a Observer<'a>,
+    /// Evaluations of a trial.
+    trial: u64,
+    spent: u64,
+    allowance: u64,
+    /// The candidates of the search that is explained.
+    refused: Vec<Candidate>,
+    /// Designs that are acceptable after all.
+    met: Vec<Candidate>,
+    /// Acceptable candidates found without these demands, for each set tried.
+    tried: Vec<(Vec<Demand>, Vec<Candidate>)>,
+}
+
+impl Inquiry<'_> {
+    fn exhausted(&self) -> bool {
+        self.spent >= self.allowance || self.budget.stopped() || !self.met.is_empty()
+    }
+
+    fn explain(&mut self) -> Result<Explained, PopulationError> {
+        let demands = self.demands(&self.refused);
+        let mut helping = Vec::new();
+        for &demand in &demands {
+            if !self.without(&[demand])?.is_empty() {
+                helping.push(demand);
+            }
+        }
+        let mut found = Vec::new();
+        for &demand in &helping {
+            found.extend(self.relaxation(&[demand])?);
+        }
+        let among = self.conflict(&demands, &helping)?;
+        if helping.is_empty() {
+            for (i, &one) in among.iter().enumerate() {
+                for &other in demands.iter().filter(|other| !among[..=i].contains(other)) {
+                    if found.len() < PROPOSALS && !self.exhausted() {
+                        found.extend(self.relaxation(&[one, other])?);
+                    }
+                }
+            }
+        }
+        // A stable sort: equally near ones in the order of the demands.
+        found.sort_by(|one, other| one.0.total_cmp(&other.0));
+        found.truncate(PROPOSALS);
+        let among: Vec<String> = among.into_iter().map(|demand| demand.key().into()).collect();
+        Ok(Explained {
+            conflict: (!among.is_empty()).then_some(Conflict { among }),
+            relaxations: found.into_iter().map(|(_, relaxation)| relaxation).collect(),
+        })
+    }
+
+    /// Returns the demands of the problem; of the design's bounds only those that are active at a refused candidate or
+    /// exceeded by it, since an inactive bound does not restrict.
+    fn demands(&self, refused: &[Candidate]) -> Vec<Demand> {
+        let spec = self.problem.spec();
+        let stands_on = |demand: &Demand, candidate: &Candidate| {
+            let (Some(limits), Some(values)) = (demand.limits(spec), demand.attained(candidate)) else {
+                return true;
+            };
+            let scale = scale(*demand, spec).max(STANDS_ON * self.problem.task().size());
+            limits.iter().zip(values).any(|(l, v)| l.outward * (v - l.value) >= -STANDS_ON * scale)
+        };
+        let keep = |demand: &Demand| {
+            !matches!(demand, Demand::Design(_))
+                || refused.is_empty()
+                || refused.iter().any(|candidate| stands_on(demand, candidate))
+        };
+        Demand::of(self.problem).into_iter().filter(keep).collect()
+    }
+
+    /// Returns acceptable candidates of the problem without some demands.
+    fn without(&mut self, demands: &[Demand]) -> Result<Vec<Candidate>, PopulationError> {
+        if let Some((_, found)) = self.tried.iter().find(|(tried, _)| tried == demands) {
+            return Ok(found.clone());
+        }
+        if self.exhausted() {
+            return Ok(Vec::new());
+        }
+        let all = demands.iter();
+        let mut spec = all.fold(self.problem.spec().clone(), |spec, d| d.dropped(self.problem, spec));
+        spec.solve.candidates = WARM;
+        let mut found = self.known_under(&spec);
+        // A tolerance does not guide a fit: the search that is explained has already looked for the nearest to it.
+        if found.is_empty() || demands != [Demand::Tolerance] {
+            found.extend(self.short_search(spec, self.trial, WARM)?);
+        }
+        self.tried.push((demands.to_vec(), found.clone()));
+        Ok(found)
+    }
+
+    /// Returns the refused candidates that are acceptable under a looser specification.
+    fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
+        let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
+        let judged = |c: &Candidate| assess(&problem, &c.linkage, &c.crank_deg, &c.t1_at);
+        self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
+    }
+
+    /// Runs a search of `auto` with a budget of its own and returns the candidates that it accepts. `fits` as for
+    /// [`Inquiry::outcome`].
+    fn short_search(
+        &mut self,
+        mut spec: ProblemSpec,
+        evaluations: u64,
+        fits: usize,
+    ) -> Result<Vec<Candidate>, PopulationError> {
+        spec.solve.evaluations = evaluations.max(1);
+        spec.solve.method = Method::Auto;
+        let (accepted, spent) = self.outcome(spec, fits)?;
+        self.spent += spent;
+        Ok(accepted)
+    }
+
+    /// Returns the candidates of a problem that the search accepts, and its evaluations. All that it finds are judged
+    /// by the problem itself, and `fits` of its ends are fitted under all of its requirements.
+    fn outcome(&mut self, spec: ProblemSpec, fits: usize) -> Result<(Vec<Candidate>, u64), PopulationError> {
+        let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
+        (self.observer)(&Progress {
+            phase: "what would help",
+            evaluations: self.spent,
+            budget: self.allowance,
+            best_sum_sq: None,
+            accepted: false,
+            hits: None,
+        });
+        let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
+        // As a run does: a cognate may take its candidate's place.
+        offered_cognates::offer(&problem, &mut outcome.candidates, self.budget);
+        if self.met.is_empty() {
+            let mut ends = outcome.candidates.clone();
+            ends.append(&mut outcome.others);
+            let each = (self.trial / FIT_SHARE).clamp(1, LED_IN);
+            let (met, spent) = led_in(self.problem, &ends, (fits, each), self.budget);
+            self.spent += spent;
+            self.met.extend(met.into_iter().filter(|c| c.accepted));
+        }
+        let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
+        Ok((accepted, outcome.evaluations.objective))
+    }
+
+    /// Returns a minimal set of demands that cannot be met together; `helping` are in every such set.
+    fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
+        // Bounds and policies are left out first: they often are defaults that nobody has asked for.
+        let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
+        if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
+            return Ok(helping.to_vec());
+        }
+        if helping.is_empty() && self.without(&others)?.is_empty() {
+            // Nothing is acceptable even without all of them, so they are not in conflict.
+            return Ok(Vec::new());
+        }
+        let mut left_out: Vec<Demand> = Vec::new();
+        for &demand in &others {
+            let tried: Vec<Demand> =
+                others.iter().copied().filter(|d| *d == demand || left_out.contains(d)).collect();
+            if self.without(&tried)?.is_empty() && !self.exhausted() {
+                left_out.push(demand);
+            }
+        }
+        if self.exhausted() {
+            // Those that help belong to every conflict; it was not found out if they are one by themselves.
+            return Ok(Vec::new());
+        }
+        Ok(demands.iter().copied().filter(|d| !left_out.contains(d)).collect())
+    }
+
+    /// Returns the least loosening of some demands together, with its distance.
+    fn relaxation(&mut self, demands: &[Demand]) -> Result<Option<(f64, Relaxation)>, PopulationError> {
+        let found = self.without(demands)?;
+        let mut types = Vec::new();
+        for candidate in &found {
+            if !types.contains(&candidate.linkage_type) {
+                types.push(candidate.linkage_type);
+            }
+        }
+        if !demands.contains(&Demand::Type) {
+            types.truncate(1);
+        }
+        for linkage_type in types {
+            let of_type = |c: &&Candidate| c.linkage_type == linkage_type || !demands.contains(&Demand::Type);
+            let warm: Vec<Candidate> = found.iter().filter(of_type).cloned().collect();
+            let mut base = self.problem.spec().clone();
+            for demand in demands {
+                match demand {
+                    Demand::Type => {
+                        base.require.types.push(linkage_type);
+                        base.require.types.sort_unstable();
+                        base.require.types.dedup();
+                    }
+                    Demand::Order => base.require.order = OrderPolicy::Any,
+                    Demand::Direction => base.require.direction = DirectionPolicy::Any,
+                    Demand::Circuit => base.require.circuit = OnePolicy::Any,
+                    Demand::Branch => base.require.branch = OnePolicy::Any,
+                    Demand::Closing => base.require.closing = ClosingPolicy::Any,
+                    _ => {}
+                }
+            }
+            if let Some(relaxation) = self.least(demands, &base, warm)? {
+                return Ok(Some(relaxation));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Returns the least loosening of the limits of `demands` from `base`, in which their other parts are loosened.
+    fn least(
+        &mut self,
+        demands: &[Demand],
+        base: &ProblemSpec,
+        mut warm: Vec<Candidate>,
+    ) -> Result<Option<(f64, Relaxation)>, PopulationError> {
+        let has_measure = |d: &Demand| !d.is_policy();
+        let measured: Vec<Demand> = demands.iter().copied().filter(has_measure).collect();
+        let Some(ladder) = Ladder::new(self.problem, &measured) else { return Ok(None) };
+        let mut reached: Vec<Vec<f64>> = Vec::new();
+        warm.retain(|candidate| match ladder.reached(self.problem, candidate) {
+            Some(limits) => {
+                reached.push(limits);
+                true
+            }
+            None => false,
+        });
+        let Some(first) = (0..warm.len())
+            .min_by(|&i, &k| ladder.distance(&reached[i]).total_cmp(&ladder.distance(&reached[k])))
+        else {
+            return Ok(None);
+        };
+        let outermost = reached.swap_remove(first);
+        warm.swap(0, first);
+        let mut outer = outermost.clone();
+        // The tolerance judges the error but does not guide a fit: the error found is the best known. Beside other
+        // limits it follows: it becomes the error that the last fit leaves.
+        if measured != [Demand::Tolerance] && !measured.is_empty() {
+            let mut step: f64 = 0.5;
+            for _ in 0..STEPS {
+                if step < SHORTEST_STEP || self.exhausted() {
+                    break;
+                }
+                let between = ladder.without_tolerance(ladder.between(1.0 - step, &outer));
+                match self.accepted_at(ladder.spec(base, &between), &warm, step >= SEARCHED_STEP)? {
+                    Some(candidate) => {
+                        let limits = ladder.reached(self.problem, &candidate);
+                        outer = limits.map_or(between.clone(), |limits| ladder.inner(&between, &limits));
+                        warm.insert(0, candidate);
+                        warm.truncate(WARM);
+                        step = (LONGER * step).min(0.5);
+                    }
+                    None => step *= SHORTER,
+                }
+            }
+        }
+        // A fit from nearby may attain more than a search from anywhere: allow a little more room, then all of it.
+        let tries = [outer.clone(), ladder.between(1.1, &outer), outermost];
+        let mut before: Option<Vec<f64>> = None;
+        for limits in tries {
+            if self.budget.stopped() {
+                break;
+            }
+            let limits = ladder.rounded(&limits);
+            if before.as_ref() == Some(&limits) {
+                continue;
+            }
+            let spec = ladder.spec(base, &limits);
+            before = Some(limits.clone());
+            let Some(set) = changes(self.problem, &spec, demands) else { return Ok(None) };
+            // With the settings of the problem: the result is the one obtained when the change is typed.
+            let (accepted, _) = self.outcome(spec, 0)?;
+            if let Some(best) = accepted.first() {
+                let without_measure = (demands.len() - measured.len()) as f64 * WHOLE;
+                let sum_sq = best.error.sum_sq;
+                let relaxation = Relaxation { set, sum_sq, rms: rms(sum_sq, self.problem.task().len()) };
+                return Ok(Some((ladder.distance(&limits) + without_measure, relaxation)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Returns a candidate that is acceptable under other limits: by fits from known candidates, else (`search`) by a
+    /// short search.
+    fn accepted_at(
+        &mut self,
+        spec: ProblemSpec,
+        warm: &[Candidate],
+        search: bool,
+    ) -> Result<Option<Candidate>, PopulationError> {
+        let Ok(problem) = Problem::new(spec) else { return Ok(None) };
+        let each = (self.trial / FIT_SHARE).max(1);
+        for candidate in warm {
+            let Some(start) = start_at(&problem, candidate) else { continue };
+            let fit = polish(&problem, start, LONG_STEPS, LONG_ROUNDS, each, self.budget);
+            self.spent += fit.evaluations;
+            let end = fit.end.and_then(|end| judged(&problem, &end)).filter(|c| c.accepted);
+            if end.is_some() {
+                return Ok(end);
+            }
+        }
+        if !search {
+            return Ok(None);
+        }
+        let mut spec = problem.spec().clone();
+        spec.solve.candidates = 1;
+        Ok(self.short_search(spec, self.trial / TRIAL_SHARE, 0)?.into_iter().next())
+    }
+}
+
+/// Returns the scale by which a change of a demand's limits is measured: the limit itself, or the extent of its bounds.
+fn scale(demand: Demand, spec: &ProblemSpec) -> f64 {
+    let limits = demand.limits(spec).unwrap_or_default();
+    let largest = limits.iter().map(|l| l.value.abs()).fold(0.0, f64::max);
+    match limits.as_slice() {
+        [_] => largest,
+        [x0, y0, x1, y1] if !matches!(demand, Demand::Design(_)) => {
+            (x1.value - x0.value).max(y1.value - y0.value)
+        }
+        several => {
+            several.chunks(2).map(|pair| pair[pair.len() - 1].value - pair[0].value).fold(largest, f64::max)
+        }
+    }
+}
+
+/// The limits of several demands, with their outward sides.
+struct Ladder {
+    demands: Vec<Demand>,
+    asked: Vec<f64>,
+    outward: Vec<f64>,
+    scale: Vec<f64>,
+    lengths: Vec<bool>,
+    tolerances: Vec<bool>,
+}
+
+impl Ladder {
+    /// Collects the limits; `None` if one of the demands has no limits as numbers.
+    fn new(problem: &Problem, demands: &[Demand]) -> Option<Ladder> {
+        let mut ladder = Ladder {
+            demands: demands.to_vec(),
+            asked: Vec::new(),
+            outward: Vec::new(),
+            scale: Vec::new(),
+            lengths: Vec::new(),
+            tolerances: Vec::new(),
+        };
+        for demand in demands {
+            let measure = scale(*demand, problem.spec());
+            for limit in demand.limits(problem.spec())? {
+                ladder.asked.push(limit.value);
+                ladder.outward.push(limit.outward);
+                ladder.scale.push(if measure > 0.0 { measure } else { problem.task().size() });
+                ladder.lengths.push(matches!(demand, Demand::Design(key) if key.is_length()));
+                ladder.tolerances.push(*demand == Demand::Tolerance);
+            }
+        }
+        Some(ladder)
+    }
+
+    /// Returns the limits that a candidate just meets, none stricter than asked.
+    fn reached(&self, problem: &Problem, candidate: &Candidate) -> Option<Vec<f64>> {
+        let judged = judged_under(problem, candidate)?;
+        let mut limits = Vec::new();
+        for demand in &self.demands {
+            limits.extend(demand.attained(&judged)?);
+        }
+        let outer = |i: usize| {
+            if self.outward[i] * (limits[i] - self.asked[i]) > 0.0 { limits[i] } else { self.asked[i] }
+        };
+        (limits.len() == self.asked.len()).then(|| (0..limits.len()).map(outer).collect())
+    }
+
+    /// Returns the greatest relative change of the limits.
+    fn distance(&self, limits: &[f64]) -> f64 {
+        let each = limits.iter().zip(&self.asked).zip(&self.scale);
+        each.map(|((limit, asked), scale)| (limit - asked).abs() / scale).fold(0.0, f64::max)
+    }
+
+    /// Returns limits at a fraction of the way from the asked to the `outer` ones; lengths never below 0.
+    fn between(&self, share: f64, outer: &[f64]) -> Vec<f64> {
+        let at = |i: usize| {
+            let limit = self.asked[i] + share * (outer[i] - self.asked[i]);
+            if self.lengths[i] { limit.max(0.0) } else { limit }
+        };
+        (0..outer.len()).map(at).collect()
+    }
+
+    /// Returns the same limits with a tolerance that everything meets.
+    fn without_tolerance(&self, mut limits: Vec<f64>) -> Vec<f64> {
+        for (limit, _) in limits.iter_mut().zip(&self.tolerances).filter(|(_, is)| **is) {
+            *limit = f64::MAX;
+        }
+        limits
+    }
+
+    /// Returns the stricter limit of two in each place.
+    fn inner(&self, one: &[f64], other: &[f64]) -> Vec<f64> {
+        let at = |i: usize| if self.outward[i] * (one[i] - other[i]) > 0.0 { other[i] } else { one[i] };
+        (0..one.len()).map(at).collect()
+    }
+
+    fn rounded(&self, limits: &[f64]) -> Vec<f64> {
+        let at = |i: usize| {
+            let limit = rounded_outward(limits[i], self.asked[i], self.outward[i]);
+            if self.lengths[i] { limit.max(0.0) } else { limit }
+        };
+        (0..limits.len()).map(at).collect()
+    }
+
+    fn spec(&self, base: &ProblemSpec, limits: &[f64]) -> ProblemSpec {
+        let mut spec = base.clone();
+        let mut rest = limits;
+        for demand in &self.demands {
+            let count = demand.limits(&spec).map_or(0, |l| l.len());
+            let (own, others) = rest.split_at(count);
+            spec = demand.with_limits(spec, own);
+            rest = others;
+        }
+        spec
+    }
+}

@@ -1,0 +1,156 @@
+//! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
+
+use super::round::{
+    Cost, Finished, Known, Place, Round, Setup, by_merit, finished, is_same, round, unfinished,
+};
+use super::{BATCH, DIFFERENT, End, LEADING, Memory};
+use crate::synthesis::Budget;
+use crate::synthesis::keeper::spared;
+use crate::task::forms::start::Start;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::AtomicU64;
+
+/// The results of a batch.
+pub(super) struct Batch {
+    pub(super) draws: u64,
+    pub(super) cost: Cost,
+    /// The least merit on all points of each independent round.
+    pub(super) best_merits: Vec<f64>,
+    pub(super) ends: Vec<End>,
+    /// Whether every part of it stayed well below its allowance of evaluations.
+    pub(super) ample: bool,
+    /// The memory of its stage after it.
+    pub(super) memory: Memory,
+}
+
+/// Returns an even share of the evaluations left, so that the budget is never exceeded.
+fn share(left: u64, parts: u64, index: u64) -> u64 {
+    left / parts + u64::from(index < left % parts)
+}
+
+/// The data that all rounds of a batch share.
+struct Common<'a> {
+    setup: &'a Setup<'a>,
+    /// Index of the random stream of its first round.
+    first: u64,
+    near_ends: Vec<Start>,
+    budget: &'a Budget<'a>,
+}
+
+impl Batch {
+    /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
+    /// `memory` is the memory of its stage before it.
+    pub(super) fn run(
+        setup: &Setup<'_>,
+        memory: &Memory,
+        first: u64,
+        left: u64,
+        budget: &Budget<'_>,
+    ) -> Batch {
+        let mut batch = Batch {
+            draws: 0,
+            cost: Cost::default(),
+            best_merits: Vec::new(),
+            ends: Vec::new(),
+            ample: true,
+            memory: memory.clone(),
+        };
+        let near_ends = memory.leading.iter().map(|(_, start)| start.clone()).collect();
+        let common = Common { setup, first, near_ends, budget };
+        // If ends are finished after the rounds and an exact one would end the search, one round runs before the
+        // others.
+        let split = setup.finishes_apart() && setup.single && first == 0;
+        let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
+        while begin < BATCH {
+            // Shared evenly among all rounds of the batch, each with the fits that follow from it.
+            let left = left.saturating_sub(batch.cost.evaluations);
+            let (parts, of) = (end - begin, BATCH - begin);
+            let exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
+            if exact {
+                break;
+            }
+            (begin, end) = (end, BATCH);
+        }
+        batch.memory.index += BATCH;
+        by_merit(&mut batch.memory.leading, LEADING);
+        batch
+    }
+
+    /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
+    /// among them.
+    fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
+        let &Common { setup, first, ref near_ends, budget } = common;
+        let (parts, index) = (wave.end - wave.start, self.memory.index);
+        let found = AtomicU64::new(u64::MAX);
+        let known = Known { bar: self.memory.bar, near_ends };
+        let mut rounds: Vec<Round> = wave
+            .clone()
+            .into_par_iter()
+            .map(|i| {
+                let place = Place { stream: first + i, index: index + i };
+                round(setup, place, share(left, parts, i - wave.start), &known, budget, &found)
+            })
+            .collect();
+        let used: u64 = rounds.iter().map(|round| round.cost.evaluations).sum();
+        self.ample &=
+            (0..).zip(&rounds).all(|(i, round)| spared(round.cost.evaluations, share(left, parts, i)));
+        let mut done: Vec<Finished> = Vec::new();
+        if setup.finishes_apart() {
+            done = self.finish(common, &rounds, left.saturating_sub(used));
+            self.memory.finished.extend(done.iter().map(|done| (done.explored, done.end.merit)));
+        } else if let Some(exact) = rounds.iter().position(Round::is_exact) {
+            // Rounds after it may have been cut short.
+            rounds.truncate(exact + 1);
+        }
+        for round in &mut rounds {
+            self.draws += round.draws;
+            self.cost.add(round.cost);
+            if round.independent {
+                self.best_merits.push(self.least_on_all(round));
+            }
+            self.memory.bar = self.memory.bar.min(round.explored());
+            done.append(&mut round.finished);
+            for (merit, start) in round.leaders.drain(..) {
+                if self.memory.leading.iter().all(|(other, _)| (merit - other).abs() > DIFFERENT * other) {
+                    self.memory.leading.push((merit, start));
+                }
+            }
+        }
+        let exact = done.iter().any(|done| done.exact);
+        self.ends.extend(done.into_iter().map(|done| done.end));
+        exact
+    }
+
+    /// Fits the ends of rounds to all points, each once, up to the first exact one.
+    fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
+        let &Common { setup, budget, .. } = common;
+        let ends = unfinished(setup, rounds, self.memory.bar, &self.memory.finished);
+        let parts = ends.len() as u64;
+        let found = AtomicU64::new(u64::MAX);
+        let finishes: Vec<(Option<Finished>, Cost)> = ends
+            .into_par_iter()
+            .enumerate()
+            .map(|(i, end)| finished(setup, (i as u64, end), share(left, parts, i as u64), budget, &found))
+            .collect();
+        let mut done: Vec<Finished> = Vec::new();
+        for (i, (finished, cost)) in (0..).zip(finishes) {
+            self.cost.add(cost);
+            self.ample &= spared(cost.evaluations, share(left, parts, i));
+            done.extend(finished);
+            if done.last().is_some_and(|end| end.exact) {
+                break;
+            }
+        }
+        done
+    }
+
+    /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch.
+    fn least_on_all(&self, round: &Round) -> f64 {
+        let own = round.finished.iter().map(|done| done.end.merit);
+        let shared = self.memory.finished.iter().filter_map(|(explored, whole)| {
+            round.leaders.iter().any(|(merit, _)| is_same(*explored, *merit)).then_some(*whole)
+        });
+        own.chain(shared).fold(f64::INFINITY, f64::min)
+    }
+}

@@ -1,0 +1,165 @@
+//! Ends whose points have strayed to circuits or branches that the referee will refuse, and starts that lead back.
+//!
+//! A joint fit does not fix the linkage type unless the problem does. By way of a change point positions then come to
+//! lie on two circuits, or on both branches of a rocking motion, and such an end may well have the least error of all.
+//! The requirements are best met near it by a linkage that cannot stray: with one circuit if branches are free, with an
+//! input that turns fully if one branch is required.
+
+use crate::mechanism::four_bar::mobility::linkage_type;
+use crate::mechanism::{AssemblyMode, Branch, LinkageType};
+use crate::task::Problem;
+use crate::task::forms::requirements::assembly_of;
+use crate::task::forms::start::Start;
+
+/// Types whose circuits are branches: the input turns fully.
+const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
+
+/// Returns whether the points of a start lie on circuits or branches that the problem does not allow together, or its
+/// crank rocks although it has to turn fully.
+pub(super) fn strayed(problem: &Problem, start: &Start) -> bool {
+    if problem.circuit_any() && problem.branch_any() {
+        return false;
+    }
+    let Some(shape) = problem.space(start.setting.side).shape(&start.design) else { return false };
+    let turns = || linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully);
+    if problem.has_to_turn_on() && !problem.aims_at_types() && !turns() {
+        return true;
+    }
+    let Some(first) = start.positions.first() else { return false };
+    let Ok(linkage) = shape.linkage(assembly_of(&shape, first[0], first[1])) else { return false };
+    let mobility = linkage.mobility();
+    let branch =
+        |[e, u]: &[crate::mechanism::Complex; 2]| mobility.branch(e.arg(), assembly_of(&shape, *e, *u));
+    let home = branch(first);
+    let allowed = |other: Branch| {
+        (problem.circuit_any() || other.circuit == home.circuit) && (problem.branch_any() || other == home)
+    };
+    !start.positions.iter().map(branch).all(allowed)
+}
+
+/// Returns starts near a strayed one that aim at types whose points cannot stray; empty if the problem allows no such
+/// type.
+pub(super) fn led_back(problem: &Problem, end: &Start) -> Vec<Start> {
+    let types = problem.types();
+    let allowed = |kind: &LinkageType| match end.setting.aim {
+        Some(aim) => aim == *kind,
+        None => types.is_empty() || types.contains(kind),
+    };
+    if problem.branch_any() {
+        let kind =
+            Some(LinkageType::TripleRocker).filter(allowed).filter(|kind| Some(*kind) != end.setting.aim);
+        return kind.map(|kind| aimed_at(end, kind)).into_iter().collect();
+    }
+    let Some(start) = on_one_branch(problem, end) else { return Vec::new() };
+    ONE_BRANCH.into_iter().filter(allowed).map(|kind| aimed_at(&start, kind)).collect()
+}
+
+fn aimed_at(start: &Start, kind: LinkageType) -> Start {
+    let mut start = start.clone();
+    start.setting.aim = Some(kind);
+    start
+}
+
+/// Returns the start with all points in the assembly that most of them have: at the same crank angle, D is mirrored in
+/// the line B C,
+///
+/// ```text
+/// w = B - C,   u' = (w/|w|)^2 conj(u)
+/// ```
+fn on_one_branch(problem: &Problem, end: &Start) -> Option<Start> {
+    let shape = problem.space(end.setting.side).shape(&end.design)?;
+    let assemblies: Vec<AssemblyMode> =
+        end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect();
+    let plus = assemblies.iter().filter(|t| **t == AssemblyMode::Plus).count();
+    let most = if 2 * plus >= assemblies.len() { AssemblyMode::Plus } else { AssemblyMode::Minus };
+    let mut start = end.clone();
+    for ([e, u], assembly) in start.positions.iter_mut().zip(assemblies) {
+        let diagonal = shape.follower_pivot - shape.crank_pivot - *e * shape.crank;
+        let square = diagonal.norm_sqr();
+        if assembly != most && square > 0.0 {
+            *u = diagonal * diagonal / square * u.conj();
+        }
+    }
+    Some(start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanism::Complex;
+    use crate::synthesis::fixture;
+    use std::f64::consts::TAU;
+
+    /// Returns points all around the curve of a linkage, and a start there in the given assemblies.
+    fn start(links: [f64; 4], require: &str, assemblies: impl Fn(usize) -> AssemblyMode) -> (Problem, Start) {
+        let linkage = fixture::linkage(links);
+        let (mut points, mut positions) = (Vec::new(), Vec::new());
+        for j in 0..24 {
+            // If the crank rocks, on an arc that it reaches.
+            let turns = linkage.linkage_type().is_some_and(LinkageType::input_turns_fully);
+            let angle = if turns { TAU * j as f64 / 24.0 } else { 0.6 + 0.02 * j as f64 };
+            let joints = linkage.position_with(angle, assemblies(j)).joints().expect("it closes");
+            points.push([joints.coupler_point.re, joints.coupler_point.im]);
+            let coupler = (joints.follower_pin - joints.crank_pin) / linkage.coupler();
+            positions.push([Complex::from_polar(1.0, angle), coupler]);
+        }
+        let problem = fixture::problem(&points, false, require);
+        let start = fixture::start(&problem, &linkage, positions);
+        (problem, start)
+    }
+
+    fn mostly_plus(j: usize) -> AssemblyMode {
+        if j % 5 == 1 { AssemblyMode::Minus } else { AssemblyMode::Plus }
+    }
+
+    const CRANK_ROCKER: [f64; 4] = [4.0, 1.5, 3.5, 3.2];
+    const TRIPLE_ROCKER: [f64; 4] = [3.0, 2.0, 2.1, 2.4];
+
+    #[test]
+    fn what_the_problem_allows_has_not_strayed() {
+        let plus = |_| AssemblyMode::Plus;
+        for (links, require, mixed, wanted) in [
+            (CRANK_ROCKER, "", false, false),
+            (CRANK_ROCKER, "", true, true),
+            (CRANK_ROCKER, "branch = \"any\"", true, true),
+            (CRANK_ROCKER, "branch = \"any\"\ncircuit = \"any\"", true, false),
+            (TRIPLE_ROCKER, "", false, false),
+            (TRIPLE_ROCKER, "", true, true),
+            (TRIPLE_ROCKER, "branch = \"any\"", true, false),
+        ] {
+            let (problem, start) =
+                if mixed { start(links, require, mostly_plus) } else { start(links, require, plus) };
+            assert_eq!(strayed(&problem, &start), wanted, "{links:?} {require} {mixed}");
+        }
+    }
+
+    #[test]
+    fn the_way_back_keeps_the_loop_closed_in_one_assembly() {
+        let (problem, start) = start(CRANK_ROCKER, "", mostly_plus);
+        let back = led_back(&problem, &start);
+        let aims: Vec<_> = back.iter().map(|start| start.setting.aim).collect();
+        assert_eq!(aims, ONE_BRANCH.map(Some));
+        let shape = problem.space(start.setting.side).shape(&start.design).expect("a shape");
+        for start in back {
+            assert!(!strayed(&problem, &start));
+            for [e, u] in &start.positions {
+                let d = shape.crank_pivot + *e * shape.crank + *u * shape.coupler;
+                assert!(((d - shape.follower_pivot).norm() - shape.follower).abs() < 1e-12);
+                assert!((u.norm() - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_way_back_aims_at_nothing_that_is_not_allowed() {
+        let (problem, strayed_start) = start(CRANK_ROCKER, "type = [\"double-crank\"]", mostly_plus);
+        let aims: Vec<_> = led_back(&problem, &strayed_start).iter().map(|start| start.setting.aim).collect();
+        assert_eq!(aims, [Some(LinkageType::DoubleCrank)]);
+        let (problem, strayed_start) =
+            start(CRANK_ROCKER, "branch = \"any\"\ntype = [\"double-crank\"]", mostly_plus);
+        assert!(led_back(&problem, &strayed_start).is_empty());
+        let (problem, mut strayed_start) = start(CRANK_ROCKER, "branch = \"any\"", mostly_plus);
+        strayed_start.setting.aim = Some(LinkageType::TripleRocker);
+        assert!(led_back(&problem, &strayed_start).is_empty(), "it has been tried");
+    }
+}

@@ -1,0 +1,445 @@
+//! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
+//! ends.
+
+use super::moves::{along_a_difference, near};
+use super::required::{led_back, strayed};
+use super::{BATCH, DENSE_BATCHES, End};
+use crate::judge::rank::searched;
+use crate::numbers::arithmetic::streams::{stream, uniform};
+use crate::synthesis::Budget;
+use crate::synthesis::atlas::Matches;
+use crate::synthesis::coarse::Coarse;
+use crate::synthesis::multistart::{fit_with, judged, promise};
+use crate::synthesis::plan::SAME_OPTIMUM;
+use crate::synthesis::reassign::{Reassigned, reassigned};
+use crate::synthesis::starts::Starts;
+use crate::task::Problem;
+use crate::task::forms::start::Start;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Starts drawn and screened in a round.
+const SCREEN: usize = 160;
+/// Matches of the atlas taken in a round.
+const MATCHED: usize = 48;
+/// Starts near a known end taken in a round.
+const JITTERED: usize = 40;
+/// Starts fitted for a few steps.
+const SHORT: usize = 16;
+const DENSE_SHORT: usize = 10;
+/// Starts fitted further. On a dense target most lead to the same end: at first one per round, and more rounds.
+const MIDDLE: usize = 3;
+const DENSE_MIDDLE: usize = 1;
+/// Most passes that reassign the points of an end to the curve and fit again.
+const REASSIGNED: usize = 6;
+/// Most evaluations of a fit that leads strayed points back to a type whose points cannot stray: if the type binds, the
+/// linkage is almost a change point, and not worth more.
+const LED_BACK_MOST: u64 = 600;
+/// Greatest merit after a few steps, in units of the strayed end's merit, at which such a fit is continued.
+const WORTH_LEADING_BACK: f64 = 16.0;
+/// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
+const WORTH_FINISHING: f64 = 4.0;
+
+/// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
+#[derive(Clone, Copy, Debug)]
+struct Effort {
+    steps: usize,
+    rounds: usize,
+    relative_reduction: f64,
+}
+
+const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
+const LAST_FIT: Effort = Effort { steps: 300, rounds: 14, relative_reduction: 1e-12 };
+
+/// The data that all rounds share.
+pub(super) struct Setup<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) coarse: Option<&'a Coarse>,
+    pub(super) starts: &'a Starts<'a>,
+    pub(super) matches: Option<Matches>,
+    /// Whether one answer is wanted: the first exact one then ends the search.
+    pub(super) single: bool,
+    pub(super) exact: f64,
+}
+
+impl Setup<'_> {
+    /// Returns the problem that is explored: the coarse one if there is one.
+    fn explored(&self) -> &Problem {
+        self.coarse.map_or(self.problem, |coarse| &coarse.problem)
+    }
+
+    /// Returns whether ends are finished after their batch, each of them once. Sparse ones are finished in their
+    /// rounds: the first exact answer ends a batch.
+    pub(super) fn finishes_apart(&self) -> bool {
+        Coarse::is_for(self.problem)
+    }
+
+    /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
+    fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
+        !self.single || merit <= WORTH_FINISHING * best + self.exact
+    }
+}
+
+/// The results of earlier batches of a stage that a round uses.
+pub(super) struct Known<'a> {
+    pub(super) bar: f64,
+    pub(super) near_ends: &'a [Start],
+}
+
+impl Known<'_> {
+    /// Returns whether a round is independent: it uses no results of others.
+    fn is_independent(&self, index: u64) -> bool {
+        self.near_ends.is_empty() || index.is_multiple_of(2)
+    }
+}
+
+/// Index of a round: in the whole search, for its random stream, and in its stage.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) stream: u64,
+    pub(super) index: u64,
+}
+
+/// The evaluations and positions used by fits.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cost {
+    pub(super) evaluations: u64,
+    pub(super) positions: u64,
+}
+
+impl Cost {
+    pub(super) fn add(&mut self, other: Cost) {
+        self.evaluations += other.evaluations;
+        self.positions += other.positions;
+    }
+}
+
+#[derive(Debug)]
+pub(super) struct Round {
+    pub(super) draws: u64,
+    pub(super) cost: Cost,
+    /// The ends on the explored points with their merits there, best first.
+    pub(super) leaders: Vec<(f64, Start)>,
+    /// The ends that the round finished itself.
+    pub(super) finished: Vec<Finished>,
+    /// Whether it is independent: it used no results of other rounds.
+    pub(super) independent: bool,
+}
+
+impl Round {
+    /// Returns the least merit on the explored points.
+    pub(super) fn explored(&self) -> f64 {
+        self.leaders.first().map_or(f64::INFINITY, |(merit, _)| *merit)
+    }
+
+    /// Returns whether it found an exact, accepted answer.
+    pub(super) fn is_exact(&self) -> bool {
+        self.finished.iter().any(|done| done.exact)
+    }
+}
+
+/// An end on the explored points, fitted to all of them.
+#[derive(Clone, Debug)]
+pub(super) struct Finished {
+    /// Its merit on the explored points.
+    pub(super) explored: f64,
+    pub(super) end: End,
+    /// Whether it is an exact, accepted answer.
+    pub(super) exact: bool,
+}
+
+/// Runs fits within an allowance and counts their cost.
+struct Spender<'a> {
+    cost: Cost,
+    allowance: u64,
+    budget: &'a Budget<'a>,
+}
+
+impl Spender<'_> {
+    fn left(&self) -> u64 {
+        self.allowance.saturating_sub(self.cost.evaluations)
+    }
+
+    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        let mut left = self.left();
+        if left == 0 || self.budget.stopped() {
+            return None;
+        }
+        if !problem.branch_any() && start.setting.aim.is_some() && problem.types().is_empty() {
+            left = left.min(LED_BACK_MOST);
+        }
+        let Effort { steps, rounds, relative_reduction } = effort;
+        let fit = fit_with(problem, start, (steps, rounds, relative_reduction), left, self.budget);
+        self.cost.evaluations += fit.evaluations;
+        self.cost.positions += problem.task().len() as u64 * fit.evaluations;
+        fit.end.map(|end| (fit.merit, end))
+    }
+
+    /// Reassigns the points of an end to their best places on its curve and fits it again, as long as that gains.
+    fn at_best_places(
+        &mut self,
+        problem: &Problem,
+        (mut merit, mut end): (f64, Start),
+        effort: Effort,
+    ) -> (f64, Start) {
+        for _ in 0..REASSIGNED {
+            let Reassigned { better, positions } = reassigned(problem, &end);
+            self.cost.positions += positions;
+            // Counted as evaluations of as many positions, within the allowance.
+            self.cost.evaluations += (positions / problem.task().len() as u64).min(self.left());
+            let Some(start) = better else { break };
+            match self.fit_as_required(problem, start, effort) {
+                Some((again, start)) if again < merit => (merit, end) = (again, start),
+                _ => break,
+            }
+        }
+        (merit, end)
+    }
+
+    /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
+    /// there to the nearest ends that it allows.
+    fn fit_as_required(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
+        let (merit, end) = self.fit(problem, start, effort)?;
+        if !strayed(problem, &end) {
+            return Some((merit, end));
+        }
+        let mut back = led_back(problem, &end);
+        if back.len() > 1 {
+            // The more promising one first.
+            let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
+            for start in back {
+                tried.extend(self.fit(problem, start, SHORT_FIT));
+            }
+            tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
+            tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+            back = tried.into_iter().map(|(_, start)| start).collect();
+        }
+        for start in back {
+            let again = self.fit(problem, start, effort).filter(|(_, end)| !strayed(problem, end));
+            if again.is_some() {
+                return again;
+            }
+        }
+        // If that fails: the end that the referee will refuse.
+        Some((merit, end))
+    }
+}
+
+pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ends.truncate(keep);
+}
+
+/// Returns the starts of a round with their promise ([`promise`]) on the explored points, and the number drawn.
+fn drawn(
+    setup: &Setup<'_>,
+    Place { stream: of_search, index }: Place,
+    known: &Known<'_>,
+    spender: &mut Spender<'_>,
+) -> (Vec<(f64, Start)>, u64) {
+    let explored = setup.explored();
+    let n = explored.task().len() as u64;
+    let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    let mut count = 0;
+    let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
+        count += 1;
+        let Some(mut start) = start else { return };
+        spender.cost.evaluations += 1;
+        spender.cost.positions += n;
+        if let Some(promise) = promise(explored, &mut start) {
+            drawn.push((promise, start));
+        }
+    };
+    // Of three independent rounds two take matches, as long as there are any.
+    let turn = of_search as usize / 2;
+    let first = (turn - turn / 3) * MATCHED;
+    let mut draws = stream(setup.problem.spec().solve.seed, of_search);
+    if !known.is_independent(index) {
+        let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
+        for i in 0..JITTERED {
+            if spender.left() == 0 {
+                break;
+            }
+            let mut other =
+                || &known.near_ends[uniform(&mut draws, 0.0, known.near_ends.len() as f64) as usize];
+            let (one, other) = (other(), other());
+            let start = if i % 2 == 1
+                && one.setting.side == other.setting.side
+                && one.setting.side == end.setting.side
+            {
+                along_a_difference(explored, [end, one, other], &mut draws)
+            } else {
+                near(explored, end, &mut draws)
+            };
+            take(spender, start);
+        }
+    } else {
+        let matched = index.is_multiple_of(2) && turn % 3 < 2;
+        match setup.matches.as_ref().filter(|matches| matched && first < matches.len()) {
+            Some(matches) => {
+                for rank in first..(first + MATCHED).min(matches.len()) {
+                    if spender.left() > 0 {
+                        take(spender, matches.start(setup.starts, rank));
+                    }
+                }
+            }
+            None => {
+                for _ in 0..SCREEN {
+                    if spender.left() > 0 {
+                        take(spender, setup.starts.draw(&mut draws));
+                    }
+                }
+            }
+        }
+    }
+    (drawn, count)
+}
+
+/// Runs a round: its ends on the explored points, and on a sparse target the finished ends. `found` is the index of the
+/// first round with an exact answer; those after it are not read and may stop.
+pub(super) fn round(
+    setup: &Setup<'_>,
+    Place { stream: of_search, index }: Place,
+    allowance: u64,
+    known: &Known<'_>,
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> Round {
+    let mut round = Round {
+        draws: 0,
+        cost: Cost::default(),
+        leaders: Vec::new(),
+        finished: Vec::new(),
+        independent: known.is_independent(index),
+    };
+    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    let beaten = || found.load(Ordering::Relaxed) < of_search;
+    if beaten() {
+        return round;
+    }
+    let (explored, dense) = (setup.explored(), setup.finishes_apart());
+    let (mut drawn, draws) = drawn(setup, Place { stream: of_search, index }, known, &mut spender);
+    round.draws = draws;
+    let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
+    let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
+    by_merit(&mut drawn, shorts);
+    let spare = drawn.first().cloned();
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
+    for (_, start) in drawn {
+        fitted.extend(spender.fit(explored, start, SHORT_FIT));
+    }
+    by_merit(&mut fitted, middles);
+    let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
+    for (merit, start) in fitted {
+        if beaten() {
+            round.cost = spender.cost;
+            return round;
+        }
+        // Out of budget: taken as it is.
+        let kept = (merit, start.clone());
+        let end = spender.fit_as_required(explored, start, MIDDLE_FIT).unwrap_or(kept);
+        middle.push(if dense { spender.at_best_places(explored, end, MIDDLE_FIT) } else { end });
+    }
+    if middle.is_empty() {
+        middle.extend(spare);
+    }
+    by_merit(&mut middle, middles);
+    round.leaders = middle;
+    if !dense {
+        let best = round.explored().min(known.bar);
+        for (merit, start) in &round.leaders {
+            if beaten() {
+                break;
+            }
+            // A better one has been finished, in this round or before it.
+            if setup.is_worth_finishing(*merit, best)
+                && let Some(finished) = finish(setup, (*merit, start), &mut spender)
+            {
+                let exact = finished.exact;
+                round.finished.push(finished);
+                if exact {
+                    found.fetch_min(of_search, Ordering::Relaxed);
+                    break;
+                }
+            }
+        }
+    }
+    round.cost = spender.cost;
+    round
+}
+
+/// Fits an end on the explored points to all points; `None` if its positions cannot be refined to them.
+fn finish(
+    setup: &Setup<'_>,
+    (explored, start): (f64, &Start),
+    spender: &mut Spender<'_>,
+) -> Option<Finished> {
+    let mut start = match setup.coarse {
+        None => start.clone(),
+        Some(coarse) => coarse.refine(setup.problem, start)?,
+    };
+    let fitted = spender.fit_as_required(setup.problem, start.clone(), LAST_FIT);
+    let (merit, start) = match fitted {
+        Some(end) => end,
+        // Out of budget: taken as it is, with its error on all points.
+        None => (promise(setup.problem, &mut start)?, start),
+    };
+    let (merit, start) = if setup.finishes_apart() {
+        spender.at_best_places(setup.problem, (merit, start), LAST_FIT)
+    } else {
+        (merit, start)
+    };
+    let mut end = End { start, merit, verdict: None };
+    let mut exact = false;
+    if setup.single && merit <= setup.exact {
+        let verdict = judged(setup.problem, &end.start);
+        exact = verdict.as_ref().is_some_and(|c| c.accepted && searched(setup.problem, c) <= setup.exact);
+        end.verdict = Some(verdict);
+    }
+    Some(Finished { explored, end, exact })
+}
+
+/// Returns the ends of rounds on the explored points that can still matter and are not among the `finished` (merits on
+/// the explored points and on all), each once, best first.
+pub(super) fn unfinished<'a>(
+    setup: &Setup<'_>,
+    rounds: &'a [Round],
+    bar: f64,
+    finished: &[(f64, f64)],
+) -> Vec<(f64, &'a Start)> {
+    let best = rounds.iter().map(Round::explored).fold(bar, f64::min);
+    let mut out: Vec<(f64, &Start)> = Vec::new();
+    for (merit, start) in rounds.iter().flat_map(|round| &round.leaders) {
+        let met = finished.iter().any(|(explored, _)| is_same(*explored, *merit))
+            || out.iter().any(|(other, _)| is_same(*other, *merit));
+        if !met && setup.is_worth_finishing(*merit, best) {
+            out.push((*merit, start));
+        }
+    }
+    out.sort_by(|one, other| one.0.total_cmp(&other.0));
+    out
+}
+
+/// Returns whether two merits on the explored points belong to one end.
+pub(super) fn is_same(one: f64, other: f64) -> bool {
+    (one - other).abs() <= SAME_OPTIMUM * other
+}
+
+/// Finishes one of them within its allowance, unless one before it was exact.
+pub(super) fn finished(
+    setup: &Setup<'_>,
+    (index, end): (u64, (f64, &Start)),
+    allowance: u64,
+    budget: &Budget<'_>,
+    found: &AtomicU64,
+) -> (Option<Finished>, Cost) {
+    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    if found.load(Ordering::Relaxed) < index {
+        return (None, spender.cost);
+    }
+    let done = finish(setup, end, &mut spender);
+    if done.as_ref().is_some_and(|done| done.exact) {
+        found.fetch_min(index, Ordering::Relaxed);
+    }
+    (done, spender.cost)
+}

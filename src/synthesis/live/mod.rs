@@ -1,0 +1,199 @@
+//! Live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search
+//! join them.
+//!
+//! A [`Session`] keeps a few candidates. After every move of the target each of them starts a short fit of its own (a
+//! warm start: design, assemblies and the position at each point), is judged by the same
+//! [referee](crate::judge::referee) as every other answer, and is ranked by the same rules. Nothing here reads a clock,
+//! so the same moves give the same candidates.
+
+pub mod nine;
+
+use crate::judge::assess::assess;
+use crate::judge::rank::{compare, distinct, sort};
+use crate::judge::warm::start_at;
+use crate::record::Candidate;
+use crate::synthesis::multistart::{judged, polish};
+use crate::synthesis::nearest::nearest_positions;
+use crate::synthesis::{Budget, plan};
+use crate::task::Problem;
+
+/// The most candidates that follow the target.
+pub const FOLLOWING: usize = 5;
+/// Most steps of a fit while the target moves: from so near a start, a few are enough to converge.
+const STEPS: usize = 24;
+/// Most rounds of the multipliers in such a fit.
+const ROUNDS: usize = 4;
+/// Most evaluations of the cost in such a fit.
+const EVALUATIONS: u64 = 120;
+
+/// The candidates that follow a target.
+#[derive(Clone, Debug, Default)]
+pub struct Session {
+    kept: Vec<Candidate>,
+}
+
+impl Session {
+    /// Creates a session without candidates.
+    pub fn new() -> Self {
+        Session::default()
+    }
+
+    /// Returns the candidates, better first, ranked from 1.
+    pub fn candidates(&self) -> &[Candidate] {
+        &self.kept
+    }
+
+    /// Removes all candidates: for a target that is unrelated to the one before.
+    pub fn clear(&mut self) {
+        self.kept.clear();
+    }
+
+    /// Fits the candidates again, each from its present parameters, to a problem whose target or limits have moved.
+    ///
+    /// A candidate with another number of positions than there are points is placed anew on its own curve. One that
+    /// cannot follow (its loop opens at a point) is left out. The candidates are ranked anew, better first.
+    pub fn follow(&mut self, problem: &Problem, budget: &Budget<'_>) -> &[Candidate] {
+        let kept = std::mem::take(&mut self.kept);
+        self.kept = kept.iter().filter_map(|candidate| followed(problem, candidate, budget)).collect();
+        sort(problem, &mut self.kept);
+        self.number();
+        &self.kept
+    }
+
+    /// Adds the candidates of a search and keeps the best distinct ones of all, at most [`FOLLOWING`].
+    ///
+    /// If one is accepted, only accepted ones stay.
+    pub fn join(&mut self, problem: &Problem, found: Vec<Candidate>) -> &[Candidate] {
+        let mut all = found;
+        all.append(&mut self.kept);
+        self.kept = distinct(problem, all, FOLLOWING);
+        &self.kept
+    }
+
+    fn number(&mut self) {
+        for (rank, candidate) in (1..).zip(&mut self.kept) {
+            candidate.rank = rank;
+        }
+    }
+}
+
+/// Most evaluations of a first look.
+const FIRST_LOOK: u64 = 3000;
+
+/// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
+/// whose polish takes long. Its answers are judged by the whole problem. Empty for a problem that cannot be searched.
+pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
+    let mut spec = problem.spec().clone();
+    spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
+    spec.task.path.tolerance = None;
+    let Ok(easier) = Problem::new(spec) else { return Vec::new() };
+    let Ok(outcome) = plan::search(&easier, budget, &|_| {}) else { return Vec::new() };
+    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
+    let found = outcome.candidates.iter().filter_map(judged).collect();
+    distinct(problem, found, FOLLOWING)
+}
+
+/// Returns a candidate adapted to a problem: placed, fitted, judged.
+fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Option<Candidate> {
+    let placed = placed(problem, candidate)?;
+    let start = start_at(problem, &placed)?;
+    let fit = polish(problem, start, STEPS, ROUNDS, EVALUATIONS, budget);
+    let fitted = fit.end.and_then(|end| judged(problem, &end));
+    // A fit that was cut short may have given up an acceptable linkage for a nearer one that is not.
+    let unfitted = judged(problem, &start_at(problem, &placed)?);
+    [fitted, unfitted].into_iter().flatten().min_by(|one, other| compare(problem, one, other))
+}
+
+/// Returns a candidate with a position for each point of the problem.
+fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
+    if candidate.crank_deg.len() == problem.task().len() {
+        return Some(candidate.clone());
+    }
+    let (crank_deg, t1_at) = nearest_positions(problem, &candidate.linkage)?;
+    Some(Candidate { crank_deg, t1_at, ..candidate.clone() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::run::{Context, Job, run};
+    use crate::files::problem_file::parse;
+    use std::sync::atomic::AtomicBool;
+
+    /// Returns an egg of `n` points whose point `moved` lies `by` off.
+    fn egg(n: usize, moved: usize, by: f64) -> Problem {
+        let points: Vec<[f64; 2]> = (0..n)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * i as f64 / n as f64;
+                let off = if i == moved { by } else { 0.0 };
+                [3.0 * angle.cos() + off, 2.0 * angle.sin() + 0.3 * (2.0 * angle).cos()]
+            })
+            .collect();
+        let text =
+            format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = true\n[solve]\nseed = 3\n");
+        Problem::new(parse("egg", &text, None, &[]).expect("a problem").spec).expect("a task")
+    }
+
+    fn searched(problem: &Problem) -> Vec<Candidate> {
+        let job = Job { name: "egg".into(), source: None, unit: None, spec: problem.spec().clone() };
+        let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
+        run(&job, &context).expect("it runs").record.candidates
+    }
+
+    #[test]
+    fn a_moved_point_is_followed_to_what_a_fit_of_its_own_would_find() {
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let before = egg(24, 0, 0.0);
+        let mut session = Session::new();
+        session.join(&before, searched(&before));
+        let stale = session.candidates()[0].clone();
+        for step in 1..=10 {
+            let by = 0.05 * f64::from(step);
+            let moved = egg(24, 4, by);
+            let first = session.follow(&moved, &budget)[0].clone();
+            assert_eq!(first.rank, 1);
+            // Judged by the referee of the moved problem, and no worse than the linkage that stayed behind.
+            let again = crate::judge::assess::assess(&moved, &first.linkage, &first.crank_deg, &first.t1_at);
+            assert_eq!(again.expect("closed").error.sum_sq, first.error.sum_sq);
+            let behind = judged(&moved, &start_at(&moved, &stale).expect("a start")).expect("closed");
+            assert!(first.error.sum_sq <= behind.error.sum_sq, "{by}");
+        }
+        let moved = egg(24, 4, 0.5);
+        let afresh = searched(&moved);
+        let followed = session.candidates()[0].error.sum_sq;
+        assert!(followed <= 1.5 * afresh[0].error.sum_sq, "{followed} beside {}", afresh[0].error.sum_sq);
+    }
+
+    #[test]
+    fn a_first_look_finds_something_and_judges_it_by_the_whole_problem() {
+        let cancel = AtomicBool::new(false);
+        let mut spec = egg(24, 0, 0.0).spec().clone();
+        spec.task.path.tolerance = Some(vec![1e-9; 24]);
+        let problem = Problem::new(spec).expect("a task");
+        let found = first_look(&problem, &Budget::new(&cancel, None));
+        assert!(!found.is_empty() && found.iter().all(|c| !c.accepted));
+        assert!(found[0].requirements.iter().any(|r| r.name == "tolerance" && !r.met));
+        assert!(found[0].error.rms_over_size < 0.05);
+        cancel.store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(first_look(&problem, &Budget::new(&cancel, None)).len() <= found.len());
+    }
+
+    #[test]
+    fn another_number_of_points_is_followed_too_and_the_same_moves_give_the_same_digits() {
+        let cancel = AtomicBool::new(false);
+        let budget = Budget::new(&cancel, None);
+        let found = searched(&egg(24, 0, 0.0));
+        let ends: Vec<String> = (0..2)
+            .map(|_| {
+                let mut session = Session::new();
+                session.join(&egg(24, 0, 0.0), found.clone());
+                session.follow(&egg(30, 2, 0.1), &budget);
+                assert!(session.candidates().iter().all(|c| c.crank_deg.len() == 30));
+                serde_json::to_string(session.candidates()).expect("JSON")
+            })
+            .collect();
+        assert!(ends[0].len() > 100 && ends[0] == ends[1]);
+        assert!(Session::new().follow(&egg(24, 0, 0.0), &budget).is_empty());
+    }
+}

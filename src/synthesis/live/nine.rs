@@ -1,0 +1,87 @@
+//! Live exact synthesis for nine points that the user moves: every real linkage through them, followed from the
+//! solutions before by continuation.
+
+use crate::judge::certified::target;
+use crate::numbers::nine_point::{Completeness, Options, Solved, resolve_from, solve};
+use crate::synthesis::continuation::{Exact, glanced};
+use crate::task::Problem;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The solutions of nine points, kept to be followed when a point moves.
+#[derive(Clone, Debug, Default)]
+pub struct Nine {
+    solved: Option<Solved>,
+}
+
+impl Nine {
+    /// Creates a state without solutions.
+    pub fn new() -> Self {
+        Nine::default()
+    }
+
+    /// Returns all real linkages through the points of a problem, judged by its requirements, better first; from the
+    /// solutions before if there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is
+    /// certified, and no distance to a whole curve is computed ([`glanced`]): that is left to a run. `None` if the
+    /// problem does not have nine precision points, or it was cancelled.
+    pub fn follow(&mut self, problem: &Problem, cancel: &AtomicBool) -> Option<Exact> {
+        let target = target(problem)?;
+        let options = Options::default();
+        let solved = match self.solved.take() {
+            // Only a requirement has changed, not a point.
+            Some(before) if before.target == target => before,
+            Some(before) => resolve_from(&before, &target, &options, cancel).solved,
+            None => solve(&target, &options, &|_, _| {}, cancel),
+        };
+        if cancel.load(Ordering::Relaxed) || solved.cancelled {
+            return None;
+        }
+        let exact = glanced(problem, &solved);
+        // Points in special position lose classes: after that the start set is needed again.
+        self.solved = (solved.completeness() == Completeness::Complete).then_some(solved);
+        Some(exact)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::run::{Context, Job, run};
+    use crate::files::problem_file::parse;
+    use crate::judge::certified::same;
+    use crate::record::Census;
+
+    fn points(moved: f64) -> Problem {
+        let text = include_str!("../../../problems/exact/crank-rocker.toml");
+        let mut spec = parse("nine", text, None, &[]).expect("a problem").spec;
+        spec.task.path.points[4][0] += moved;
+        Problem::new(spec).expect("a task")
+    }
+
+    #[test]
+    fn moved_points_have_the_linkages_that_a_run_of_their_own_finds() {
+        let cancel = AtomicBool::new(false);
+        let mut nine = Nine::new();
+        let first = nine.follow(&points(0.0), &cancel).expect("nine points");
+        assert!(first.record.census.classes == 1442 && first.record.linkages.len() > 3);
+        let moved = nine.follow(&points(0.01), &cancel).expect("nine points");
+        let job = Job { name: "n".into(), source: None, unit: None, spec: points(0.01).spec().clone() };
+        let record = run(&job, &Context { cancel: &cancel, observer: &|_| {} }).expect("it runs").record;
+        let afresh = record.exact.expect("nine points");
+        let counts = |c: &Census| (c.classes, c.real, c.one_circuit, c.in_order, c.free_of_defects);
+        assert_eq!(counts(&moved.record.census), counts(&afresh.census));
+        // Equals may come in another order, and of six equal mechanisms another may come first.
+        for followed in &moved.record.linkages {
+            let found = afresh.linkages.iter().find(|found| {
+                let others = found.others.iter().map(|form| &form.linkage);
+                std::iter::once(&found.linkage).chain(others).any(|form| same(form, &followed.linkage))
+            });
+            let found = found.expect("the run has it too");
+            assert_eq!((followed.accepted, followed.in_order), (found.accepted, found.in_order));
+            assert!(followed.certified.is_none() && found.certified.is_some());
+        }
+        // Ten points are not accepted.
+        let mut spec = points(0.0).spec().clone();
+        spec.task.path.points.push([9.0, 9.0]);
+        assert!(nine.follow(&Problem::new(spec).expect("a task"), &cancel).is_none());
+    }
+}

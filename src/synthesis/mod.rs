@@ -1,0 +1,178 @@
+//! Search strategies: multistart rounds, populations and continuation; the choice of the answers (distinct ones,
+//! cognates, families, warnings, buildable ones); what the requirements cost; and the relaxations that help if nothing
+//! is acceptable.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | [`answers`] | the parts of a record beside its ranked candidates: warnings, the family of exact answers, and a buildable candidate |
+//! | [`atlas`] | an atlas of coupler curves: a table of linkages from which those whose curves resemble a given target are taken as starts |
+//! | [`belief`] | stopping rule of a multistart search: the best answer is accepted as the global optimum after repeated hits |
+//! | [`buildable`] | the best buildable candidate, for a problem whose best candidate by error has warnings |
+//! | [`coarse`] | coarsening of dense targets: a search explores the problem with fewer points and fits the answer to all points |
+//! | [`conflicts`] | conflict analysis: which requirements cannot be met together, and the least relaxation after which an answer is acceptable |
+//! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
+//! | [`errors_without`] | the errors that are left without each of the requirements on which the best candidate lies |
+//! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
+//! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
+//! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
+//! | [`multistart`] | multistart: Levenberg-Marquardt fits from many starts, in rounds |
+//! | [`nearest`] | positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search |
+//! | [`offered_cognates`] | the offer of Roberts cognates beside the candidates of a search |
+//! | [`plan`] | the plan of a search: the methods that run, their order, and their stopping rules |
+//! | [`polish`] | polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains the last digits of answers on which a limit is active |
+//! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
+//! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
+//! | [`reduced`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
+//! | [`relaxed`] | search with one requirement left out, whose ends are then fitted under all requirements |
+//! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
+//! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
+//! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
+//! | [`timed`] | multistart search for prescribed timing by variable projection (the reduced form) |
+
+pub mod answers;
+pub mod atlas;
+pub mod belief;
+pub mod buildable;
+pub mod coarse;
+pub mod conflicts;
+pub mod continuation;
+pub mod errors_without;
+pub(crate) mod fixture;
+pub mod free;
+pub mod keeper;
+pub mod live;
+pub mod multistart;
+pub mod nearest;
+pub mod offered_cognates;
+pub mod plan;
+pub mod polish;
+pub mod population;
+mod reassign;
+pub mod reduced;
+mod relaxed;
+mod repeats;
+pub mod snap;
+pub mod starts;
+mod stopping_tests;
+pub mod timed;
+
+use crate::mechanism::effort::is_stopped_by_a_test;
+
+use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// The limits that stop a search from outside.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget<'a> {
+    /// The cancellation flag; setting it ends the search with its best answer so far.
+    pub cancel: &'a AtomicBool,
+    /// The time limit, if one was asked for.
+    pub deadline: Option<Instant>,
+}
+
+impl<'a> Budget<'a> {
+    /// Creates a budget whose time limit counts from now.
+    pub fn new(cancel: &'a AtomicBool, time_limit_s: Option<f64>) -> Self {
+        let limit = time_limit_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+        Budget { cancel, deadline: limit.and_then(|limit| Instant::now().checked_add(limit)) }
+    }
+
+    /// Returns whether the search should end now.
+    pub fn stopped(&self) -> bool {
+        self.stop_reason().is_some()
+    }
+
+    /// Returns the reason why the search should end now, if there is one.
+    pub fn stop_reason(&self) -> Option<Reason> {
+        if is_stopped_by_a_test() || self.cancel.load(Ordering::Relaxed) {
+            return Some(Reason::Cancelled);
+        }
+        self.deadline.filter(|deadline| Instant::now() >= *deadline).map(|_| Reason::TimeLimit)
+    }
+
+    /// Returns whether there is time to judge candidates of so many target points in total: always until the search is
+    /// stopped, and after that only if it takes a fraction of a second.
+    pub fn leaves_time_for(&self, points: usize) -> bool {
+        points <= JUDGED_AFTER_STOP || !self.stopped()
+    }
+
+    /// Counts how many candidates of `points` target points each may still be judged once the search is stopped.
+    pub fn judging(&self, points: usize) -> Judging<'_> {
+        Judging { budget: self, points, after_stop: AtomicUsize::new(0) }
+    }
+}
+
+/// The number of target points, summed over the candidates, that are still judged after a stop. Judging takes about 200
+/// positions of the linkage per target point, so that this many take a fraction of a second.
+pub const JUDGED_AFTER_STOP: usize = 20_000;
+
+/// A counter of the candidates that may still be judged: all of them until the search is stopped, and from then on as
+/// many as have [`JUDGED_AFTER_STOP`] target points together, but always one, so that there is an answer.
+#[derive(Debug)]
+pub struct Judging<'a> {
+    budget: &'a Budget<'a>,
+    points: usize,
+    after_stop: AtomicUsize,
+}
+
+impl Judging<'_> {
+    /// Returns whether one more candidate may be judged, and counts it as judged.
+    pub fn may_go_on(&self) -> bool {
+        if !self.budget.stopped() {
+            return true;
+        }
+        let before = self.after_stop.fetch_add(1, Ordering::Relaxed);
+        before == 0 || (before + 1).saturating_mul(self.points) <= JUDGED_AFTER_STOP
+    }
+}
+
+/// The progress of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// The current phase, in a few words.
+    pub phase: &'static str,
+    /// Evaluations so far.
+    pub evaluations: u64,
+    /// The budget of evaluations.
+    pub budget: u64,
+    /// The best sum of squares of an acceptable candidate so far, or else of any candidate; `None` if the search does
+    /// not track it.
+    pub best_sum_sq: Option<f64>,
+    /// Whether the candidate with `best_sum_sq` is acceptable.
+    pub accepted: bool,
+    /// The repeated hits of the best acceptable candidate; `None` if the search does not count them.
+    pub hits: Option<HitsSoFar>,
+}
+
+/// The number of independent rounds of starts that reached the best answer, and the number that the stopping rule
+/// wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HitsSoFar {
+    /// Rounds that reached the best answer, the round that found it included.
+    pub came: usize,
+    /// Rounds that have to reach it before the search stops.
+    pub wanted: usize,
+}
+
+/// A callback that receives the progress of a search.
+pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
+
+/// The outcome of a search.
+#[derive(Clone, Debug)]
+pub struct SearchOutcome {
+    /// Distinct candidates, ranked.
+    pub candidates: Vec<Candidate>,
+    /// The other candidates found: repeats of the same answers, worse ones, and unacceptable ones.
+    pub others: Vec<Candidate>,
+    /// Names of the methods that ran, in order.
+    pub used: Vec<String>,
+    /// The reason why the search ended.
+    pub reason: Reason,
+    /// The evaluations used.
+    pub evaluations: Evaluations,
+    /// All linkages through nine precision points, if they were asked for.
+    pub exact: Option<ExactRecord>,
+    /// The repeated hits of the best answer, if they were counted.
+    pub repeats: Option<Repeats>,
+}

@@ -1,0 +1,270 @@
+//! Multistart: Levenberg-Marquardt fits from many starts, in rounds.
+//!
+//! A round draws [`SCREEN`] starts from its own stream of the seed, keeps the [`SHORT`] that promise most, fits each
+//! for a few steps and the best [`LONG`] of them to convergence. Rounds run in parallel in batches of a fixed size and
+//! are read in their order, so the number of threads changes nothing but the time.
+
+use super::Budget;
+use super::starts::Starts;
+use crate::judge::assess::assess;
+use crate::judge::rank::exact_cost;
+use crate::judge::unwrapped::unwrapped;
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex};
+use crate::numbers::arithmetic::streams::stream;
+use crate::numbers::optimise::levenberg_marquardt::{
+    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
+};
+use crate::record::Candidate;
+use crate::task::forms::design_space::{Design, Shape};
+use crate::task::forms::requirements::assembly_of;
+use crate::task::forms::start::Start;
+use crate::task::forms::timed::TimedFit;
+use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::{AngleOffset, Timing};
+use crate::task::{Problem, Setting};
+
+/// Starts drawn and screened in a round.
+pub const SCREEN: usize = 160;
+/// Starts fitted for a few steps.
+pub const SHORT: usize = 8;
+/// Starts fitted to convergence.
+pub const LONG: usize = 3;
+/// Steps of a short fit.
+const SHORT_STEPS: usize = 24;
+/// Steps of a long fit.
+pub const LONG_STEPS: usize = 300;
+/// Rounds of the multipliers in a long fit.
+pub const LONG_ROUNDS: usize = 14;
+
+/// The candidates found in a round, and its cost.
+#[derive(Clone, Debug, Default)]
+pub struct RoundOutcome {
+    /// Judged candidates, in the order of their starts' promise.
+    pub found: Vec<Candidate>,
+    /// Starts drawn, also those that could not be assembled.
+    pub draws: u64,
+    /// Evaluations of the objective.
+    pub evaluations: u64,
+    /// Positions of the linkage computed for them.
+    pub positions: u64,
+}
+
+/// Returns the options of a fit; `exact_cost` is the cost below which nothing is left to gain.
+fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluations: u64) -> LmOptions {
+    let task = problem.task();
+    LmOptions {
+        max_steps,
+        max_rounds,
+        max_evaluations,
+        relative_reduction: 1e-12,
+        exact_cost: 1e-6 * exact_cost(problem),
+        feasibility: 1e-9 * task.size(),
+        // A mean error above a fifth of the size after half of the steps is hopeless.
+        hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
+    }
+}
+
+/// Runs round `index` of the seed with at most `allowance` evaluations.
+pub fn round(
+    problem: &Problem,
+    starts: &Starts<'_>,
+    index: u64,
+    allowance: u64,
+    budget: &Budget<'_>,
+) -> RoundOutcome {
+    let mut outcome = RoundOutcome::default();
+    let mut draws = stream(problem.spec().solve.seed, index);
+    let n = problem.task().len() as u64;
+    let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
+    for _ in 0..SCREEN {
+        if outcome.evaluations >= allowance || budget.stopped() {
+            break;
+        }
+        outcome.draws += 1;
+        let Some(mut start) = starts.draw(&mut draws) else { continue };
+        outcome.evaluations += 1;
+        outcome.positions += n;
+        if let Some(promise) = promise(problem, &mut start) {
+            screened.push((promise, start));
+        }
+    }
+    screened.sort_by(|one, other| one.0.total_cmp(&other.0));
+    screened.truncate(SHORT);
+    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
+    for (promised, start) in screened {
+        if budget.stopped() {
+            return outcome;
+        }
+        let left = allowance - outcome.evaluations;
+        if left == 0 {
+            // No evaluations are left for a fit: the start as it is.
+            fitted.push((promised, start));
+            continue;
+        }
+        let fit = polish(problem, start, SHORT_STEPS, 2, left, budget);
+        outcome.evaluations += fit.evaluations;
+        outcome.positions += n * fit.evaluations;
+        if let Some(start) = fit.end {
+            fitted.push((fit.merit, start));
+        }
+    }
+    fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
+    fitted.truncate(LONG);
+    let judging = budget.judging(problem.task().len());
+    for (_, start) in fitted {
+        if budget.stopped() {
+            return outcome;
+        }
+        let left = allowance - outcome.evaluations;
+        if left == 0 {
+            outcome.found.extend(judged(problem, &start));
+            continue;
+        }
+        let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, left, budget);
+        outcome.evaluations += fit.evaluations;
+        outcome.positions += n * fit.evaluations;
+        let end = fit.end.filter(|_| judging.may_go_on());
+        outcome.found.extend(end.and_then(|end| judged(problem, &end)));
+    }
+    outcome
+}
+
+/// Returns the promise of a start, by which starts are screened: the cost plus the squared violation of the
+/// requirements, in the units of the cost; `None` if it has no cost.
+pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
+    let task = problem.task();
+    let weight: f64 = task.weights().iter().sum();
+    let scale = weight * task.size().powi(2);
+    if start.positions.is_empty() {
+        let fit = TimedFit::new(problem, start.setting)?;
+        let cost = fit.cost(&start.design, &())?;
+        let shape = fit.space().shape(&start.design)?;
+        let motion = fit.motion(&start.design, &shape);
+        let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+        return Some(cost + scale * lack * lack);
+    }
+    let fit = TorusFit::new(problem, start.setting);
+    if !fit.settle(&start.design, &mut start.positions) {
+        return None;
+    }
+    let cost = fit.cost(&start.design, &start.positions)?;
+    let shape = fit.space().shape(&start.design)?;
+    let motion = fit.motion(&shape, &start.positions);
+    let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
+    Some(cost + scale * lack * lack)
+}
+
+/// The end of a local fit.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// The end point; `None` if it could not start or was given up.
+    pub end: Option<Start>,
+    /// The merit function, cost plus violation, for comparing ends.
+    pub merit: f64,
+    /// Evaluations of the cost.
+    pub evaluations: u64,
+}
+
+/// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
+pub fn polish(
+    problem: &Problem,
+    start: Start,
+    steps: usize,
+    rounds: usize,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    fit_with(problem, start, (steps, rounds, 1e-12), evaluations, budget)
+}
+
+/// As [`polish`], with the relative reduction at which a fit counts as converged beside the steps and rounds.
+pub(super) fn fit_with(
+    problem: &Problem,
+    start: Start,
+    (steps, rounds, relative_reduction): (usize, usize, f64),
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    let options = LmOptions { relative_reduction, ..options(problem, steps, rounds, evaluations) };
+    let stop = || budget.stopped();
+    if start.positions.is_empty() {
+        let Some(fit) = TimedFit::new(problem, start.setting) else {
+            return Fitted { end: None, merit: f64::INFINITY, evaluations: 0 };
+        };
+        ended(problem, solve(&fit, start.design, (), &options, &stop), start.setting, |()| Vec::new())
+    } else {
+        let fit = TorusFit::new(problem, start.setting).in_order(&start.design, &start.positions);
+        let result = solve(&fit, start.design, start.positions, &options, &stop);
+        ended(problem, result, start.setting, |positions| positions)
+    }
+}
+
+fn ended<S>(
+    problem: &Problem,
+    result: LmResult<{ crate::task::forms::design_space::DESIGN }, S>,
+    setting: Setting,
+    positions: impl Fn(S) -> Positions,
+) -> Fitted {
+    let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
+    let weight: f64 = problem.task().weights().iter().sum();
+    Fitted {
+        merit: result.cost + weight * result.violation * result.violation,
+        evaluations: result.evaluations,
+        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+    }
+}
+
+/// Steps that bring positions to their nearest points at a fixed design.
+const SETTLING_STEPS: usize = 60;
+
+/// Returns the positions of free timing at a fixed design, each brought to its nearest point, and the evaluations used.
+pub fn settle_positions(
+    problem: &Problem,
+    design: &Design,
+    setting: Setting,
+    positions: Positions,
+    budget: &Budget<'_>,
+) -> Option<(Positions, u64)> {
+    let fit = TorusFit::at(problem, setting, design);
+    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, SETTLING_STEPS, 1, u64::MAX) };
+    let result = solve(&fit, *design, positions, &options, &|| budget.stopped());
+    (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
+}
+
+/// Returns the judged candidate of a fit's end; `None` if it cannot be judged.
+pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
+    let space = problem.space(end.setting.side);
+    let shape = space.shape(&end.design)?;
+    let task = problem.task();
+    if let Timing::Prescribed { crank_angles, offset } = task.timing() {
+        let linkage = space.project(&shape.linkage(end.setting.assembly).ok()?).ok()?;
+        let fit = TimedFit::new(problem, end.setting)?;
+        // An exact multiple of the degrees in the file stays one.
+        let base = match offset {
+            AngleOffset::Free => wrapped(fit.offset(&end.design, &shape)).to_degrees(),
+            AngleOffset::Fixed => 0.0,
+            AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+        };
+        let written = problem.spec().task.path.timing.as_ref()?;
+        debug_assert_eq!(written.crank_deg.len(), crank_angles.len());
+        let crank_deg: Vec<f64> =
+            written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
+        return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
+    }
+    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions)?;
+    let linkage = space.project(&shape.linkage(assemblies[0]).ok()?).ok()?;
+    assess(problem, &linkage, &crank_deg, &assemblies)
+}
+
+/// Returns crank angles (degrees, unwrapped along the motion) and assemblies of positions.
+fn reading(
+    problem: &Problem,
+    shape: &Shape,
+    positions: &[[Complex; 2]],
+) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
+    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
+    let angles = positions.iter().map(|[e, _]| e.arg()).collect();
+    let linkage = shape.linkage(assemblies[0]).ok()?;
+    Some(unwrapped(problem, &linkage, angles, assemblies))
+}

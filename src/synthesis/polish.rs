@@ -1,0 +1,363 @@
+//! Polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains
+//! the last digits of answers on which a limit is active.
+//!
+//! From a start or a judged candidate it computes a better one of the same basin, by sequential convex programming
+//! ([`crate::numbers::optimise::convex`]) under all requirements.
+
+use super::Budget;
+use super::multistart::{Fitted, judged};
+use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
+use crate::judge::warm::start_at;
+use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
+use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
+use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
+use crate::record::{Candidate, Evaluations, Figure};
+use crate::task::forms::design_space::DESIGN;
+use crate::task::forms::start::Start;
+use crate::task::forms::timed::TimedFit;
+use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::spec::Objective;
+use crate::task::{Problem, Setting};
+use rayon::prelude::*;
+
+/// Number of different optima of the sum of squares that are polished: the best largest deviation need not lie in the
+/// best of them.
+const BASINS: usize = 24;
+/// Least number of distinct optima to find before they are polished.
+const LEAST_BASINS: usize = 8;
+/// Most steps of a polish.
+const STEPS: usize = 150;
+/// Local random restarts (hops) for the largest deviation: the optima around which they start, starts around each,
+/// their reach (in trust boxes; for a long link a tenth of it counts), the most rounds, and the rounds without
+/// improvement that end them.
+const HOPPED: usize = 3;
+const HOPS: usize = 4;
+const HOP: f64 = 0.4;
+const MAX_HOPS: u64 = 4;
+const QUIET_HOPS: usize = 2;
+/// Relative difference of largest deviation and link ratio below which starts are the same.
+const SAME_START: f64 = 1e-2;
+/// Relative difference of largest deviations below which they are the same optimum.
+const SAME_DEVIATION: f64 = 1e-6;
+/// The random stream of the first round of hops; those of a multistart count up from 0.
+const FIRST_HOP: u64 = 1 << 62;
+/// Most evaluations of a polish.
+const EVALUATIONS: u64 = 400;
+/// One part in this many of a budget is reserved for polishing, if the objective or the tolerances need it.
+const SHARE: u64 = 5;
+/// Relative margin inside the tolerances at which a polish aims.
+const TOLERANCE_MARGIN: f64 = 1e-9;
+/// Largest deviation, in parts of the tolerances, below which least squares has enough room between them.
+const INSIDE: f64 = 0.98;
+/// Least tolerance aimed at, in parts of the target's size; used for a tolerance of zero.
+const LEAST_TOLERANCE: f64 = 1e-10;
+/// Distance of a value from its limit, in parts of max(1, |limit|), within which the limit is active.
+const AT_LIMIT: f64 = 1e-4;
+
+/// Returns the evaluations of a budget that a search by least squares leaves to [`improve`].
+pub fn reserve(problem: &Problem, evaluations: u64) -> u64 {
+    let wanted =
+        problem.spec().solve.objective == Objective::MaxDeviation || problem.task().tolerances().is_some();
+    if wanted { evaluations / SHARE } else { 0 }
+}
+
+/// Returns the number of distinct optima that a search by least squares has to find: the answers that are wanted, or,
+/// if the largest deviation or tolerances decide, enough of them to polish.
+pub fn basins_wanted(problem: &Problem) -> usize {
+    let wanted = problem.spec().solve.candidates;
+    if reserve(problem, SHARE) > 0 { wanted.max(LEAST_BASINS) } else { wanted }
+}
+
+/// Returns whether a candidate is accepted, or would be if its polish brought it within the tolerances.
+pub fn promising(problem: &Problem, candidate: &Candidate) -> bool {
+    let forbidden = candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
+    !forbidden && candidate.requirements.iter().all(|r| r.met || r.name == "tolerance")
+}
+
+/// Returns the tolerances by which deviations are measured: 1 if none are given.
+fn measures(problem: &Problem) -> Vec<f64> {
+    match problem.task().tolerances() {
+        None => vec![1.0; problem.task().len()],
+        Some(tolerances) => {
+            let least = LEAST_TOLERANCE * problem.task().size();
+            tolerances.iter().map(|t| (t * (1.0 - TOLERANCE_MARGIN)).max(least)).collect()
+        }
+    }
+}
+
+/// Minimises the largest deviation, in parts of the tolerances if there are any, until it has converged or, within
+/// tolerances, is below `enough`.
+///
+/// The merit is that deviation, plus the violation of the requirements in sizes of the target.
+pub fn deviation_polish(
+    problem: &Problem,
+    start: &Start,
+    enough: f64,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> Fitted {
+    let tolerances = measures(problem);
+    convex(problem, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations, budget).0
+}
+
+/// Brings a start to the optimum of its basin under all requirements: the least largest deviation, or the least sum of
+/// squares within the tolerances; if these cannot be met, the least largest deviation.
+pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budget<'_>) -> Fitted {
+    let floor = 1e-3 * exact_objective(problem);
+    match (problem.spec().solve.objective, problem.task().tolerances()) {
+        (Objective::MaxDeviation, _) => deviation_polish(problem, start, floor, evaluations, budget),
+        (Objective::SumOfSquares, None) => {
+            let exact = 1e-6 * exact_cost(problem);
+            convex(problem, start, &Goal::SumOfSquares, exact, evaluations, budget).0
+        }
+        (Objective::SumOfSquares, Some(_)) => {
+            let tolerances = measures(problem);
+            let nearest = deviation_polish(problem, start, INSIDE, evaluations, budget);
+            let left = evaluations.saturating_sub(nearest.evaluations);
+            let Some(inside) = &nearest.end else { return nearest };
+            if nearest.merit > 1.0 || left == 0 {
+                return nearest;
+            }
+            let goal = Goal::SumOfSquaresWithin { tolerances: &tolerances };
+            let exact = 1e-6 * exact_cost(problem);
+            let (within, deviation) = convex(problem, inside, &goal, exact, left, budget);
+            let spent = nearest.evaluations + within.evaluations;
+            if within.end.is_none() || deviation > 1.0 + TOLERANCE_MARGIN {
+                return Fitted { evaluations: spent, ..nearest };
+            }
+            Fitted { evaluations: spent, ..within }
+        }
+    }
+}
+
+/// Fits by sequential convex programming; returns the end and its largest deviation.
+fn convex(
+    problem: &Problem,
+    start: &Start,
+    goal: &Goal<'_>,
+    good_enough: f64,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> (Fitted, f64) {
+    let size = problem.task().size();
+    let trust = problem.space(start.setting.side).trust(size);
+    let options = ConvexOptions {
+        max_steps: STEPS,
+        max_evaluations: evaluations,
+        trust,
+        length: size,
+        relative_reduction: 1e-11,
+        feasibility: 1e-9 * size,
+        good_enough,
+    };
+    let stop = || budget.stopped();
+    if start.positions.is_empty() {
+        match TimedFit::new(problem, start.setting) {
+            None => (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY),
+            Some(fit) => {
+                let result = run(&fit, goal, start, (), &options, &stop);
+                ended(size, start.setting, result, |()| Vec::new())
+            }
+        }
+    } else {
+        let fit = TorusFit::new(problem, start.setting);
+        let mut positions = start.positions.clone();
+        if !fit.settle(&start.design, &mut positions) {
+            return (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY);
+        }
+        ended(size, start.setting, run(&fit, goal, start, positions, &options, &stop), |positions| positions)
+    }
+}
+
+fn run<P: BlockLeastSquares<DESIGN>>(
+    fit: &P,
+    goal: &Goal<'_>,
+    start: &Start,
+    state: P::State,
+    options: &ConvexOptions<DESIGN>,
+    stop: &dyn Fn() -> bool,
+) -> ConvexResult<DESIGN, P::State> {
+    solve(fit, goal, start.design, state, options, stop)
+}
+
+fn ended<S>(
+    size: f64,
+    setting: Setting,
+    result: ConvexResult<DESIGN, S>,
+    positions: impl Fn(S) -> Positions,
+) -> (Fitted, f64) {
+    let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
+    let fitted = Fitted {
+        merit: result.objective + result.violation / size,
+        evaluations: result.evaluations,
+        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+    };
+    (fitted, result.deviation)
+}
+
+/// Returns whether a limit is active at a candidate: then the last digits are worth a polish.
+fn held(candidate: &Candidate) -> bool {
+    let at = |value: f64, limit: f64| (value - limit).abs() <= AT_LIMIT * limit.abs().max(1.0);
+    candidate.requirements.iter().any(|r| match (&r.value, &r.limit) {
+        (Figure::Number(value), Figure::Number(limit)) => at(*value, *limit),
+        (Figure::Number(value), Figure::Numbers(limits)) => {
+            let fixed = limits.iter().all(|limit| Some(limit) == limits.first());
+            !fixed && limits.iter().any(|limit| at(*value, *limit))
+        }
+        (Figure::Numbers(values), Figure::Numbers(limits)) => {
+            values.iter().zip(limits).any(|(value, limit)| at(*value, *limit))
+        }
+        _ => false,
+    })
+}
+
+/// Polishes the candidates of a search for the objective and the tolerances, and adds the results.
+///
+/// `limit` is the budget of evaluations, of which `evaluations` are used; it is not exceeded. The best `BASINS`
+/// distinct candidates are polished in parallel, then starts around the best results, until these bring no improvement
+/// or the tolerances are met. If neither tolerances nor the largest deviation need it, only accepted candidates at an
+/// active limit are polished.
+pub fn improve(
+    problem: &Problem,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+    budget: &Budget<'_>,
+) {
+    let left = limit.saturating_sub(evaluations.objective);
+    if left == 0 || found.is_empty() {
+        return;
+    }
+    let deviation = problem.spec().solve.objective == Objective::MaxDeviation;
+    let toleranced = problem.task().tolerances().is_some();
+    let worth: Vec<Candidate> = if deviation || toleranced {
+        // Unless the largest deviation is the objective, an accepted candidate has no more to gain.
+        let open = |c: &&Candidate| promising(problem, c) && (deviation || !c.accepted);
+        let promising: Vec<&Candidate> = found.iter().filter(open).collect();
+        if !deviation && found.iter().any(|c| c.accepted) {
+            let wanted = problem.spec().solve.candidates;
+            if promising.is_empty() || distinct(problem, found.clone(), wanted).len() == wanted {
+                return;
+            }
+        }
+        let all = if promising.is_empty() { found.iter().collect() } else { promising };
+        optima(problem, &all).into_iter().take(BASINS).cloned().collect()
+    } else {
+        let mut held: Vec<Candidate> = found.iter().filter(|c| c.accepted && held(c)).cloned().collect();
+        held.sort_by(|one, other| compare(problem, one, other));
+        distinct(problem, held, problem.spec().solve.candidates)
+    };
+    let starts = worth.iter().filter_map(|candidate| start_at(problem, candidate)).collect();
+    polish_all(problem, starts, found, evaluations, limit, budget);
+    if !(deviation || toleranced) {
+        return;
+    }
+    // The largest deviation has many optima in one basin of least squares: start around the best.
+    let mut best = f64::INFINITY;
+    let mut quiet = 0;
+    for hop in 0..MAX_HOPS {
+        let mut near: Vec<(f64, &Candidate)> = Vec::new();
+        for candidate in found.iter().filter(|c| promising(problem, c)) {
+            near.push((deviation_of(problem, candidate), candidate));
+        }
+        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
+        let Some(&(least, _)) = near.first() else { return };
+        let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
+        if done || least <= exact_objective(problem) || budget.stopped() {
+            return;
+        }
+        quiet = if least < best * (1.0 - SAME_DEVIATION) { 0 } else { quiet + 1 };
+        best = best.min(least);
+        if quiet >= QUIET_HOPS {
+            return;
+        }
+        let mut draws = stream(problem.spec().solve.seed, FIRST_HOP + hop);
+        let mut starts = Vec::new();
+        for (_, candidate) in near.into_iter().take(HOPPED) {
+            let Some(start) = start_at(problem, candidate) else { continue };
+            // The last start is the candidate itself, with the curvature estimate reset.
+            for _ in 1..HOPS {
+                starts.push(moved(problem, &start, &mut draws));
+            }
+            starts.push(start);
+        }
+        let before = evaluations.objective;
+        polish_all(problem, starts, found, evaluations, limit, budget);
+        if evaluations.objective == before {
+            return;
+        }
+    }
+}
+
+/// Returns the candidates that differ in more than digits, least deviation first. One curve may occur several times:
+/// cognates and points along a valley of least squares lead to different largest deviations.
+fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
+    let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
+    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut kept: Vec<(f64, &Candidate)> = Vec::new();
+    for (deviation, candidate) in measured {
+        let near = |one: f64, other: f64| (one - other).abs() <= SAME_START * other.abs();
+        let same = kept.iter().any(|(other, c)| {
+            near(deviation, *other)
+                && near(candidate.link_ratio, c.link_ratio)
+                && candidate.linkage.assembly() == c.linkage.assembly()
+                && candidate.linkage.side() == c.linkage.side()
+        });
+        if !same {
+            kept.push((deviation, candidate));
+        }
+    }
+    kept.into_iter().map(|(_, candidate)| candidate).collect()
+}
+
+/// Returns the largest error of a candidate, in parts of the tolerances if there are any.
+fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
+    let task = problem.task();
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
+    error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+}
+
+/// Returns a random start near another, in its bounds.
+fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
+    let space = problem.space(start.setting.side);
+    let trust = space.trust(problem.task().size());
+    let mut near = start.clone();
+    for ((value, trust), &(low, high)) in near.design.iter_mut().zip(trust).zip(space.bounds()) {
+        let by = HOP * trust.max(0.1 * value.abs()) * uniform(draws, -1.0, 1.0);
+        *value = (*value + by).max(low).min(high);
+    }
+    near
+}
+
+/// Polishes starts in parallel, each with its share of the rest of `limit`, and adds the results.
+fn polish_all(
+    problem: &Problem,
+    mut starts: Vec<Start>,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+    limit: u64,
+    budget: &Budget<'_>,
+) {
+    let left = limit.saturating_sub(evaluations.objective);
+    starts.truncate(usize::try_from(left).unwrap_or(usize::MAX));
+    let each = (left / starts.len().max(1) as u64).min(EVALUATIONS);
+    let judging = budget.judging(problem.task().len());
+    let polished: Vec<(Option<Candidate>, u64)> = starts
+        .par_iter()
+        .map(|start| {
+            if budget.stopped() {
+                return (None, 0);
+            }
+            let fit = finish(problem, start, each, budget);
+            let end = fit.end.filter(|_| judging.may_go_on());
+            (end.and_then(|end| judged(problem, &end)), fit.evaluations)
+        })
+        .collect();
+    for (candidate, used) in polished {
+        evaluations.objective += used;
+        evaluations.positions += used * problem.task().len() as u64;
+        found.extend(candidate);
+    }
+}

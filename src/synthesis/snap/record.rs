@@ -1,0 +1,96 @@
+//! The record of a snap, and a problem for a linkage that has none.
+
+use super::search::{Request, Snapped};
+use crate::judge::assess::{assess, to_raw};
+use crate::judge::costs::marginal;
+use crate::judge::family::family;
+use crate::judge::practicality::Sweep;
+use crate::judge::practicality::sensitivity::along;
+use crate::mechanism::Unit;
+use crate::mechanism::{FourBar, xy};
+use crate::record::digest::{ProblemError, digest};
+use crate::record::{Candidate, MethodRecord, ProblemRecord, Record, Termination, Tool};
+use crate::synthesis::answers::annotate;
+use crate::task::Problem;
+use crate::task::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
+
+/// Number of points on a linkage's own curve.
+const OWN_POINTS: usize = 36;
+
+/// Returns a record of the snapped linkages, under the original problem: `verify` recomputes every figure, `compare`
+/// puts it beside the run that it came from.
+///
+/// # Errors
+/// As [`digest`].
+pub fn record(
+    problem: &Problem,
+    name: &str,
+    source: Option<String>,
+    unit: Option<Unit>,
+    request: &Request,
+    snapped: &Snapped,
+) -> Result<Record, ProblemError> {
+    let spec = problem.spec().clone();
+    let mut candidates = snapped.candidates.clone();
+    for candidate in &mut candidates {
+        candidate.costs = marginal(problem, candidate);
+        candidate.error.to_raw = to_raw(problem, candidate);
+        annotate(problem, candidate);
+    }
+    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    Ok(Record {
+        format: crate::record::FORMAT,
+        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        problem: ProblemRecord {
+            name: name.into(),
+            source,
+            unit,
+            digest: digest(&spec)?,
+            resolved: spec.clone(),
+        },
+        seed: spec.solve.seed,
+        method: MethodRecord {
+            asked: spec.solve.method,
+            used: vec![format!("snap {} to {}", keys.join(", "), request.stock.words())],
+        },
+        termination: Termination { reason: snapped.reason, reproducible: snapped.reason.is_repeatable() },
+        evaluations: snapped.evaluations,
+        family: candidates.first().and_then(|best| family(problem, best)),
+        buildable: None,
+        exact: None,
+        candidates,
+        conflict: None,
+        relaxations: Vec::new(),
+        certificate: None,
+        no_certificate: None,
+        repeats: None,
+    })
+}
+
+/// Returns the problem that a linkage solves by itself: points of its own coupler curve over its whole range of motion,
+/// with free timing and without limits; and the linkage as its candidate. `None` if it cannot be assembled.
+pub fn own_curve(linkage: &FourBar) -> Option<(Problem, Candidate)> {
+    let sweep = Sweep::of_linkage(linkage)?;
+    let at = along(&sweep, OWN_POINTS);
+    let points = at
+        .iter()
+        .map(|at| Some(xy(linkage.position_with(at.crank_angle, at.assembly).joints()?.coupler_point)))
+        .collect::<Option<Vec<_>>>()?;
+    let require = RequireSpec {
+        link_ratio_max: RequireSpec::default().link_ratio_max.max(2.0 * linkage.link_ratio()),
+        ..RequireSpec::default()
+    };
+    let path =
+        PathSpec { points, closed: sweep.full_turn, weight: None, tolerance: None, timing: None, raw: None };
+    let spec = ProblemSpec {
+        task: TaskSpec { path },
+        design: DesignSpec::default(),
+        require,
+        solve: SolveSpec::default(),
+    };
+    let problem = Problem::new(spec).ok()?;
+    let crank_deg: Vec<f64> = at.iter().map(|at| at.crank_angle.to_degrees()).collect();
+    let assemblies: Vec<_> = at.iter().map(|at| at.assembly).collect();
+    let candidate = assess(&problem, linkage, &crank_deg, &assemblies)?;
+    Some((problem, candidate))
+}

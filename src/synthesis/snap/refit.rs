@@ -1,0 +1,253 @@
+//! Refit of a candidate with some of its dimensions fixed.
+
+use crate::judge::assess::assess;
+use crate::judge::rank::compare;
+use crate::judge::warm::start_at;
+use crate::mechanism::{FourBar, NaturalCoordinates, point, xy};
+use crate::record::Candidate;
+use crate::synthesis::Budget;
+use crate::synthesis::multistart::judged;
+use crate::synthesis::polish::finish;
+use crate::task::Problem;
+use crate::task::spec::{DesignSpec, Limits};
+
+/// Relative difference up to which a length counts as equal to its fixed value.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A length of the linkage: the distance between two holes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Length {
+    /// The ground length |AB|.
+    Ground,
+    /// The crank length |AC|.
+    A,
+    /// The coupler length |CD|.
+    B,
+    /// The follower length |BD|.
+    C,
+    /// The coupler side |CP| at the crank.
+    D,
+    /// The coupler side |DP| at the follower.
+    E,
+}
+
+impl Length {
+    /// All lengths.
+    pub const ALL: [Length; 6] = [Length::Ground, Length::A, Length::B, Length::C, Length::D, Length::E];
+
+    /// Returns its key in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Length::Ground => "ground",
+            Length::A => "a",
+            Length::B => "b",
+            Length::C => "c",
+            Length::D => "d",
+            Length::E => "e",
+        }
+    }
+
+    /// Returns the length with a key.
+    pub fn named(key: &str) -> Option<Length> {
+        Length::ALL.into_iter().find(|length| length.key() == key)
+    }
+
+    /// Returns its value in a linkage.
+    pub fn of(self, linkage: &FourBar) -> f64 {
+        match self {
+            Length::Ground => linkage.ground(),
+            Length::A => linkage.crank(),
+            Length::B => linkage.coupler(),
+            Length::C => linkage.follower(),
+            Length::D => linkage.crank_side(),
+            Length::E => linkage.follower_side(),
+        }
+    }
+
+    /// Returns the problem's limits for it; from 0 to infinity if there are none.
+    pub fn limits(self, design: &DesignSpec) -> Limits {
+        let limits = match self {
+            Length::Ground => design.ground,
+            Length::A => design.a,
+            Length::B => design.b,
+            Length::C => design.c,
+            Length::D => design.d,
+            Length::E => design.e,
+        };
+        limits.unwrap_or(Limits(0.0, f64::INFINITY))
+    }
+}
+
+/// The dimensions that are fixed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fixed {
+    /// Hole distances, each at most once.
+    pub lengths: Vec<(Length, f64)>,
+    /// The crank's pivot A.
+    pub crank_pivot: Option<[f64; 2]>,
+    /// The follower's pivot B.
+    pub follower_pivot: Option<[f64; 2]>,
+    /// The direction from A to B, degrees.
+    pub ground_angle_deg: Option<f64>,
+}
+
+impl Fixed {
+    /// Returns the value at which a length is fixed.
+    pub fn get(&self, length: Length) -> Option<f64> {
+        self.lengths.iter().find(|(one, _)| *one == length).map(|(_, value)| *value)
+    }
+
+    /// Returns the same with one more length, or another value of it.
+    #[must_use]
+    pub fn with(&self, length: Length, value: f64) -> Self {
+        let mut fixed = self.clone();
+        match fixed.lengths.iter_mut().find(|(one, _)| *one == length) {
+            Some(place) => place.1 = value,
+            None => fixed.lengths.push((length, value)),
+        }
+        fixed
+    }
+
+    /// Returns the design table with these dimensions as numbers. `polar`: B by the ground's length and direction, so
+    /// that a fixed length holds to the last digit; B's own limits are then left to the referee.
+    fn design(&self, design: &DesignSpec, polar: bool) -> DesignSpec {
+        let mut fixed = design.clone();
+        let at = |value: f64| Limits(value, value);
+        let both = |p: [f64; 2]| p.map(at);
+        if let Some(p) = self.crank_pivot {
+            fixed.crank_pivot = Some(both(p));
+        }
+        if let Some(p) = self.follower_pivot {
+            fixed.follower_pivot = Some(both(p));
+        }
+        if let Some(angle) = self.ground_angle_deg {
+            fixed.ground_angle_deg = Some(at(angle));
+        }
+        for &(length, value) in &self.lengths {
+            let place = match length {
+                Length::Ground => &mut fixed.ground,
+                Length::A => &mut fixed.a,
+                Length::B => &mut fixed.b,
+                Length::C => &mut fixed.c,
+                Length::D => &mut fixed.d,
+                Length::E => &mut fixed.e,
+            };
+            *place = Some(at(value));
+        }
+        if self.get(Length::D).is_some() || self.get(Length::E).is_some() {
+            // d and e are the coordinates; the problem's limits of coupler_x and coupler_y are left to the referee.
+            (fixed.coupler_x, fixed.coupler_y) = (None, None);
+        }
+        if polar {
+            fixed.follower_pivot = None;
+        }
+        fixed
+    }
+}
+
+/// Fits a candidate again with dimensions fixed and judges it under the original problem; also returns the evaluations
+/// used, about `evaluations` at most. `None` if the fit cannot start or its end is not a linkage.
+pub fn refit(
+    problem: &Problem,
+    candidate: &Candidate,
+    fixed: &Fixed,
+    evaluations: u64,
+    budget: &Budget<'_>,
+) -> (Option<Candidate>, u64) {
+    let design = &problem.spec().design;
+    let ground = fixed.get(Length::Ground).is_some() || fixed.ground_angle_deg.is_some();
+    let has_pivot = design.follower_pivot.is_some() || fixed.follower_pivot.is_some();
+    // If B is fixed, A moves on a circle around it.
+    let held = fixed.follower_pivot.is_some()
+        || design.follower_pivot.is_some_and(|b| b.iter().all(Limits::is_fixed));
+    let polar = has_pivot && ground && !held;
+    let (mut found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
+    if found.is_none() && held && fixed.crank_pivot.is_none() {
+        // Then with A fixed at its start on its circle.
+        if let Some(linkage) = on_its_circle(&candidate.linkage, fixed) {
+            let still = Fixed { crank_pivot: Some(xy(linkage.crank_pivot())), ..fixed.clone() };
+            let (there, more) = fit(problem, candidate, &still, (polar, evaluations), budget);
+            (found, used) = (there, used + more);
+        }
+    }
+    let Some(found) = found else { return (None, used) };
+    let out = |r: &crate::record::Requirement| !r.met && (r.name == "design.Bx" || r.name == "design.By");
+    if polar && found.requirements.iter().any(out) {
+        let (within, more) = fit(problem, candidate, fixed, (false, evaluations), budget);
+        used += more;
+        if let Some(within) = within.filter(|within| compare(problem, within, &found).is_lt()) {
+            return (Some(within), used);
+        }
+    }
+    (Some(found), used)
+}
+
+fn fit(
+    problem: &Problem,
+    candidate: &Candidate,
+    fixed: &Fixed,
+    (polar, evaluations): (bool, u64),
+    budget: &Budget<'_>,
+) -> (Option<Candidate>, u64) {
+    let mut spec = problem.spec().clone();
+    spec.design = fixed.design(&spec.design, polar);
+    let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
+    // If A moves on a circle around a fixed B, the fit has to begin at the right distance: that is a condition, not a
+    // coordinate of the design.
+    let moved = (!polar)
+        .then(|| on_its_circle(&candidate.linkage, fixed))
+        .flatten()
+        .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
+    let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
+    let fitted = finish(&narrowed, &start, evaluations, budget);
+    let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
+        let linkage = to_the_digit(&found.linkage, fixed)?;
+        assess(problem, &linkage, &found.crank_deg, &found.t1_at)
+    });
+    (found, fitted.evaluations)
+}
+
+/// Returns the linkage with A moved along the ground line to the distance of a fixed ground; `None` if the ground is
+/// not fixed.
+fn on_its_circle(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
+    let ground = fixed.get(Length::Ground)?;
+    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
+    let moved = b - (b - a) * (ground / linkage.ground());
+    FourBar::new(NaturalCoordinates { crank_pivot: xy(moved), ..linkage.natural_coordinates() }).ok()
+}
+
+/// Returns the linkage with its fixed lengths at exactly their fixed values, which a fit meets only approximately: the
+/// ground by moving B (A if B is fixed) along it. `None` if they are off by more than the rounding of a fit.
+fn to_the_digit(linkage: &FourBar, fixed: &Fixed) -> Option<FourBar> {
+    /// The feasibility tolerance of a fit.
+    const HAIR: f64 = 1e-6;
+    let near = |(length, value): &(Length, f64)| {
+        (length.of(linkage) - value).abs() <= HAIR * linkage.longest_link().max(*value)
+    };
+    if !fixed.lengths.iter().all(near) {
+        return None;
+    }
+    let mut n: NaturalCoordinates = linkage.natural_coordinates();
+    for &(length, value) in &fixed.lengths {
+        match length {
+            Length::A => n.crank = value,
+            Length::B => n.coupler = value,
+            Length::C => n.follower = value,
+            Length::D => n.crank_side = value,
+            Length::E => n.follower_side = value,
+            Length::Ground => {
+                let (a, b) = (point(n.crank_pivot), point(n.follower_pivot));
+                let long = (b - a).norm();
+                if (long - value).abs() > ROUNDING * value {
+                    let along = (b - a) * (value / long);
+                    if fixed.follower_pivot.is_some() {
+                        n.crank_pivot = xy(b - along);
+                    } else {
+                        n.follower_pivot = xy(a + along);
+                    }
+                }
+            }
+        }
+    }
+    FourBar::new(n).ok()
+}

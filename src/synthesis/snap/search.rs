@@ -1,0 +1,298 @@
+//! Search for a combination of stock lengths: a beam search over the lengths, then a local search from the best.
+
+use super::refit::{Fixed, Length, refit};
+use super::stock::Stock;
+use crate::judge::practicality::crank_of;
+use crate::judge::practicality::sensitivity::{At, sensitivity};
+use crate::judge::rank::compare;
+use crate::record::{Candidate, Evaluations, Reason};
+use crate::synthesis::Budget;
+use crate::task::Problem;
+use crate::task::spec::Limits;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Number of stock sizes tried for a length, the nearest to its fitted value.
+const NEAR: usize = 4;
+/// Width of the beam: partial choices kept in parallel.
+const BEAM: usize = 12;
+/// Number of complete choices whose neighbours are tried, and the most rounds of that.
+const IMPROVED: usize = 2;
+const ROUNDS: usize = 12;
+
+/// A request to snap lengths to a stock.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// The available lengths.
+    pub stock: Stock,
+    /// The hole distances that are snapped to them.
+    pub lengths: Vec<Length>,
+    /// The dimensions that are kept, or fixed by the user.
+    pub fixed: Fixed,
+    /// The number of answers wanted, at least one.
+    pub wanted: usize,
+}
+
+/// The reason why nothing can be snapped.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SnapError {
+    /// No length is left to snap.
+    #[error("every length is kept or fixed, by the command or by the problem: there is nothing to snap")]
+    NothingToSnap,
+    /// The problem's limits leave no stock length.
+    #[error(
+        "no stock length ({stock}) lies within the problem's limits for {key}, {low} to {high}: give a finer stock, or leave {key} out with --snap"
+    )]
+    NoStock {
+        /// Key of the length.
+        key: &'static str,
+        /// The stock, in words.
+        stock: String,
+        /// Its least value allowed.
+        low: f64,
+        /// Its greatest value allowed.
+        high: f64,
+    },
+    /// No combination near the candidate is a linkage that can be assembled at every point.
+    #[error(
+        "no combination of stock lengths near this linkage can be assembled at every point of the target: give a finer stock, or fewer lengths with --snap"
+    )]
+    NoneFits,
+    /// It was interrupted before there was an answer.
+    #[error("interrupted before there was an answer")]
+    Interrupted,
+}
+
+/// The result of snapping.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Snapped {
+    /// The lengths that were snapped, in the order in which they were fixed.
+    pub lengths: Vec<Length>,
+    /// The answers, best first and ranked from 1; if one is accepted, only accepted ones.
+    pub candidates: Vec<Candidate>,
+    /// The plain rounding, for comparison: every length at its nearest stock size at once, and the rest fitted again.
+    /// `None` if that is not a linkage, or cannot be assembled at every point.
+    pub nearest: Option<Candidate>,
+    /// Number of combinations fitted.
+    pub fits: u64,
+    /// The evaluations used.
+    pub evaluations: Evaluations,
+    /// The reason why it ended: [`Reason::Snapped`] if nothing near is better, else the one that stopped it.
+    pub reason: Reason,
+}
+
+/// Most evaluations of a fit while choices are compared, and of the final ones.
+const QUICK: u64 = 60;
+const THOROUGH: u64 = 400;
+/// Number of answers that are fitted thoroughly besides those that are wanted.
+const SPARE: usize = 4;
+
+/// A choice of stock lengths with its fitted candidate.
+#[derive(Clone)]
+struct Choice {
+    fixed: Fixed,
+    candidate: Candidate,
+}
+
+struct Search<'a> {
+    problem: &'a Problem,
+    budget: &'a Budget<'a>,
+    fits: u64,
+    evaluations: u64,
+}
+
+/// Snaps lengths of a candidate to stock sizes and fits the rest again.
+///
+/// The candidate is one of the problem, judged by it. If the budget stops it, the best complete choice so far is
+/// returned: at least every length at its nearest stock size, if that can be assembled. Unstopped, the same input gives
+/// the same answer on any number of threads.
+///
+/// # Errors
+/// [`SnapError`].
+pub fn snap(
+    problem: &Problem,
+    candidate: &Candidate,
+    request: &Request,
+    budget: &Budget<'_>,
+) -> Result<Snapped, SnapError> {
+    let design = &problem.spec().design;
+    let lengths = to_snap(problem, candidate, request);
+    if lengths.is_empty() {
+        return Err(SnapError::NothingToSnap);
+    }
+    let near = |length: Length, at: &Candidate, count: usize| {
+        let Limits(low, high) = length.limits(design);
+        request.stock.near(length.of(&at.linkage), count, low, high)
+    };
+    for &length in &lengths {
+        if near(length, candidate, 1).is_empty() {
+            let Limits(low, high) = length.limits(design);
+            return Err(SnapError::NoStock { key: length.key(), stock: request.stock.words(), low, high });
+        }
+    }
+    let mut search = Search { problem, budget, fits: 0, evaluations: 0 };
+    let plain = lengths.iter().fold(request.fixed.clone(), |fixed, &length| {
+        near(length, candidate, 1).first().map_or(fixed.clone(), |value| fixed.with(length, *value))
+    });
+    let root = Choice { fixed: request.fixed.clone(), candidate: candidate.clone() };
+    let at_once = search.fitted(vec![(plain, candidate)], THOROUGH);
+    let mut beam = vec![root];
+    for &length in &lengths {
+        if budget.stopped() {
+            // Choices of only some of the lengths are not answers; every length at its nearest stock size is one.
+            beam.clear();
+            break;
+        }
+        let choices = beam
+            .iter()
+            .flat_map(|choice| {
+                let values = near(length, &choice.candidate, NEAR);
+                values.into_iter().map(|value| (choice.fixed.with(length, value), &choice.candidate))
+            })
+            .collect();
+        let mut next = search.fitted(choices, QUICK);
+        next.truncate(BEAM);
+        beam = next;
+    }
+    let nearest = at_once.first().map(|choice| choice.candidate.clone());
+    let mut tried: BTreeSet<Vec<u64>> = beam.iter().chain(&at_once).map(|c| bits(&c.fixed)).collect();
+    let mut all = beam;
+    all.extend(at_once);
+    search.sort(&mut all);
+    let mut improved: BTreeSet<Vec<u64>> = BTreeSet::new();
+    for _ in 0..ROUNDS {
+        let best: Vec<Choice> =
+            all.iter().take(IMPROVED).filter(|c| improved.insert(bits(&c.fixed))).cloned().collect();
+        if best.is_empty() || budget.stopped() {
+            break;
+        }
+        let mut choices = Vec::new();
+        for choice in &best {
+            for fixed in neighbours(choice, &lengths, &request.stock, design) {
+                if tried.insert(bits(&fixed)) {
+                    choices.push((fixed, &choice.candidate));
+                }
+            }
+        }
+        let found = search.fitted(choices, QUICK);
+        all.extend(found);
+        search.sort(&mut all);
+    }
+    // The best are fitted once more from their present parameters, with more evaluations.
+    let leaders = if budget.stopped() { 0 } else { request.wanted.max(1) + SPARE };
+    let leaders: Vec<Choice> = all.iter().take(leaders).cloned().collect();
+    let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
+    all.extend(search.fitted(again, THOROUGH));
+    search.sort(&mut all);
+    let mut told: BTreeSet<Vec<u64>> = BTreeSet::new();
+    all.retain(|choice| told.insert(bits(&choice.fixed)));
+    let accepted = all.first().is_some_and(|c| c.candidate.accepted);
+    let candidates: Vec<Candidate> = all
+        .into_iter()
+        .map(|choice| choice.candidate)
+        .filter(|c| c.accepted || !accepted)
+        .take(request.wanted.max(1))
+        .zip(1..)
+        .map(|(candidate, rank)| Candidate { rank, ..candidate })
+        .collect();
+    if candidates.is_empty() {
+        return Err(if budget.stopped() { SnapError::Interrupted } else { SnapError::NoneFits });
+    }
+    let reason = budget.stop_reason().unwrap_or(Reason::Snapped);
+    let positions = search.evaluations * problem.task().len() as u64;
+    Ok(Snapped {
+        lengths,
+        candidates,
+        nearest,
+        fits: search.fits,
+        evaluations: Evaluations { objective: search.evaluations, positions },
+        reason,
+    })
+}
+
+/// Returns the lengths that can be snapped, the one to which the path is most sensitive first.
+fn to_snap(problem: &Problem, candidate: &Candidate, request: &Request) -> Vec<Length> {
+    let design = &problem.spec().design;
+    let whole = |p: Option<[Limits; 2]>| p.is_some_and(|p| p.iter().all(Limits::is_fixed));
+    let both_pivots = (request.fixed.crank_pivot.is_some() || whole(design.crank_pivot))
+        && (request.fixed.follower_pivot.is_some() || whole(design.follower_pivot));
+    let free = |length: &Length| {
+        request.fixed.get(*length).is_none()
+            && !length.limits(design).is_fixed()
+            && !(*length == Length::Ground && both_pivots)
+    };
+    let mut lengths: Vec<Length> =
+        Length::ALL.into_iter().filter(|length| request.lengths.contains(length)).filter(free).collect();
+    if let Some(felt) = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem)) {
+        let of = |length: &Length| match length {
+            Length::Ground => felt.ground.rms,
+            // d and e each count as both if the coupler point is measured along and across.
+            _ => felt.dimensions.iter().find(|d| d.name == length.key()).map_or(f64::INFINITY, |d| d.rms),
+        };
+        lengths.sort_by(|x, y| of(y).total_cmp(&of(x)));
+    }
+    lengths
+}
+
+/// Returns a key of a choice, by which choices are compared.
+fn bits(fixed: &Fixed) -> Vec<u64> {
+    let mut lengths = fixed.lengths.clone();
+    lengths.sort_by_key(|(length, _)| *length);
+    lengths.into_iter().map(|(_, value)| value.to_bits()).collect()
+}
+
+/// Returns the choices with one length, or two, moved a stock size up or down.
+fn neighbours(
+    choice: &Choice,
+    lengths: &[Length],
+    stock: &Stock,
+    design: &crate::task::spec::DesignSpec,
+) -> Vec<Fixed> {
+    let moves: Vec<(Length, f64)> = lengths
+        .iter()
+        .flat_map(|&length| {
+            let at = choice.fixed.get(length).unwrap_or_else(|| length.of(&choice.candidate.linkage));
+            let Limits(low, high) = length.limits(design);
+            let near = stock.near(at, NEAR, low, high);
+            let up = near.iter().copied().filter(|v| *v > at).fold(f64::INFINITY, f64::min);
+            let down = near.iter().copied().filter(|v| *v < at).fold(f64::NEG_INFINITY, f64::max);
+            [up, down].into_iter().filter(|v| v.is_finite()).map(move |value| (length, value))
+        })
+        .collect();
+    let mut neighbours: Vec<Fixed> =
+        moves.iter().map(|&(length, value)| choice.fixed.with(length, value)).collect();
+    for (i, &(length, value)) in moves.iter().enumerate() {
+        for &(other, other_value) in &moves[i + 1..] {
+            if other != length {
+                neighbours.push(choice.fixed.with(length, value).with(other, other_value));
+            }
+        }
+    }
+    neighbours
+}
+
+impl Search<'_> {
+    /// Fits choices and returns the results, best first, without those that cannot be fitted.
+    fn fitted(&mut self, choices: Vec<(Fixed, &Candidate)>, evaluations: u64) -> Vec<Choice> {
+        self.fits += choices.len() as u64;
+        let fitted: Vec<(Option<Choice>, u64)> = choices
+            .into_par_iter()
+            .map(|(fixed, from)| {
+                let (candidate, used) = refit(self.problem, from, &fixed, evaluations, self.budget);
+                (candidate.map(|candidate| Choice { fixed, candidate }), used)
+            })
+            .collect();
+        let mut found = Vec::new();
+        for (choice, used) in fitted {
+            self.evaluations += used;
+            found.extend(choice);
+        }
+        self.sort(&mut found);
+        found
+    }
+
+    /// Sorts choices, best first; equals stay in the order in which they were tried.
+    fn sort(&self, choices: &mut [Choice]) {
+        choices.sort_by(|one, other| compare(self.problem, &one.candidate, &other.candidate));
+    }
+}

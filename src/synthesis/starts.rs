@@ -1,0 +1,328 @@
+//! Starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares.
+//!
+//! Grashof shapes are drawn in their slacks: with the shortest link s and s_i > 0,
+//! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
+//! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
+
+use crate::mechanism::four_bar::mobility::{InputArc, Mobility};
+use crate::mechanism::four_bar::mobility::{grashof_margin, linkage_type};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
+use crate::numbers::arithmetic::streams::{Stream, below, uniform};
+use crate::task::forms::design_space::{DesignSpace, Shape};
+use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
+use crate::task::forms::start::Start;
+use crate::task::forms::torus::Positions;
+use crate::task::{AngleOffset, Timing};
+use crate::task::{Problem, Setting};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A generator of starts for a problem.
+#[derive(Clone, Debug)]
+pub struct Starts<'a> {
+    problem: &'a Problem,
+    types: Vec<LinkageType>,
+    /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
+    arc: Vec<f64>,
+    /// One design space per side of the coupler point.
+    spaces: Vec<(CouplerSide, DesignSpace)>,
+}
+
+impl<'a> Starts<'a> {
+    /// Creates the generator of a problem.
+    pub fn new(problem: &'a Problem) -> Self {
+        let task = problem.task();
+        let points = task.points();
+        let mut along = vec![0.0];
+        for w in points.windows(2) {
+            along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let mut whole = along[along.len() - 1];
+        if task.closed() && !task.repeats_first() {
+            whole += (points[0] - points[points.len() - 1]).norm();
+        }
+        Starts {
+            problem,
+            types: drawn_types(problem),
+            arc: along.iter().map(|s| s / whole).collect(),
+            spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
+        }
+    }
+
+    /// Returns the problem.
+    pub fn problem(&self) -> &Problem {
+        self.problem
+    }
+
+    /// Returns the arc length up to each point, in parts of the whole target (closed: of the closed curve).
+    pub fn arc(&self) -> &[f64] {
+        &self.arc
+    }
+
+    /// Returns the points of a closed target, each once.
+    pub fn loop_points(&self) -> &[Complex] {
+        let task = self.problem.task();
+        &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
+    }
+
+    /// Returns a start of free timing from ratios and positions measured from the ground line: the rest by linear least
+    /// squares. `kind` is the type of the ratios, and the one aimed at if types are required.
+    pub fn from_positions(
+        &self,
+        ratios: &Ratios,
+        kind: LinkageType,
+        direction: f64,
+        positions: &[[Complex; 2]],
+    ) -> Option<Start> {
+        let (side, space) = &self.spaces[0];
+        let shape = self.fit(ratios, &KnownPivots::of(self.problem), positions)?;
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let turn = ground / ground.norm();
+        let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };
+        let space = self.spaces.iter().find(|(s, _)| *s == side).map_or(space, |(_, space)| space);
+        let aim = self.problem.aims_at_types().then_some(kind);
+        let assembly = AssemblyMode::of(assembly_sign(ratios, positions[0]));
+        let setting = Setting { aim, assembly, direction, side };
+        let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
+        Some(Start { design: space.design(&shape, 0.0), setting, positions })
+    }
+
+    /// Draws one start; `None` if it cannot be assembled at every point.
+    pub fn draw(&self, stream: &mut Stream) -> Option<Start> {
+        let drawn = self.types[below(stream, self.types.len())];
+        let assembly = if below(stream, 2) == 0 { AssemblyMode::Plus } else { AssemblyMode::Minus };
+        let directions = self.problem.directions();
+        let direction = directions[below(stream, directions.len())];
+        let which = below(stream, self.spaces.len());
+        let ratios = draw_ratios(stream, drawn)?;
+        let timed = !matches!(self.problem.task().timing(), Timing::Free);
+        let aimed = if timed { !self.problem.types().is_empty() } else { self.problem.aims_at_types() };
+        let aim = aimed.then_some(drawn);
+        let theta = uniform(stream, -PI, PI);
+        let phase = uniform(stream, -PI, PI);
+        let (side, space) = &self.spaces[which];
+        let setting = Setting { aim, assembly, direction, side: *side };
+        let mut known = KnownPivots::of(self.problem);
+        match self.problem.task().timing() {
+            Timing::Prescribed { offset, .. } => {
+                let t = assembly.sign();
+                let phases = self.problem.phases(direction);
+                let turn = match offset {
+                    AngleOffset::Free => Complex::from_polar(1.0, phase),
+                    AngleOffset::Ground => Complex::new(1.0, 0.0),
+                    AngleOffset::Fixed => {
+                        let angle = match (known.crank_pivot, known.follower_pivot, known.ground_angle) {
+                            (Some(a), Some(b), _) => (b - a).arg(),
+                            (_, _, Some(angle)) => angle,
+                            _ => theta,
+                        };
+                        known.ground_angle = Some(angle);
+                        Complex::from_polar(1.0, -angle)
+                    }
+                };
+                let positions: Option<Vec<[Complex; 2]>> = phases
+                    .iter()
+                    .map(|e| {
+                        let e = e * turn;
+                        Some([e, coupler_direction(&ratios, e, t)?])
+                    })
+                    .collect();
+                let shape = self.fit(&ratios, &known, &positions?)?;
+                let ground = (shape.follower_pivot - shape.crank_pivot).arg();
+                let offset = if self.problem.offset_is_free() { phase + ground } else { 0.0 };
+                Some(Start { design: space.design(&shape, offset), setting, positions: Vec::new() })
+            }
+            Timing::Free => {
+                let positions = self.free_positions(stream, &ratios, drawn, assembly, direction)?;
+                let shape = self.fit(&ratios, &known, &positions)?;
+                let ground = shape.follower_pivot - shape.crank_pivot;
+                let turn = ground / ground.norm();
+                let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
+                Some(Start { design: space.design(&shape, 0.0), setting, positions })
+            }
+        }
+    }
+
+    /// Fits the shape by linear least squares through positions measured from the ground line.
+    pub(super) fn fit(
+        &self,
+        ratios: &Ratios,
+        known: &KnownPivots,
+        positions: &[[Complex; 2]],
+    ) -> Option<Shape> {
+        let task = self.problem.task();
+        fit(ratios, known, positions, task.points(), task.weights())
+    }
+
+    /// Draws positions (from the ground line) spread along the circuit as the points are along the target.
+    fn free_positions(
+        &self,
+        stream: &mut Stream,
+        ratios: &Ratios,
+        drawn: LinkageType,
+        assembly: AssemblyMode,
+        direction: f64,
+    ) -> Option<Positions> {
+        let closed = self.problem.task().closed() || self.problem.task().repeats_first();
+        let start = uniform(stream, -PI, PI);
+        let partial = uniform(stream, 0.5, 5.8);
+        let within = [uniform(stream, -FRAC_PI_2, FRAC_PI_2), uniform(stream, -FRAC_PI_2, FRAC_PI_2)];
+        let arc_choice = below(stream, 2);
+        if drawn.input_turns_fully() || drawn == LinkageType::ChangePoint {
+            let span = if closed { TAU } else { partial };
+            return self.turning(ratios, assembly, start, direction * span).collect();
+        }
+        let mobility = unit_linkage(ratios)?;
+        let index = (arc_choice as u8) % mobility.circuits().max(1);
+        let arc = mobility.arc(crate::mechanism::Circuit { index })?;
+        if self.problem.branch_any() {
+            let span = if closed { TAU } else { partial };
+            return self.round_an_arc(ratios, &arc, start, direction * span).collect();
+        }
+        let ends = within.map(f64::sin);
+        if (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1 {
+            return None;
+        }
+        self.along_an_arc(ratios, &arc, assembly, ends).collect()
+    }
+
+    /// Returns positions (from the ground line) of a crank that turns through `span` from `start`, as the points are
+    /// along the target.
+    pub(super) fn turning(
+        &self,
+        ratios: &Ratios,
+        assembly: AssemblyMode,
+        start: f64,
+        span: f64,
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
+        self.arc
+            .iter()
+            .map(move |s| position(ratios, Complex::from_polar(1.0, start + span * s), assembly.sign()))
+    }
+
+    /// As [`Starts::turning`], for a crank that rocks on an arc and passes its toggles, psi from `start` through
+    /// `span`.
+    pub(super) fn round_an_arc(
+        &self,
+        ratios: &Ratios,
+        arc: &InputArc,
+        start: f64,
+        span: f64,
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
+        self.arc.iter().map(move |s| {
+            let psi = start + span * s;
+            let angle = arc.middle + INSIDE * arc.half_width * psi.sin();
+            position(ratios, Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+        })
+    }
+
+    /// As [`Starts::turning`], for a crank that rocks on an arc from one end to the other, given in parts of its half
+    /// width.
+    pub(super) fn along_an_arc(
+        &self,
+        ratios: &Ratios,
+        arc: &InputArc,
+        assembly: AssemblyMode,
+        ends: [f64; 2],
+    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
+        let ends = ends.map(|x| arc.middle + INSIDE * arc.half_width * x);
+        self.arc.iter().map(move |s| {
+            let angle = ends[0] + (ends[1] - ends[0]) * s;
+            position(ratios, Complex::from_polar(1.0, angle), assembly.sign())
+        })
+    }
+}
+
+/// Factor that keeps positions a little off the toggles, where the assembly is undecided.
+const INSIDE: f64 = 1.0 - 1e-9;
+
+/// Returns a position from the ground line.
+fn position(ratios: &Ratios, e: Complex, t: f64) -> Option<[Complex; 2]> {
+    Some([e, coupler_direction(ratios, e, t)?])
+}
+
+/// Returns the types from which starts are drawn.
+pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
+    match problem.types() {
+        // Any type: the types that a motor can turn get half of the draws.
+        [] => vec![
+            LinkageType::CrankRocker,
+            LinkageType::CrankRocker,
+            LinkageType::DoubleCrank,
+            LinkageType::RockerCrank,
+            LinkageType::DoubleRocker,
+            LinkageType::TripleRocker,
+        ],
+        some => some.to_vec(),
+    }
+}
+
+/// Returns the mobility of the linkage with ground 1 along the x axis.
+pub(super) fn unit_linkage(ratios: &Ratios) -> Option<Mobility> {
+    let linkage = FourBar::new(NaturalCoordinates {
+        crank_pivot: [0.0, 0.0],
+        follower_pivot: [1.0, 0.0],
+        crank: ratios.crank,
+        coupler: ratios.coupler,
+        follower: ratios.follower,
+        crank_side: 0.0,
+        follower_side: ratios.coupler,
+        assembly: AssemblyMode::Plus,
+        side: CouplerSide::Plus,
+    })
+    .ok()?;
+    Some(linkage.mobility())
+}
+
+/// Range of ratios over which slacks and lengths are drawn, evenly in their logarithm.
+const SLACK_RANGE: (f64, f64) = (0.02, 30.0);
+
+/// One draw in this many has a slack from `LONG_RANGE`, far beyond the usual.
+const LONG_EVERY: usize = 4;
+const LONG_RANGE: (f64, f64) = (30.0, 1000.0);
+
+/// Draws the ratios of a linkage of a type; `None` if a few draws found none.
+pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Ratios> {
+    let log_uniform =
+        |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
+    let links = match drawn {
+        LinkageType::TripleRocker => {
+            // Most draws are not triple-rockers: try a few.
+            let mut found = None;
+            for _ in 0..16 {
+                let links = [(); 4].map(|()| log_uniform(stream, (0.2, 5.0)));
+                let fits = linkage_type(links) == Some(LinkageType::TripleRocker);
+                if found.is_none() && fits && grashof_margin(links) < 0.0 {
+                    found = Some(links);
+                }
+            }
+            found?
+        }
+        _ => {
+            let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));
+            let any = (below(stream, 3), below(stream, 4));
+            if below(stream, LONG_EVERY) == 0 {
+                // Two long links beside each other: towards a slider in place of a link.
+                s[any.0] = log_uniform(stream, LONG_RANGE);
+            }
+            if drawn == LinkageType::ChangePoint {
+                // One slack is used up: the margin is zero.
+                s[any.0] = 0.0;
+            }
+            let others = [1.0 + 0.5 * (s[1] + s[2]), 1.0 + 0.5 * (s[0] + s[2]), 1.0 + 0.5 * (s[0] + s[1])];
+            let place = match drawn {
+                LinkageType::DoubleCrank => 0,
+                LinkageType::CrankRocker => 1,
+                LinkageType::DoubleRocker => 2,
+                LinkageType::ChangePoint => any.1,
+                _ => 3,
+            };
+            let mut links = [1.0; 4];
+            for (slot, value) in (0..4).filter(|&i| i != place).zip(others) {
+                links[slot] = value;
+            }
+            links
+        }
+    };
+    let [g, a, b, c] = links;
+    Some(Ratios { crank: a / g, coupler: b / g, follower: c / g })
+}

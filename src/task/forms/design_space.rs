@@ -1,0 +1,439 @@
+//! The design vector and its coordinates; only this file knows the meaning of each component.
+//!
+//! x = (Ax, Ay, G1, G2, a, b, c, Q1, Q2, o). The ground (G1, G2) is B itself or, if the problem gives `ground` or
+//! `ground_angle_deg` and not B, the length and direction from A to B. The coupler point (Q1, Q2) is (coupler_x,
+//! coupler_y) or, if the problem gives d or e only, those distances with the side t2 kept separately. o is the crank
+//! angle's offset if the timing leaves it free. Any other quantity that the problem bounds becomes an inequality (a
+//! derived bound).
+
+use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
+use crate::task::PathTask;
+use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
+use std::f64::consts::{PI, TAU};
+
+/// Dimension of a design vector; fixed numbers keep their place.
+pub const DESIGN: usize = 10;
+
+/// A design vector.
+pub type Design = [f64; DESIGN];
+
+/// Number of parameters of a shape: Ax, Ay, Bx, By, a, b, c, coupler_x, coupler_y.
+pub const SHAPE: usize = 9;
+
+/// Least length searched, in parts of the target's size. A bound of zero on a length means "any positive length", but a
+/// linkage of size zero fits any circular arc.
+pub const SHORTEST_LINK: f64 = 1e-4;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum GroundChart {
+    Pivot,
+    Polar,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum CouplerChart {
+    Offset,
+    Distances(CouplerSide),
+}
+
+/// The parameters of a linkage that the search varies: pivots, links and the coupler point in the coupler's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// The crank's pivot A.
+    pub crank_pivot: Complex,
+    /// The follower's pivot B.
+    pub follower_pivot: Complex,
+    /// The crank length a.
+    pub crank: f64,
+    /// The coupler length b.
+    pub coupler: f64,
+    /// The follower length c.
+    pub follower: f64,
+    /// The coupler point P along and across C -> D from C, as lengths.
+    pub offset: Complex,
+}
+
+impl Shape {
+    /// Returns the linkage with an assembly.
+    ///
+    /// # Errors
+    /// As [`FourBar::new`].
+    pub fn linkage(&self, assembly: AssemblyMode) -> Result<FourBar, LinkageError> {
+        FourBar::with_coupler_offset(
+            [self.crank_pivot, self.follower_pivot],
+            [self.crank, self.coupler, self.follower],
+            self.offset,
+            assembly,
+        )
+    }
+
+    /// Returns the lengths ground, a, b, c.
+    pub fn links(&self) -> [f64; 4] {
+        [length(self.follower_pivot - self.crank_pivot), self.crank, self.coupler, self.follower]
+    }
+}
+
+impl From<&FourBar> for Shape {
+    fn from(linkage: &FourBar) -> Self {
+        Shape {
+            crank_pivot: linkage.crank_pivot(),
+            follower_pivot: linkage.follower_pivot(),
+            crank: linkage.crank(),
+            coupler: linkage.coupler(),
+            follower: linkage.follower(),
+            offset: linkage.coupler_offset(),
+        }
+    }
+}
+
+/// A bound on a quantity that is not a coordinate of the design vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DerivedBound {
+    /// The bounded quantity.
+    pub quantity: Derived,
+    /// Its limits; an angle's in radians.
+    pub limits: Limits,
+}
+
+/// The quantities that can be bounded besides the coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Derived {
+    /// The ground length |AB|.
+    Ground,
+    /// The direction of the ground line, arg(B - A), in radians.
+    GroundAngle,
+    /// The coupler side |CP|.
+    CrankSide,
+    /// The coupler side |DP|.
+    FollowerSide,
+}
+
+/// The set of admissible designs: coordinates, bounds and derived bounds.
+#[derive(Clone, Debug)]
+pub struct DesignSpace {
+    ground: GroundChart,
+    coupler: CouplerChart,
+    bounds: [(f64, f64); DESIGN],
+    derived: Vec<DerivedBound>,
+    free: Vec<usize>,
+}
+
+const OFFSET: usize = DESIGN - 1;
+
+impl DesignSpace {
+    /// Creates the space of a resolved design table; `offset_free`: whether the crank angle's offset is unknown;
+    /// `pivot_box` tightens the pivots' bounds; `side` is t2, used if d and e are the coordinates.
+    pub fn new(
+        spec: &DesignSpec,
+        task: &PathTask,
+        offset_free: bool,
+        pivot_box: Option<[f64; 4]>,
+        side: CouplerSide,
+    ) -> Self {
+        let far = 2.0 * DEFAULT_REACH * task.size();
+        let shortest = SHORTEST_LINK * task.size();
+        let any = Limits(f64::NEG_INFINITY, f64::INFINITY);
+        let length = |l: Option<Limits>| {
+            let l = l.unwrap_or(Limits(0.0, far));
+            if l.is_fixed() { l } else { Limits(l.0.max(shortest.min(l.1)), l.1) }
+        };
+        let within = |l: Limits, axis: usize| match pivot_box {
+            Some(b) if !l.is_fixed() => {
+                let inside = Limits(l.0.max(b[axis]), l.1.min(b[axis + 2]));
+                // An empty intersection is left to the requirement, which is then not met.
+                if inside.0 < inside.1 { inside } else { l }
+            }
+            _ => l,
+        };
+        let pivot = |p: Option<[Limits; 2]>| {
+            let [x, y] = p.unwrap_or([any, any]);
+            [within(x, 0), within(y, 1)]
+        };
+        let mut derived = Vec::new();
+        let mut derive = |quantity, limits: Option<Limits>| {
+            if let Some(limits) = limits {
+                derived.push(DerivedBound { quantity, limits });
+            }
+        };
+        let radians = |l: Limits| Limits(l.0.to_radians(), l.1.to_radians());
+        let [a_x, a_y] = pivot(spec.crank_pivot);
+        let (ground, [g_1, g_2]) = match spec.follower_pivot {
+            Some(_) => {
+                derive(Derived::Ground, spec.ground);
+                derive(Derived::GroundAngle, spec.ground_angle_deg.map(radians));
+                (GroundChart::Pivot, pivot(spec.follower_pivot))
+            }
+            None => {
+                let angle = spec.ground_angle_deg.map_or(any, radians);
+                (GroundChart::Polar, [length(spec.ground), angle])
+            }
+        };
+        let on_crank_pin = spec.d.is_some_and(|d| d.is_fixed() && d.0 == 0.0);
+        let (coupler, [q_1, q_2]) = if on_crank_pin && spec.coupler_x.is_none() && spec.coupler_y.is_none() {
+            // P on C: its offset is zero, and e equals b for every b.
+            derive(Derived::FollowerSide, spec.e);
+            (CouplerChart::Offset, [Limits(0.0, 0.0), Limits(0.0, 0.0)])
+        } else if spec.coupler_x.is_none() && spec.coupler_y.is_none() {
+            let distance = |l: Option<Limits>| l.unwrap_or(Limits(0.0, far));
+            (CouplerChart::Distances(side), [distance(spec.d), distance(spec.e)])
+        } else {
+            derive(Derived::CrankSide, spec.d);
+            derive(Derived::FollowerSide, spec.e);
+            let offset = |l: Option<Limits>| l.unwrap_or(Limits(-far, far));
+            (CouplerChart::Offset, [offset(spec.coupler_x), offset(spec.coupler_y)])
+        };
+        let offset = if offset_free { any } else { Limits(0.0, 0.0) };
+        let bounds = [a_x, a_y, g_1, g_2, length(spec.a), length(spec.b), length(spec.c), q_1, q_2, offset]
+            .map(|l| (l.0, l.1));
+        let free = (0..DESIGN).filter(|&i| bounds[i].0 < bounds[i].1).collect();
+        DesignSpace { ground, coupler, bounds, derived, free }
+    }
+
+    /// Returns whether t2 has to be chosen separately (d and e are the coordinates).
+    pub fn has_side(spec: &DesignSpec) -> bool {
+        spec.coupler_x.is_none() && spec.coupler_y.is_none()
+    }
+
+    /// Returns [low, high] of each number.
+    pub fn bounds(&self) -> &[(f64, f64); DESIGN] {
+        &self.bounds
+    }
+
+    /// Fixes every number at its value in `x`.
+    pub fn fix(&mut self, x: &Design) {
+        self.bounds = x.map(|value| (value, value));
+        self.free.clear();
+        self.derived.clear();
+    }
+
+    /// Returns the derived bounds.
+    pub fn derived(&self) -> &[DerivedBound] {
+        &self.derived
+    }
+
+    /// Returns the limits of ground, a, b and c.
+    pub fn link_limits(&self) -> [Limits; 4] {
+        let of = |i: usize| Limits(self.bounds[i].0, self.bounds[i].1);
+        let ground = match self.ground {
+            GroundChart::Polar => of(2),
+            GroundChart::Pivot => self
+                .derived
+                .iter()
+                .find(|bound| bound.quantity == Derived::Ground)
+                .map_or(Limits(0.0, f64::INFINITY), |bound| bound.limits),
+        };
+        [ground, of(4), of(5), of(6)]
+    }
+
+    /// Returns the name of number `i` of a design in the file (a pivot's by its coordinate, such as Ax), and whether it
+    /// is an angle; `None` for the crank angle's offset.
+    pub fn coordinate(&self, i: usize) -> Option<(&'static str, bool)> {
+        let polar = self.ground == GroundChart::Polar;
+        let distances = self.coupler != CouplerChart::Offset;
+        let name = match i {
+            0 => "Ax",
+            1 => "Ay",
+            2 if polar => "ground",
+            2 => "Bx",
+            3 if polar => "ground_angle_deg",
+            3 => "By",
+            4 => "a",
+            5 => "b",
+            6 => "c",
+            7 if distances => "d",
+            7 => "coupler_x",
+            8 if distances => "e",
+            8 => "coupler_y",
+            _ => return None,
+        };
+        Some((name, self.is_angle(i)))
+    }
+
+    /// Returns the box of the numbers that are not fixed, for a population search: angles within half a turn.
+    pub fn free_box(&self) -> Vec<(f64, f64)> {
+        self.free.iter().map(|&i| self.finite(i)).collect()
+    }
+
+    fn finite(&self, i: usize) -> (f64, f64) {
+        let (low, high) = self.bounds[i];
+        if low.is_finite() && high.is_finite() { (low, high) } else { (-PI, PI) }
+    }
+
+    /// Returns the design vector with the numbers that are not fixed taken from `genes`.
+    pub fn from_free(&self, genes: &[f64]) -> Design {
+        let mut x = self.bounds.map(|(low, _)| low);
+        for (&i, &gene) in self.free.iter().zip(genes) {
+            x[i] = gene;
+        }
+        x
+    }
+
+    /// Returns the numbers that are not fixed.
+    pub fn to_free(&self, x: &Design) -> Vec<f64> {
+        self.free
+            .iter()
+            .map(|&i| {
+                let (low, high) = self.finite(i);
+                let value = if self.is_angle(i) && high - low >= TAU { wrapped(x[i]) } else { x[i] };
+                value.max(low).min(high)
+            })
+            .collect()
+    }
+
+    /// Returns whether a number of the design vector is the length of a link or of a side.
+    pub fn is_length(&self, i: usize) -> bool {
+        (4..7).contains(&i)
+            || (i == 2 && self.ground == GroundChart::Polar)
+            || ((7..9).contains(&i) && self.coupler != CouplerChart::Offset)
+    }
+
+    /// Returns the trust region within which linear models are useful, for a target of this size: a tenth of it for
+    /// lengths, a tenth of a radian for angles.
+    pub fn trust(&self, size: f64) -> Design {
+        std::array::from_fn(|i| if self.is_angle(i) { 0.1 } else { 0.1 * size })
+    }
+
+    /// Returns whether a number is an angle, in radians; the others are lengths.
+    pub fn is_angle(&self, i: usize) -> bool {
+        i == OFFSET || (i == 3 && self.ground == GroundChart::Polar)
+    }
+
+    /// Returns the crank angle's offset.
+    pub fn offset(&self, x: &Design) -> f64 {
+        x[OFFSET]
+    }
+
+    /// Returns the shape of a design; `None` if d and e form no triangle with b.
+    pub fn shape(&self, x: &Design) -> Option<Shape> {
+        let crank_pivot = Complex::new(x[0], x[1]);
+        let follower_pivot = match self.ground {
+            GroundChart::Pivot => Complex::new(x[2], x[3]),
+            GroundChart::Polar => crank_pivot + Complex::from_polar(x[2], x[3]),
+        };
+        let offset = match self.coupler {
+            CouplerChart::Offset => Complex::new(x[7], x[8]),
+            CouplerChart::Distances(side) => {
+                let (b, d, e) = (x[5], x[7], x[8]);
+                let along = (d * d + b * b - e * e) / (2.0 * b);
+                let height_sq = d * d - along * along;
+                if height_sq < -crate::mechanism::FLAT_TOLERANCE * (d * d + b * b) {
+                    return None;
+                }
+                Complex::new(along, side.sign() * height_sq.max(0.0).sqrt())
+            }
+        };
+        Some(Shape { crank_pivot, follower_pivot, crank: x[4], coupler: x[5], follower: x[6], offset })
+    }
+
+    /// Returns the design of a shape, clamped to the bounds.
+    pub fn design(&self, shape: &Shape, offset: f64) -> Design {
+        let mut x = self.coordinates(shape, offset);
+        for (value, &(low, high)) in x.iter_mut().zip(&self.bounds) {
+            *value = value.max(low).min(high);
+        }
+        x
+    }
+
+    /// Returns the distance of a shape from the bounds: the distances of its coordinates from them, added up (a
+    /// direction as an arc of the ground); 0 if it is only rounding, which [`DesignSpace::project`] would undo.
+    pub fn excess(&self, shape: &Shape) -> f64 {
+        let x = self.coordinates(shape, 0.0);
+        let mut excess = 0.0;
+        for (i, (value, &(low, high))) in x.iter().zip(&self.bounds).enumerate().take(SHAPE) {
+            let out = (low - value).max(value - high);
+            if out > 1e-9 * (1.0 + value.abs()) {
+                excess += if self.is_angle(i) { out * x[2] } else { out };
+            }
+        }
+        excess
+    }
+
+    /// Returns the design vector of a shape, inside the bounds or not.
+    fn coordinates(&self, shape: &Shape, offset: f64) -> Design {
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let (g_1, g_2) = match self.ground {
+            GroundChart::Pivot => (shape.follower_pivot.re, shape.follower_pivot.im),
+            GroundChart::Polar => {
+                let (low, high) = self.bounds[3];
+                let middle = if low.is_finite() { 0.5 * (low + high) } else { 0.0 };
+                (length(ground), middle + wrapped(ground.arg() - middle))
+            }
+        };
+        let (q_1, q_2) = match self.coupler {
+            CouplerChart::Offset => (shape.offset.re, shape.offset.im),
+            CouplerChart::Distances(_) => (length(shape.offset), length(shape.offset - shape.coupler)),
+        };
+        let a = shape.crank_pivot;
+        [a.re, a.im, g_1, g_2, shape.crank, shape.coupler, shape.follower, q_1, q_2, offset]
+    }
+
+    /// Returns the derivative by the design vector from the one by the shape (Ax, Ay, Bx, By, a, b, c, coupler_x,
+    /// coupler_y) and by the crank angle's offset.
+    pub fn pull_back(&self, x: &Design, shape: &Shape, row: &[f64; SHAPE], by_offset: f64) -> Design {
+        let mut out = [0.0; DESIGN];
+        out[..SHAPE].copy_from_slice(row);
+        out[OFFSET] = by_offset;
+        if self.ground == GroundChart::Polar {
+            let (sin, cos) = x[3].sin_cos();
+            out[0] = row[0] + row[2];
+            out[1] = row[1] + row[3];
+            out[2] = row[2] * cos + row[3] * sin;
+            out[3] = x[2] * (row[3] * cos - row[2] * sin);
+        }
+        if let CouplerChart::Distances(_) = self.coupler {
+            // coupler_x = (d^2 + b^2 - e^2)/(2b), coupler_y = t2 sqrt(d^2 - coupler_x^2)
+            let (b, d, e) = (x[5], x[7], x[8]);
+            let z = shape.offset;
+            let floor = 1e-9 * (d + b);
+            let z_y = if z.im.abs() < floor { floor.copysign(z.im) } else { z.im };
+            let column = |along: f64, d_d: f64| row[7] * along + row[8] * ((d * d_d - z.re * along) / z_y);
+            out[5] = row[5] + column((b * b - d * d + e * e) / (2.0 * b * b), 0.0);
+            out[7] = column(d / b, 1.0);
+            out[8] = column(-e / b, 0.0);
+        }
+        out
+    }
+
+    /// Clamps a linkage's pivots and lengths exactly to their bounds if rounding took them out.
+    pub fn project(&self, linkage: &FourBar) -> Result<FourBar, LinkageError> {
+        let mut p = linkage.natural_coordinates();
+        let snap = |value: &mut f64, (low, high): (f64, f64)| {
+            let slack = 1e-9 * (1.0 + value.abs());
+            if *value < low && low - *value <= slack {
+                *value = low;
+            } else if *value > high && *value - high <= slack {
+                *value = high;
+            }
+        };
+        let b = &self.bounds;
+        snap(&mut p.crank_pivot[0], b[0]);
+        snap(&mut p.crank_pivot[1], b[1]);
+        if self.ground == GroundChart::Pivot {
+            snap(&mut p.follower_pivot[0], b[2]);
+            snap(&mut p.follower_pivot[1], b[3]);
+        } else if b[3].0 == b[3].1 && b[3].0 == 0.0 {
+            // A horizontal ground is kept horizontal to the last bit.
+            p.follower_pivot[1] = p.crank_pivot[1];
+        }
+        snap(&mut p.crank, b[4]);
+        snap(&mut p.coupler, b[5]);
+        snap(&mut p.follower, b[6]);
+        if self.coupler != CouplerChart::Offset {
+            snap(&mut p.crank_side, b[7]);
+            snap(&mut p.follower_side, b[8]);
+        }
+        FourBar::new(p)
+    }
+}
+
+/// Returns the pivots of a shape as coordinate pairs.
+pub fn pivots(shape: &Shape) -> [[f64; 2]; 2] {
+    [xy(shape.crank_pivot), xy(shape.follower_pivot)]
+}
+
+/// Returns a direction as a unit vector; the x axis for the zero vector.
+pub fn unit(v: Complex) -> Complex {
+    let long = length(v);
+    if long > 0.0 { v / long } else { point([1.0, 0.0]) }
+}

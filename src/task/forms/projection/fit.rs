@@ -1,0 +1,467 @@
+//! The reduced form on one assembly as a least-squares problem in a few unknowns, with Kaufman's Jacobian.
+//!
+//! The residual is r = T' - K a' with the columns orthogonalised in the order 1 (if A is free), u, a: u' is u centred,
+//! a' is a centred and off u', T' alike. The model's derivative at fixed A, K, Z is
+//!
+//! ```text
+//! m_x = i Z u dtheta3/dx + (terms that move K or a)       J_x = -(m_x off 1, u', a')         (Kaufman 1975)
+//! dtheta3/dphi = k <V, i p e>;  d/dln p = k <V, p e>;  d/dln q = k q <V, u>;  d/dln r = -k r^2
+//! k = -t/H,   V = p e + q u - 1
+//! ```
+//!
+//! For a real column (K of known direction) only the real part along it is projected off; for a known K nothing. If a
+//! limit is active, |K| = rho(p, q, r) is a product of powers and K moves with it; of a complex K only the turn
+//! remains: the real column i K. J^T r is half the exact gradient of the reduced cost: the term that Kaufman leaves out
+//! is orthogonal to r.
+
+use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
+use crate::mechanism::effort::computed;
+use crate::mechanism::{AssemblyMode, Complex, turned};
+use crate::numbers::arithmetic::dispatch::vectorised;
+use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
+use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
+use crate::task::forms::design_space::{Shape, unit};
+use std::array::from_fn;
+
+/// A column of complex numbers.
+#[derive(Clone, Debug)]
+struct Column([Vec<f64>; 2]);
+
+type Pair = [F64x8; 2];
+
+impl Column {
+    fn new(n: usize) -> Self {
+        Column([vec![0.0; n], vec![0.0; n]])
+    }
+    #[inline(always)]
+    fn load(&self, at: usize) -> Pair {
+        [F64x8::load(&self.0[0], at), F64x8::load(&self.0[1], at)]
+    }
+    #[inline(always)]
+    fn store(&mut self, at: usize, value: Pair) {
+        value[0].store(&mut self.0[0], at);
+        value[1].store(&mut self.0[1], at);
+    }
+}
+
+#[inline(always)]
+fn splat(z: Complex) -> Pair {
+    [F64x8::splat(z.re), F64x8::splat(z.im)]
+}
+#[inline(always)]
+fn add(x: Pair, y: Pair) -> Pair {
+    [x[0] + y[0], x[1] + y[1]]
+}
+#[inline(always)]
+fn sub(x: Pair, y: Pair) -> Pair {
+    [x[0] - y[0], x[1] - y[1]]
+}
+#[inline(always)]
+fn mul(x: Pair, y: Pair) -> Pair {
+    [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]]
+}
+#[inline(always)]
+fn scale(x: Pair, by: F64x8) -> Pair {
+    [x[0] * by, x[1] * by]
+}
+/// Returns conj(x) y.
+#[inline(always)]
+fn dot(x: Pair, y: Pair) -> Pair {
+    [x[0] * y[0] + x[1] * y[1], x[0] * y[1] - x[1] * y[0]]
+}
+#[inline(always)]
+fn norm_sqr(x: Pair) -> F64x8 {
+    x[0] * x[0] + x[1] * x[1]
+}
+#[inline(always)]
+fn total(x: Pair) -> Complex {
+    Complex::new(x[0].sum(), x[1].sum())
+}
+
+/// The physical solution at a point of the reduced form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution {
+    /// Pivots, links and coupler point.
+    pub shape: Shape,
+    /// The crank angle from the x axis at the prescribed angle 0, if the offset is free; else 0.
+    pub offset: f64,
+    /// The weighted sum of squares.
+    pub cost: f64,
+}
+
+/// The part of K that is solved for, which determines the column that is projected off.
+#[derive(Clone, Copy, Debug)]
+enum KColumn {
+    /// Length and direction are solved for.
+    Complex,
+    /// One real number along a direction of unit length is solved for.
+    Real(Complex),
+    /// K is known; nothing is solved for.
+    Known,
+}
+
+/// The linear unknowns and the quantities from which they were solved.
+#[derive(Clone, Copy, Debug)]
+struct Linear {
+    ratio: [f64; 3],
+    turn: Complex,
+    column: KColumn,
+    /// The slope d ln|K| / d(ln p, ln q, ln r) if |K| is not solved for.
+    slope: [f64; 3],
+    /// The sums of w e and w u.
+    e_sum: Complex,
+    u_sum: Complex,
+    /// The squared norms |u'|^2 and |a'|^2.
+    u_sq: f64,
+    a_sq: f64,
+    k: Complex,
+    z: Complex,
+}
+
+/// The reduced form on one assembly, with workspace for its columns: nothing is allocated after it is made.
+#[derive(Clone, Debug)]
+pub struct ProjectedFit<'a> {
+    form: &'a Projection,
+    assembly: AssemblyMode,
+    e: Column,
+    /// The unit vectors u.
+    u: Column,
+    /// The values t/H.
+    by_height: Vec<f64>,
+    /// The columns u' and a', and T', later the residual r, all times sqrt(w).
+    u_off: Column,
+    a_off: Column,
+    rest: Column,
+    /// The columns sqrt(w) m_x.
+    moved: [Column; UNKNOWNS],
+    linear: Option<Linear>,
+}
+
+impl<'a> ProjectedFit<'a> {
+    /// Creates the fit on an assembly.
+    pub fn new(form: &'a Projection, assembly: AssemblyMode) -> Self {
+        let n = form.columns.weight.len();
+        let column = || Column::new(n);
+        ProjectedFit {
+            form,
+            assembly,
+            e: column(),
+            u: column(),
+            by_height: vec![0.0; n],
+            u_off: column(),
+            a_off: column(),
+            rest: column(),
+            moved: [column(), column(), column(), column()],
+            linear: None,
+        }
+    }
+
+    /// Switches to another assembly.
+    pub fn set_assembly(&mut self, assembly: AssemblyMode) {
+        self.assembly = assembly;
+        self.linear = None;
+    }
+
+    /// Returns pivots, links and coupler point at `x`; `None` if the cost does not exist or the ground has no length.
+    pub fn solution(&mut self, x: &Reduced) -> Option<Solution> {
+        let cost = self.cost(x)?;
+        let Linear { ratio: [p, q, r], turn, e_sum, u_sum, k, z, .. } = self.linear?;
+        let ground = k / p;
+        let crank_pivot = match self.form.origin {
+            Origin::Mean(mean) => mean - k * e_sum - z * u_sum,
+            Origin::CrankPivot(a) => a,
+            Origin::FollowerPivot(b) => b - ground,
+        };
+        let g = ground.norm();
+        if !g.is_finite() || g == 0.0 {
+            return None;
+        }
+        let shape = Shape {
+            crank_pivot,
+            follower_pivot: crank_pivot + ground,
+            crank: p * g,
+            coupler: q * g,
+            follower: r * g,
+            offset: z * ground.conj() / g,
+        };
+        let offset = if self.form.offset_free { turn.arg() + ground.arg() } else { 0.0 };
+        Some(Solution { shape, offset, cost })
+    }
+
+    /// Computes the positions of the linkage: e, u and t/H at every point; returns the sums of w e and w u. `None` if
+    /// the loop is open at a point.
+    #[inline(always)]
+    fn place(&mut self, [p, q, r]: [f64; 3], turn: Complex) -> Option<[Complex; 2]> {
+        let c = &self.form.columns;
+        let s = F64x8::splat;
+        let (turn, p_, q_sq) = (splat(turn), s(p), s(q * q));
+        let half = s(0.5 * (q * q - r * r));
+        let (by_q, t) = (s(1.0 / q), s(self.assembly.sign()));
+        let zero = splat(Complex::new(0.0, 0.0));
+        let (mut gap, mut e_sum, mut u_sum) = (s(f64::INFINITY), zero, zero);
+        for at in (0..c.weight.len()).step_by(LANES) {
+            let phase = [F64x8::load(&c.phase[0], at), F64x8::load(&c.phase[1], at)];
+            let e = mul(phase, turn);
+            let w = [s(1.0) - p_ * e[0], -(p_ * e[1])];
+            let f2 = norm_sqr(w);
+            let sigma = half + s(0.5) * f2;
+            let height_sq = q_sq * f2 - sigma * sigma;
+            gap = height_sq.min(gap);
+            let height = t * height_sq.positive_part().sqrt();
+            let by = f2.recip() * by_q;
+            let u = scale(mul(w, [sigma, height]), by);
+            let weight = F64x8::load(&c.weight, at);
+            e_sum = add(e_sum, scale(e, weight));
+            u_sum = add(u_sum, scale(u, weight));
+            self.e.store(at, e);
+            self.u.store(at, u);
+            height.recip().store(&mut self.by_height, at);
+        }
+        let open = gap.0.iter().any(|gap| gap.is_nan() || *gap <= 0.0);
+        let sums = [total(e_sum), total(u_sum)];
+        (!open && sums.iter().all(|z| z.re.is_finite() && z.im.is_finite())).then_some(sums)
+    }
+
+    /// Orthogonalises the columns, solves for K and Z and leaves the residual in `rest`; returns the cost over the
+    /// weights' sum.
+    #[inline(always)]
+    fn project(&mut self, ratio: [f64; 3], turn: Complex, direction: Complex) -> Option<f64> {
+        let [e_sum, u_sum] = self.place(ratio, turn)?;
+        let form = self.form;
+        let c = &form.columns;
+        let s = F64x8::splat;
+        let n = c.weight.len();
+        let zero = splat(Complex::new(0.0, 0.0));
+        let centred = form.centred();
+        let back = if form.measured_from_b() { 1.0 / ratio[0] } else { 0.0 };
+        let (u_mean, a_mean) =
+            if centred { (u_sum, e_sum) } else { (Complex::new(0.0, 0.0), Complex::new(back, 0.0)) };
+        let (u_mean, a_mean) = (splat(u_mean), splat(a_mean));
+        let (mut u_sq, mut a_raw, mut u_a, mut u_t) = (s(0.0), s(0.0), zero, zero);
+        for at in (0..n).step_by(LANES) {
+            let root = F64x8::load(&c.root_weight, at);
+            let u = scale(sub(self.u.load(at), u_mean), root);
+            let a = scale(sub(self.e.load(at), a_mean), root);
+            let target = scale([F64x8::load(&c.target[0], at), F64x8::load(&c.target[1], at)], root);
+            u_sq = u_sq + norm_sqr(u);
+            a_raw = a_raw + norm_sqr(a);
+            u_a = add(u_a, dot(u, a));
+            u_t = add(u_t, dot(u, target));
+            self.u_off.store(at, u);
+            self.a_off.store(at, a);
+            self.rest.store(at, target);
+        }
+        let (u_sq, a_raw, u_a, u_t) = (u_sq.sum(), a_raw.sum(), total(u_a), total(u_t));
+        if u_sq.is_nan() || u_sq <= SINGULAR {
+            return None;
+        }
+        let (along_a, along_t) = (splat(u_a / u_sq), splat(u_t / u_sq));
+        let (mut a_sq, mut a_t) = (s(0.0), zero);
+        for at in (0..n).step_by(LANES) {
+            let u = self.u_off.load(at);
+            let a = sub(self.a_off.load(at), mul(u, along_a));
+            let rest = sub(self.rest.load(at), mul(u, along_t));
+            a_sq = a_sq + norm_sqr(a);
+            a_t = add(a_t, dot(a, rest));
+            self.a_off.store(at, a);
+            self.rest.store(at, rest);
+        }
+        let (a_sq, a_t) = (a_sq.sum(), total(a_t));
+        let singular = a_sq.is_nan() || a_sq <= SINGULAR * a_raw;
+        let (free, column) = match form.ground {
+            GroundKnown::Both(length) => (direction * (ratio[0] * length), KColumn::Known),
+            _ if singular => return None,
+            GroundKnown::Nothing => (a_t / a_sq, KColumn::Complex),
+            GroundKnown::Direction => {
+                (direction * ((direction.conj() * a_t).re / a_sq), KColumn::Real(direction))
+            }
+        };
+        let (k, column, slope) = match column {
+            KColumn::Known => (free, column, [1.0, 0.0, 0.0]),
+            KColumn::Complex => match form.limited_length(ratio, free.norm()) {
+                None => (free, column, [0.0; 3]),
+                Some((length, slope)) => {
+                    let unit = unit(free);
+                    (unit * length, KColumn::Real(turned(unit)), slope)
+                }
+            },
+            KColumn::Real(_) => match form.limited_length(ratio, (direction.conj() * free).re) {
+                None => (free, column, [0.0; 3]),
+                Some((length, slope)) => (direction * length, KColumn::Known, slope),
+            },
+        };
+        if k.norm_sqr().is_nan() || k.norm_sqr() <= 0.0 {
+            return None;
+        }
+        let k_ = splat(k);
+        let mut cost = s(0.0);
+        for at in (0..n).step_by(LANES) {
+            let rest = sub(self.rest.load(at), mul(self.a_off.load(at), k_));
+            cost = cost + norm_sqr(rest);
+            self.rest.store(at, rest);
+        }
+        let z = (u_t - u_a * k) / u_sq;
+        self.linear = Some(Linear { ratio, turn, column, slope, e_sum, u_sum, u_sq, a_sq, k, z });
+        let cost = cost.sum();
+        cost.is_finite().then_some(cost)
+    }
+
+    /// Computes sqrt(w) m_x for all unknowns, then J^T J and J^T r.
+    #[inline(always)]
+    fn linearised(&mut self, at: &Linear) -> Normal<UNKNOWNS> {
+        let form = self.form;
+        let c = &form.columns;
+        let s = F64x8::splat;
+        let n = c.weight.len();
+        let [p, q, r] = at.ratio;
+        let zero = splat(Complex::new(0.0, 0.0));
+        let i_z = splat(turned(at.z));
+        let (k, i_k) = (at.k, turned(at.k));
+        let from_b = form.measured_from_b();
+        let nothing = Complex::new(0.0, 0.0);
+        // d(K a)/dln x = slope K a, plus K/p for x = p if the column is e - 1/p.
+        let by_ratio = at.slope.map(|slope| k * slope);
+        let to_b = if from_b { k / p } else { nothing };
+        let ratio_constant =
+            [0, 1, 2].map(|x| if x == 0 { to_b - to_b * at.slope[0] } else { -to_b * at.slope[x] });
+        // d(K a)/dangle: i K e with the crank's turn, i K a with the ground's.
+        let (sense, on_e, on_a) = match form.role {
+            AngleRole::None => (0.0, 0.0, 0.0),
+            AngleRole::Crank => (1.0, 1.0, 0.0),
+            AngleRole::Ground => (0.0, 0.0, 1.0),
+            AngleRole::Both => (-1.0, -1.0, 1.0),
+        };
+        let angle_by_e = i_k * (on_e + on_a);
+        let angle_constant = if from_b { -i_k * (on_a / p) } else { nothing };
+        let [e_p, e_q, e_r] = by_ratio.map(splat);
+        let [c_p, c_q, c_r] = ratio_constant.map(splat);
+        let (e_angle, c_angle) = (splat(angle_by_e), splat(angle_constant));
+        let (p_, q_, r_sq) = (s(p), s(q), s(r * r));
+        let angle_free = form.role != AngleRole::None;
+        let sense = s(sense);
+        let mut mean = [zero; UNKNOWNS];
+        let mut on_u = [zero; UNKNOWNS];
+        let mut on_a = [zero; UNKNOWNS];
+        for at in (0..n).step_by(LANES) {
+            let (e, u) = (self.e.load(at), self.u.load(at));
+            let root = F64x8::load(&c.root_weight, at);
+            let pe = scale(e, p_);
+            let v = [pe[0] + q_ * u[0] - s(1.0), pe[1] + q_ * u[1]];
+            // k of the equations.
+            let by = -F64x8::load(&self.by_height, at);
+            let by_p = by * (v[0] * pe[0] + v[1] * pe[1]);
+            let by_phi = by * (v[1] * pe[0] - v[0] * pe[1]);
+            let by_q = by * q_ * (v[0] * u[0] + v[1] * u[1]);
+            let by_r = -(by * r_sq);
+            let turning = mul(i_z, u);
+            let with =
+                |by: F64x8, on_e: Pair, constant: Pair| add(scale(turning, by), add(mul(on_e, e), constant));
+            let moved = [
+                with(by_p, e_p, c_p),
+                with(by_q, e_q, c_q),
+                with(by_r, e_r, c_r),
+                with(by_phi * sense, e_angle, c_angle),
+            ];
+            let (u_off, a_off) = (self.u_off.load(at), self.a_off.load(at));
+            for x in 0..UNKNOWNS {
+                if x == 3 && !angle_free {
+                    continue;
+                }
+                let m = scale(moved[x], root);
+                mean[x] = add(mean[x], scale(m, root));
+                on_u[x] = add(on_u[x], dot(u_off, m));
+                on_a[x] = add(on_a[x], dot(a_off, m));
+                self.moved[x].store(at, m);
+            }
+        }
+        let mut off = [[zero; 3]; UNKNOWNS];
+        for x in 0..UNKNOWNS {
+            let along_a = total(on_a[x]) / at.a_sq;
+            let along_a = match at.column {
+                KColumn::Complex => along_a,
+                KColumn::Real(direction) => direction * (direction.conj() * along_a).re,
+                KColumn::Known => nothing,
+            };
+            let centre = if form.centred() { total(mean[x]) } else { nothing };
+            off[x] = [splat(centre), splat(total(on_u[x]) / at.u_sq), splat(along_a)];
+        }
+        let unknowns = if angle_free { UNKNOWNS } else { UNKNOWNS - 1 };
+        let mut matrix = [[s(0.0); UNKNOWNS]; UNKNOWNS];
+        let mut gradient = [s(0.0); UNKNOWNS];
+        for at in (0..n).step_by(LANES) {
+            let root = F64x8::load(&c.root_weight, at);
+            let (u_off, a_off, rest) = (self.u_off.load(at), self.a_off.load(at), self.rest.load(at));
+            let mut off_m = [zero; UNKNOWNS];
+            for x in 0..unknowns {
+                let [centre, along_u, along_a] = off[x];
+                let m = sub(self.moved[x].load(at), scale(centre, root));
+                let m = sub(sub(m, mul(u_off, along_u)), mul(a_off, along_a));
+                gradient[x] = gradient[x] + (m[0] * rest[0] + m[1] * rest[1]);
+                off_m[x] = m;
+                for (sum, other) in matrix[x].iter_mut().zip(&off_m).take(x + 1) {
+                    *sum = *sum + (m[0] * other[0] + m[1] * other[1]);
+                }
+            }
+        }
+        let lower = matrix.map(|row| row.map(|sum| form.total_weight * sum.sum()));
+        Normal {
+            matrix: from_fn(|x| from_fn(|y| if y <= x { lower[x][y] } else { lower[y][x] })),
+            gradient: gradient.map(|sum| -form.total_weight * sum.sum()),
+        }
+    }
+}
+
+impl Projection {
+    /// Returns the crank's length at an active limit, with d ln / d(ln p, ln q, ln r); `None` if `length` is inside.
+    #[inline]
+    fn limited_length(&self, [p, q, r]: [f64; 3], length: f64) -> Option<(f64, [f64; 3])> {
+        const SLOPES: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, -1.0, 0.0], [1.0, 0.0, -1.0]];
+        let factors = [1.0, p, p / q, p / r];
+        let (mut low, mut high) = ((0.0, SLOPES[0]), (f64::INFINITY, SLOPES[0]));
+        for ((limits, factor), slope) in self.limits.iter().zip(factors).zip(SLOPES) {
+            if limits.0 * factor > low.0 {
+                low = (limits.0 * factor, slope);
+            }
+            if limits.1 * factor < high.0 {
+                high = (limits.1 * factor, slope);
+            }
+        }
+        if low.0 > high.0 {
+            let mean = [0, 1, 2].map(|x| 0.5 * (low.1[x] + high.1[x]));
+            return Some(((low.0 * high.0).sqrt(), mean));
+        }
+        if length < low.0 {
+            Some(low)
+        } else if length > high.0 {
+            Some(high)
+        } else {
+            None
+        }
+    }
+}
+
+impl CompactLeastSquares<UNKNOWNS> for ProjectedFit<'_> {
+    fn cost(&mut self, x: &Reduced) -> Option<f64> {
+        self.linear = None;
+        let ratio = [x[0].exp(), x[1].exp(), x[2].exp()];
+        let (turn, theta) = self.form.angles(x[3]);
+        let (turn, direction) = (Complex::from_polar(1.0, turn), Complex::from_polar(1.0, theta));
+        let weight = self.form.total_weight;
+        computed(self.form.points());
+        vectorised(
+            #[inline(always)]
+            || self.project(ratio, turn, direction),
+        )
+        .map(|cost| cost * weight)
+    }
+
+    fn normal(&mut self) -> Normal<UNKNOWNS> {
+        let nothing = Normal { matrix: [[0.0; UNKNOWNS]; UNKNOWNS], gradient: [0.0; UNKNOWNS] };
+        let Some(linear) = self.linear else { return nothing };
+        computed(self.form.points());
+        vectorised(
+            #[inline(always)]
+            || self.linearised(&linear),
+        )
+    }
+}

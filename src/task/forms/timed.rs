@@ -1,0 +1,199 @@
+//! Prescribed timing as a least-squares problem in the design vector. The residuals are T_j - P(x, phi_j), with phi_j =
+//! offset + direction psi_j.
+//!
+//! The offset is an unknown ([`AngleOffset::Free`]), zero ([`AngleOffset::Fixed`]) or the direction of the
+//! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
+
+use super::design_space::{DESIGN, Design, DesignSpace, Shape, unit};
+use super::requirements::{Motion, Requirements};
+use crate::mechanism::effort::computed;
+use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
+use crate::mechanism::four_bar::position::Kernel;
+use crate::mechanism::{Complex, turned, xy};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use crate::task::{AngleOffset, Timing};
+use crate::task::{Problem, Setting};
+use std::f64::consts::TAU;
+
+/// Least squares over the design vector for prescribed timing.
+#[derive(Clone, Debug)]
+pub struct TimedFit<'a> {
+    problem: &'a Problem,
+    setting: Setting,
+    space: DesignSpace,
+    requirements: Requirements,
+    /// The angles direction psi_j, in radians.
+    angles: Vec<f64>,
+    /// The phases e^{i direction psi_j}.
+    phases: Vec<Complex>,
+    offset: AngleOffset,
+}
+
+impl<'a> TimedFit<'a> {
+    /// Creates the fit of a problem in a setting; `None` for free timing.
+    pub fn new(problem: &'a Problem, setting: Setting) -> Option<Self> {
+        let Timing::Prescribed { crank_angles, offset } = problem.task().timing() else { return None };
+        let space = problem.space(setting.side);
+        let requirements = problem.requirements(&space);
+        Some(TimedFit {
+            problem,
+            setting,
+            space,
+            requirements,
+            angles: crank_angles.iter().map(|psi| setting.direction * psi).collect(),
+            phases: problem.phases(setting.direction),
+            offset: *offset,
+        })
+    }
+
+    /// Returns the design space.
+    pub fn space(&self) -> &DesignSpace {
+        &self.space
+    }
+
+    /// Returns the requirements.
+    pub fn requirements(&self) -> &Requirements {
+        &self.requirements
+    }
+
+    /// Returns the angle added to every prescribed one.
+    pub fn offset(&self, x: &Design, shape: &Shape) -> f64 {
+        match self.offset {
+            AngleOffset::Free => self.space.offset(x),
+            AngleOffset::Fixed => 0.0,
+            AngleOffset::Ground => (shape.follower_pivot - shape.crank_pivot).arg(),
+        }
+    }
+
+    /// Returns the crank angles at the points, in radians.
+    pub fn crank_angles(&self, x: &Design, shape: &Shape) -> Vec<f64> {
+        let offset = self.offset(x, shape);
+        self.angles.iter().map(|angle| angle + offset).collect()
+    }
+
+    /// Returns the motion between the least and the greatest crank angle; the full turn for a closed target.
+    pub fn motion(&self, x: &Design, shape: &Shape) -> Motion<'static> {
+        let offset = self.offset(x, shape);
+        let low = self.angles.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let high = if self.problem.task().closed() { high.max(low + TAU) } else { high };
+        Motion::Stretch(low + offset, high + offset, self.setting.assembly)
+    }
+
+    fn kernel(&self, shape: &Shape) -> Kernel {
+        let ratio = shape.offset / shape.coupler;
+        Kernel::from_parts(
+            xy(shape.crank_pivot),
+            xy(shape.follower_pivot),
+            [shape.crank, shape.coupler, shape.follower],
+            xy(ratio),
+            self.setting.assembly,
+        )
+    }
+}
+
+impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
+    type State = ();
+
+    fn points(&self) -> usize {
+        self.angles.len()
+    }
+
+    fn bounds(&self) -> &[(f64, f64); DESIGN] {
+        self.space.bounds()
+    }
+
+    fn cost(&self, x: &Design, _: &()) -> Option<f64> {
+        let shape = self.space.shape(x)?;
+        let kernel = self.kernel(&shape);
+        let turn = Complex::from_polar(1.0, self.offset(x, &shape));
+        let task = self.problem.task();
+        computed(task.len());
+        let mut cost = 0.0;
+        for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
+            let crank = phase * turn;
+            let at = kernel.at(crank.re, crank.im);
+            // At the toggle itself there is no derivative, and beyond it the loop is open.
+            if at.gap.is_nan() || at.gap <= 0.0 {
+                return None;
+            }
+            let (x, y) = (target.re - at.coupler_point[0], target.im - at.coupler_point[1]);
+            cost += weight * (x * x + y * y);
+        }
+        cost.is_finite().then_some(cost)
+    }
+
+    fn linearise(&self, x: &Design, _: &(), each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
+        let Some(shape) = self.space.shape(x) else { return false };
+        let kernel = self.kernel(&shape);
+        let turn = Complex::from_polar(1.0, self.offset(x, &shape));
+        let task = self.problem.task();
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+        computed(task.len());
+        for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
+            let crank = phase * turn;
+            let at = kernel.at(crank.re, crank.im);
+            let [c, d, p] =
+                [at.crank_pin, at.follower_pin, at.coupler_point].map(|q| Complex::new(q[0], q[1]));
+            let frame = Frame {
+                crank,
+                coupler: (d - c) / shape.coupler,
+                follower: (d - shape.follower_pivot) / shape.follower,
+            };
+            let Some(gradient) = shape_gradient(&frame, shape.crank, shape.coupler, shape.offset) else {
+                return false;
+            };
+            let mut jacobian = [[0.0; DESIGN]; 2];
+            for (axis, out) in jacobian.iter_mut().enumerate() {
+                let component = |z: Complex| if axis == 0 { z.re } else { z.im };
+                let mut row = gradient.shape.map(|z| -component(z));
+                let by_crank = -component(gradient.crank_angle);
+                let mut by_offset = 0.0;
+                match self.offset {
+                    AngleOffset::Free => by_offset = by_crank,
+                    AngleOffset::Fixed => {}
+                    AngleOffset::Ground => {
+                        row[0] -= by_crank * by_ground_angle.re;
+                        row[1] -= by_crank * by_ground_angle.im;
+                        row[2] += by_crank * by_ground_angle.re;
+                        row[3] += by_crank * by_ground_angle.im;
+                    }
+                }
+                *out = self.space.pull_back(x, &shape, &row, by_offset);
+            }
+            let residual = target - p;
+            each(&PointBlock { residual: xy(residual), jacobian, tangent: [0.0, 0.0], weight: *weight });
+        }
+        true
+    }
+
+    fn retract(&self, _: &Design, _: &(), _: &[f64], _: &Design, _: &mut ()) -> bool {
+        true
+    }
+
+    fn constraints(&self, x: &Design, _: &(), each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
+        let Some(shape) = self.space.shape(x) else { return };
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+        self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {
+            let mut by_shape = row.shape;
+            let mut by_offset = 0.0;
+            match self.offset {
+                AngleOffset::Free => by_offset = row.crank,
+                AngleOffset::Fixed => {}
+                AngleOffset::Ground => {
+                    by_shape[0] -= row.crank * by_ground_angle.re;
+                    by_shape[1] -= row.crank * by_ground_angle.im;
+                    by_shape[2] += row.crank * by_ground_angle.re;
+                    by_shape[3] += row.crank * by_ground_angle.im;
+                }
+            }
+            each(&ConstraintRow {
+                value: row.value,
+                gradient: self.space.pull_back(x, &shape, &by_shape, by_offset),
+                own: None,
+            });
+        });
+    }
+}

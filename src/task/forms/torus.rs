@@ -1,0 +1,545 @@
+//! Free timing as a least-squares problem: the design vector and, for each point, a position of the linkage of its own.
+//!
+//! A position is a pair of unit vectors (e_j, u_j), crank and coupler, on the curve |Y_j| = c with Y_j = A + a e_j + b
+//! u_j - B. It contains no assembly sign and is not singular at a toggle, so every type and both branches are treated
+//! alike. With c_phi = <Y, i a e>, c_w = <Y, i b u>, n2 = c_phi^2 + c_w^2:
+//!
+//! ```text
+//! P   = A + a e + Z u
+//! t   = (i a e c_w - i u Z c_phi) / sqrt(n2)                      dP along the position's own curve
+//! dP/dx_k = direct_k + (i a e c_phi + i u Z c_w)/n2 h_k           the least-norm return to the curve
+//! h   = c dc - <Y, dA - dB + e da + u db>
+//! ```
+//!
+//! The tangents are eliminated point by point in [`crate::numbers::optimise::levenberg_marquardt`].
+
+use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
+use super::requirements::{Motion, Place, Requirements, assembly_of};
+use crate::mechanism::effort::computed;
+use crate::mechanism::four_bar::mobility::linkage_type;
+use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
+use crate::numbers::arithmetic::dispatch::vectorised;
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use crate::task::{Problem, Setting};
+
+use crate::task::defect::ORDER_TOLERANCE;
+use std::f64::consts::TAU;
+
+/// The positions of all points: (e_j, u_j).
+pub type Positions = Vec<[Complex; 2]>;
+
+/// Most Newton steps that bring a position back to its curve; each squares the miss.
+const RETURN_STEPS: usize = 12;
+/// Tolerance for a position on its curve: its miss over the largest link squared.
+const ON_CURVE: f64 = 1e-14;
+
+/// Least squares over the design vector and the points' positions.
+#[derive(Clone, Debug)]
+pub struct TorusFit<'a> {
+    problem: &'a Problem,
+    setting: Setting,
+    space: DesignSpace,
+    requirements: Requirements,
+    /// The sense along the curves in which the points follow each other; 0: no order is kept.
+    sense: f64,
+}
+
+impl<'a> TorusFit<'a> {
+    /// Creates the fit of a problem in a setting, without an order of the points; see [`TorusFit::in_order`].
+    pub fn new(problem: &'a Problem, setting: Setting) -> Self {
+        let space = problem.space(setting.side);
+        let requirements = problem.requirements(&space);
+        TorusFit { problem, setting, space, requirements, sense: 0.0 }
+    }
+
+    /// Returns the same fit with the points held in their present order around the curve, if the problem requires an
+    /// order.
+    ///
+    /// Along the curve of positions the tangent (c_w, -c_phi) never turns back; the points follow it or run against it,
+    /// whichever is shorter in total.
+    #[must_use]
+    pub fn in_order(mut self, x: &Design, positions: &Positions) -> Self {
+        if !self.problem.order_required() {
+            return self;
+        }
+        let Some(shape) = self.space.shape(x) else { return self };
+        self.sense = orientation(&shape, positions);
+        self
+    }
+
+    /// Creates the fit of the positions alone: the design stays at `x`.
+    pub fn at(problem: &'a Problem, setting: Setting, x: &Design) -> Self {
+        let mut fit = TorusFit::new(problem, setting);
+        fit.space.fix(x);
+        fit
+    }
+
+    /// Returns the sense in which the points' own unknowns grow.
+    fn forward(&self) -> f64 {
+        if self.sense < 0.0 { -1.0 } else { 1.0 }
+    }
+
+    /// Returns the design space.
+    pub fn space(&self) -> &DesignSpace {
+        &self.space
+    }
+
+    /// Returns the requirements.
+    pub fn requirements(&self) -> &Requirements {
+        &self.requirements
+    }
+
+    /// Returns the motion through the positions: an interval of crank angles if the input turns fully, or rocks on one
+    /// branch. If no requirement depends on the motion, it is not computed.
+    pub fn motion<'p>(&self, shape: &Shape, positions: &'p Positions) -> Motion<'p> {
+        self.motion_between(shape, positions).0
+    }
+
+    /// As [`TorusFit::motion`], with the indices of the points at which the interval begins and ends; `None` for a full
+    /// turn, which has no ends.
+    fn motion_between<'p>(
+        &self,
+        shape: &Shape,
+        positions: &'p Positions,
+    ) -> (Motion<'p>, Option<[usize; 2]>) {
+        let as_listed = (Motion::Positions(positions), None);
+        if !self.requirements.depend_on_motion() {
+            return as_listed;
+        }
+        let Some([e, u]) = positions.first() else { return as_listed };
+        let assembly = assembly_of(shape, *e, *u);
+        if !linkage_type(shape.links()).is_some_and(LinkageType::input_turns_fully) {
+            return rocking(shape, positions, assembly).unwrap_or(as_listed);
+        }
+        let task = self.problem.task();
+        let whole = (Motion::Stretch(e.arg(), e.arg() + TAU, assembly), None);
+        if task.closed() || task.repeats_first() {
+            return whole;
+        }
+        let total = |direction: f64| -> f64 {
+            let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
+            // Points that share a place make no step, and rounding must not turn that into a full turn.
+            positions
+                .windows(2)
+                .map(step)
+                .map(|step| if step > TAU - ORDER_TOLERANCE { 0.0 } else { step })
+                .sum()
+        };
+        let (forward, backward) = (total(1.0), total(-1.0));
+        let last = positions.len() - 1;
+        if forward.min(backward) >= TAU {
+            whole
+        } else if forward <= backward {
+            (Motion::Stretch(e.arg(), e.arg() + forward, assembly), Some([0, last]))
+        } else {
+            (Motion::Stretch(e.arg() - backward, e.arg(), assembly), Some([last, 0]))
+        }
+    }
+
+    /// Brings positions to the curves of a design; `false` if one cannot get there.
+    pub fn settle(&self, x: &Design, positions: &mut Positions) -> bool {
+        let Some(shape) = self.space.shape(x) else { return false };
+        settle_all(&shape, positions)
+    }
+}
+
+/// Returns the interval of crank angles of a rocking crank through positions on one branch, with the indices of the
+/// points at its two ends; `None` if the positions lie on both branches.
+fn rocking<'p>(
+    shape: &Shape,
+    positions: &[[Complex; 2]],
+    assembly: AssemblyMode,
+) -> Option<(Motion<'p>, Option<[usize; 2]>)> {
+    let (mut low, mut high) = ((0.0, 0), (0.0, 0));
+    let mut turned_by = 0.0;
+    for (j, pair) in positions.windows(2).enumerate() {
+        if assembly_of(shape, pair[1][0], pair[1][1]) != assembly {
+            return None;
+        }
+        turned_by += (pair[1][0] * pair[0][0].conj()).arg();
+        if turned_by < low.0 {
+            low = (turned_by, j + 1);
+        }
+        if turned_by > high.0 {
+            high = (turned_by, j + 1);
+        }
+    }
+    let first = positions.first()?[0].arg();
+    Some((Motion::Stretch(first + low.0, first + high.0, assembly), Some([low.1, high.1])))
+}
+
+/// Returns the curve's frame at a position: Y, c_phi, c_w.
+fn frame(shape: &Shape, [e, u]: [Complex; 2]) -> (Complex, f64, f64) {
+    let y = shape.crank_pivot + e * shape.crank + u * shape.coupler - shape.follower_pivot;
+    (y, dot(y, turned(e)) * shape.crank, dot(y, turned(u)) * shape.coupler)
+}
+
+/// Returns the unit tangent (dphi, domega) of the curve at a position.
+fn tangent_of(shape: &Shape, position: [Complex; 2]) -> Option<[f64; 2]> {
+    let (_, by_e, by_u) = frame(shape, position);
+    let length = (by_e * by_e + by_u * by_u).sqrt();
+    (length > 0.0).then(|| [by_u / length, -by_e / length])
+}
+
+/// Returns the distance along the curve from one position to a near one, positive along the tangent: the turns of crank
+/// and coupler along the mean of both tangents.
+///
+/// `None` for positions that are far apart (a radian, or tangents that differ by more than about 70 degrees): they
+/// cannot pass each other in one step, and their distance counts as [`FAR_APART`] in the `sense`.
+fn way(from: [Complex; 2], from_tangent: [f64; 2], to: [Complex; 2], to_tangent: [f64; 2]) -> Option<f64> {
+    let turn = |i: usize| {
+        let z = to[i] * from[i].conj();
+        // The sine suffices for small turns: only the order and a rough length are needed.
+        (z.re > 0.5).then_some(z.im)
+    };
+    let alike = from_tangent[0] * to_tangent[0] + from_tangent[1] * to_tangent[1];
+    let mean = [0.5 * (from_tangent[0] + to_tangent[0]), 0.5 * (from_tangent[1] + to_tangent[1])];
+    let (by_e, by_u) = (turn(0)?, turn(1)?);
+    (alike > 0.3).then_some(by_e * mean[0] + by_u * mean[1])
+}
+
+/// A distance between points that no step can close.
+const FAR_APART: f64 = 3.0;
+
+/// Returns +1 if the points run along the tangents of their curve, -1 if against; 0 if that is undecided.
+///
+/// The circuit is parametrised by the crank angle if the crank turns fully (the assembly is the same at all points),
+/// and else by psi with phi = middle + half width sin psi; of both ways around the shorter is taken. The tangent's
+/// crank part has one sign on each assembly, so that a single point determines the direction of the parameter along it.
+fn orientation(shape: &Shape, positions: &Positions) -> f64 {
+    let Some(first) = positions.first() else { return 0.0 };
+    let assembly = assembly_of(shape, first[0], first[1]);
+    let Ok(linkage) = shape.linkage(assembly) else { return 0.0 };
+    let mobility = linkage.mobility();
+    let arc = mobility.arc(mobility.branch(first[0].arg(), assembly).circuit);
+    let parameter = |[e, u]: &[Complex; 2]| match arc {
+        None => e.arg(),
+        Some(arc) => arc.parameter(e.arg(), assembly_of(shape, *e, *u)),
+    };
+    let total = |direction: f64| -> f64 {
+        positions
+            .windows(2)
+            .map(|w| (direction * (parameter(&w[1]) - parameter(&w[0]))).rem_euclid(TAU))
+            .sum()
+    };
+    let (forward, backward) = (total(1.0), total(-1.0));
+    let runs = if backward < forward { -1.0 } else { 1.0 };
+    // dphi/dparameter has the sign of t1 if the crank rocks; the tangent's crank part is c_w.
+    let (_, _, by_u) = frame(shape, *first);
+    let crank_rises = if arc.is_some() { assembly.sign() } else { 1.0 };
+    if by_u == 0.0 { 0.0 } else { runs * crank_rises * by_u.signum() }
+}
+
+/// The parameters of a shape on which its positions depend.
+#[derive(Clone, Copy)]
+struct Loop {
+    /// The vector A - B.
+    ground: [f64; 2],
+    a: f64,
+    b: f64,
+    c2: f64,
+    /// The half squared miss below which a position is on the curve.
+    near: f64,
+}
+
+impl Loop {
+    fn of(shape: &Shape) -> Loop {
+        let ground = shape.crank_pivot - shape.follower_pivot;
+        let largest = shape.crank.max(shape.coupler).max(shape.follower);
+        Loop {
+            ground: [ground.re, ground.im],
+            a: shape.crank,
+            b: shape.coupler,
+            c2: shape.follower * shape.follower,
+            near: ON_CURVE * largest * largest,
+        }
+    }
+
+    /// Returns (|Y|^2 - c^2)/2, c_phi, c_w at e = (ex, ey), u = (ux, uy).
+    #[inline(always)]
+    fn frame(&self, [ex, ey, ux, uy]: [f64; 4]) -> (f64, f64, f64) {
+        let yx = self.ground[0] + self.a * ex + self.b * ux;
+        let yy = self.ground[1] + self.a * ey + self.b * uy;
+        let miss = 0.5 * (yx * yx + yy * yy - self.c2);
+        (miss, self.a * (yy * ex - yx * ey), self.b * (yy * ux - yx * uy))
+    }
+}
+
+/// Turns a unit vector by an angle, to third order, and keeps it at unit length without trigonometry: (1 + i h)/(1 - i
+/// h) with h = angle/2, and one Newton step to |z| = 1.
+#[inline(always)]
+fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
+    let h = 0.5 * angle;
+    let h2 = h * h;
+    let inverse = 1.0 / (1.0 + h2);
+    let (cos, sin) = ((1.0 - h2) * inverse, 2.0 * h * inverse);
+    let (x, y) = (x * cos - y * sin, y * cos + x * sin);
+    let unit = 1.5 - 0.5 * (x * x + y * y);
+    (x * unit, y * unit)
+}
+
+/// Positions as a structure of arrays: the loops over them are plain ones that become vector instructions.
+struct Columns {
+    ex: Vec<f64>,
+    ey: Vec<f64>,
+    ux: Vec<f64>,
+    uy: Vec<f64>,
+}
+
+impl Columns {
+    fn gather(positions: &[[Complex; 2]]) -> Columns {
+        Columns {
+            ex: positions.iter().map(|p| p[0].re).collect(),
+            ey: positions.iter().map(|p| p[0].im).collect(),
+            ux: positions.iter().map(|p| p[1].re).collect(),
+            uy: positions.iter().map(|p| p[1].im).collect(),
+        }
+    }
+
+    fn scatter(&self, positions: &mut [[Complex; 2]]) {
+        for (i, p) in positions.iter_mut().enumerate() {
+            *p = [Complex::new(self.ex[i], self.ey[i]), Complex::new(self.ux[i], self.uy[i])];
+        }
+    }
+
+    /// Moves each position along its own curve by `forward` tau.
+    #[inline(always)]
+    fn step(&mut self, on: &Loop, forward: f64, tau: &[f64]) {
+        let n = self.ex.len();
+        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
+        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let tau = &tau[..n];
+        for i in 0..n {
+            let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+            let step = forward * tau[i] / (by_e * by_e + by_u * by_u).sqrt();
+            (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_u);
+            (ux[i], uy[i]) = turn(ux[i], uy[i], -step * by_e);
+        }
+    }
+
+    /// Brings the positions back to their curves by least-norm Newton steps of at most a radian; `false` if one does
+    /// not get there.
+    #[inline(always)]
+    fn settle(&mut self, on: &Loop) -> bool {
+        let n = self.ex.len();
+        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
+        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let mut limit = on.near;
+        for round in 0..=RETURN_STEPS {
+            let mut off = 0_u64;
+            for i in 0..n {
+                let miss = on.frame([ex[i], ey[i], ux[i], uy[i]]).0.abs();
+                // A NaN miss is not a position.
+                off += u64::from(miss > limit || miss.is_nan());
+            }
+            if off == 0 {
+                return true;
+            }
+            if round == RETURN_STEPS {
+                break;
+            }
+            for i in 0..n {
+                let (miss, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
+                let n2 = by_e * by_e + by_u * by_u;
+                let long = (miss * miss / n2).sqrt();
+                let step = -miss / (n2 * if long > 1.0 { long } else { 1.0 });
+                let step = if miss.abs() <= on.near { 0.0 } else { step };
+                (ex[i], ey[i]) = turn(ex[i], ey[i], step * by_e);
+                (ux[i], uy[i]) = turn(ux[i], uy[i], step * by_u);
+            }
+            if round + 2 == RETURN_STEPS {
+                // Rounding may keep a position from the last digit.
+                limit = 16.0 * on.near;
+            }
+        }
+        false
+    }
+}
+
+/// Brings positions back to the curves of a shape.
+fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
+    let on = Loop::of(shape);
+    computed(RETURN_STEPS * positions.len());
+    let mut columns = Columns::gather(positions);
+    let settled = vectorised(
+        #[inline(always)]
+        || columns.settle(&on),
+    );
+    columns.scatter(positions);
+    settled
+}
+
+impl TorusFit<'_> {
+    /// Returns the derivatives of a position's crank angle: by the shape, with the least-norm return to its curve, and
+    /// by its own step. Zero if the curve has no tangent.
+    fn crank_of(&self, shape: &Shape, position: [Complex; 2]) -> ([f64; SHAPE], f64) {
+        let (y, by_e, by_u) = frame(shape, position);
+        let n2 = by_e * by_e + by_u * by_u;
+        if n2 == 0.0 {
+            return ([0.0; SHAPE], 0.0);
+        }
+        let [e, u] = position;
+        let miss = [-y.re, -y.im, y.re, y.im, -dot(y, e), -dot(y, u), shape.follower, 0.0, 0.0];
+        (miss.map(|h| h * by_e / n2), self.forward() * by_u / n2.sqrt())
+    }
+}
+
+impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
+    type State = Positions;
+
+    fn points(&self) -> usize {
+        self.problem.task().len()
+    }
+
+    fn bounds(&self) -> &[(f64, f64); DESIGN] {
+        self.space.bounds()
+    }
+
+    fn cost(&self, x: &Design, state: &Positions) -> Option<f64> {
+        let shape = self.space.shape(x)?;
+        let task = self.problem.task();
+        computed(task.len());
+        let mut cost = 0.0;
+        for (([e, u], target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
+            let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
+            cost += weight * (target - p).norm_sqr();
+        }
+        cost.is_finite().then_some(cost)
+    }
+
+    fn linearise(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
+        let Some(shape) = self.space.shape(x) else { return false };
+        let task = self.problem.task();
+        computed(task.len());
+        for ((position, target), weight) in state.iter().zip(task.points()).zip(task.weights()) {
+            let [e, u] = *position;
+            let (y, by_e, by_u) = frame(&shape, *position);
+            let n2 = by_e * by_e + by_u * by_u;
+            if n2 == 0.0 {
+                return false;
+            }
+            let (crank_turn, coupler_turn) = (turned(e) * shape.crank, turned(u) * shape.offset);
+            let tangent = (crank_turn * by_u - coupler_turn * by_e) / n2.sqrt();
+            let back = (crank_turn * by_e + coupler_turn * by_u) / n2;
+            let one = Complex::new(1.0, 0.0);
+            let i = Complex::new(0.0, 1.0);
+            let columns: [Complex; SHAPE] = [
+                one - back * y.re,
+                i - back * y.im,
+                back * y.re,
+                back * y.im,
+                e - back * dot(y, e),
+                -back * dot(y, u),
+                back * shape.follower,
+                u,
+                turned(u),
+            ];
+            let mut jacobian = [[0.0; DESIGN]; 2];
+            for (axis, out) in jacobian.iter_mut().enumerate() {
+                let row = columns.map(|z| -if axis == 0 { z.re } else { z.im });
+                *out = self.space.pull_back(x, &shape, &row, 0.0);
+            }
+            let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
+            let tangent = tangent * -self.forward();
+            each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(tangent), weight: *weight });
+        }
+        true
+    }
+
+    fn residuals(&self, x: &Design, state: &Positions, out: &mut Vec<[f64; 2]>) -> bool {
+        let Some(shape) = self.space.shape(x) else { return false };
+        out.clear();
+        out.extend(
+            state.iter().zip(self.problem.task().points()).map(|([e, u], target)| {
+                xy(target - (shape.crank_pivot + e * shape.crank + u * shape.offset))
+            }),
+        );
+        true
+    }
+
+    fn retract(
+        &self,
+        from: &Design,
+        state: &Positions,
+        tau: &[f64],
+        to: &Design,
+        out: &mut Positions,
+    ) -> bool {
+        let (Some(old), Some(new)) = (self.space.shape(from), self.space.shape(to)) else { return false };
+        let (from, to) = (Loop::of(&old), Loop::of(&new));
+        let forward = self.forward();
+        computed(RETURN_STEPS * state.len());
+        let mut columns = Columns::gather(state);
+        let settled = vectorised(
+            #[inline(always)]
+            || {
+                columns.step(&from, forward, tau);
+                columns.settle(&to)
+            },
+        );
+        columns.scatter(out);
+        settled
+    }
+
+    fn wide<R>(&self, work: impl FnOnce() -> R) -> R {
+        vectorised(work)
+    }
+
+    fn gaps(&self, x: &Design, state: &Positions, gaps: &mut Vec<f64>) -> bool {
+        if self.sense == 0.0 {
+            return false;
+        }
+        let Some(shape) = self.space.shape(x) else { return false };
+        let mut tangents = state.iter().map(|p| tangent_of(&shape, *p));
+        let Some(Some(first)) = tangents.next() else { return false };
+        let mut last = first;
+        for (w, tangent) in state.windows(2).zip(tangents) {
+            let Some(tangent) = tangent else {
+                gaps.clear();
+                return false;
+            };
+            gaps.push(way(w[0], last, w[1], tangent).map_or(FAR_APART, |way| self.sense * way));
+            last = tangent;
+        }
+        // The last point must not run into the first from behind. If it is near, it has either gone almost all the way
+        // round or, on a short interval, not gone far.
+        let gone: f64 = gaps.iter().sum();
+        let closing = way(state[state.len() - 1], last, state[0], first).map(|way| self.sense * way);
+        let far = self.problem.task().repeats_first() || closing.is_none_or(|way| way < -0.1 * gone);
+        gaps.push(closing.filter(|_| !far).unwrap_or(FAR_APART));
+        true
+    }
+
+    fn join(&self, state: &mut Positions, leaders: &[usize]) {
+        for (j, &leader) in leaders.iter().enumerate() {
+            state[j] = state[leader];
+        }
+    }
+
+    fn constraints(&self, x: &Design, state: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
+        let Some(shape) = self.space.shape(x) else { return };
+        let (motion, ends) = self.motion_between(&shape, state);
+        self.requirements.rows(self.setting.aim, &shape, &motion, &mut |row| {
+            let point = match row.place {
+                Place::Anywhere => None,
+                Place::First => ends.map(|[first, _]| first),
+                Place::Last => ends.map(|[_, last]| last),
+                Place::Position(j) => Some(j),
+            };
+            let (mut by_shape, mut own) = (row.shape, None);
+            if let Some(j) = point {
+                // The crank angle is the point's: it moves with the return to the curve and with the point's step.
+                let (by_return, by_step) = self.crank_of(&shape, state[j]);
+                for (out, by) in by_shape.iter_mut().zip(by_return) {
+                    *out += row.crank * by;
+                }
+                own = Some((j, row.crank * by_step));
+            }
+            each(&ConstraintRow {
+                value: row.value,
+                gradient: self.space.pull_back(x, &shape, &by_shape, 0.0),
+                own,
+            });
+        });
+    }
+}

@@ -1,0 +1,277 @@
+//! The synthesis task: a path for the coupler point, with or without crank angles at its points.
+//!
+//! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is T_j -
+//! P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
+//! the ground line A -> B); with *free timing* each is chosen to be nearest. This module depends on the linkage module
+//! and on nothing else of the crate.
+
+use crate::mechanism::{Complex, MAX_MAGNITUDE};
+
+/// What the prescribed crank angles are measured from.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum AngleOffset {
+    /// Only the increments count: a common offset is free.
+    #[default]
+    Free,
+    /// From the x axis.
+    Fixed,
+    /// From the line A -> B.
+    Ground,
+}
+
+/// The timing of the target points: the crank angles at which the coupler point is to reach them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Timing {
+    /// Free timing: at the crank angle that is nearest.
+    Free,
+    /// Prescribed timing: at these crank angles.
+    Prescribed {
+        /// The crank angle at each point, in radians, counter-clockwise positive, not wrapped.
+        crank_angles: Vec<f64>,
+        /// Reference direction of the crank angles.
+        offset: AngleOffset,
+    },
+}
+
+/// The ways in which the motion may come back to the first point of a path that ends where it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Return {
+    /// By turning on in the same direction: the crank turns fully.
+    #[default]
+    TurningOn,
+    /// By going on around its circuit; a crank that rocks does so through both of its toggles.
+    AroundTheCircuit,
+    /// Also by going back through all points.
+    Any,
+}
+
+/// The least extent of a target; smaller ones are refused: squares of their errors would be lost below the smallest
+/// number.
+pub const SMALLEST_SIZE: f64 = 1e-100;
+
+/// A path to trace.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathTask {
+    points: Vec<Complex>,
+    weights: Vec<f64>,
+    tolerances: Option<Vec<f64>>,
+    closed: bool,
+    comes_back: Return,
+    timing: Timing,
+    size: f64,
+    centre: Complex,
+}
+
+/// The error of numbers that do not make a path task.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TaskError {
+    /// The path has fewer than two points.
+    #[error("a path needs at least 2 points, this one has {0}")]
+    TooFewPoints(usize),
+    /// A number that is NaN, infinite or too large.
+    #[error("point {index}: {value} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
+    NotFinite {
+        /// Index of the point, counted from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Two adjacent points are equal, and no different crank angles distinguish them. Carries the index of the first,
+    /// counted from 0.
+    #[error("points {0} and {next} are equal", next = .0 + 1)]
+    AdjacentEqual(usize),
+    /// All points in one place, within [`SMALLEST_SIZE`].
+    #[error("all points are equal, or lie within 1e-100 of each other")]
+    NoExtent,
+    /// A list beside the points has another length.
+    #[error("{points} points but {values} values of {what}")]
+    LengthMismatch {
+        /// Name of the list.
+        what: &'static str,
+        /// Number of points.
+        points: usize,
+        /// Number of values.
+        values: usize,
+    },
+    /// A weight that is not positive or a tolerance that is negative.
+    #[error("{what} of point {index} is {value}: it must be {must}")]
+    OutOfRange {
+        /// Name of the list.
+        what: &'static str,
+        /// Index of the point, counted from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+        /// The allowed range, in words.
+        must: &'static str,
+    },
+}
+
+/// The optional lists of a path task.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathOptions {
+    /// One positive weight per point; they enter the objective only.
+    pub weights: Option<Vec<f64>>,
+    /// One tolerance per point: the largest error accepted there.
+    pub tolerances: Option<Vec<f64>>,
+    /// Whether the target is a closed curve: the last point is followed by the first.
+    pub closed: bool,
+}
+
+impl PathTask {
+    /// Creates a path through `points` with the given timing.
+    ///
+    /// A last point equal to the first is kept. Adjacent equal points are refused unless their prescribed
+    /// crank angles are equal modulo a turn.
+    ///
+    /// # Errors
+    /// [`TaskError`], by its variants.
+    pub fn new(points: Vec<[f64; 2]>, timing: Timing, options: PathOptions) -> Result<Self, TaskError> {
+        let n = points.len();
+        if n < 2 {
+            return Err(TaskError::TooFewPoints(n));
+        }
+        let usable = |value: f64| value.abs() <= MAX_MAGNITUDE;
+        for (index, p) in points.iter().enumerate() {
+            if let Some(&value) = p.iter().find(|v| !usable(**v)) {
+                return Err(TaskError::NotFinite { index, value });
+            }
+        }
+        let same_length = |what, values: usize| {
+            if values == n { Ok(()) } else { Err(TaskError::LengthMismatch { what, points: n, values }) }
+        };
+        if let Timing::Prescribed { crank_angles, .. } = &timing {
+            same_length("crank_deg", crank_angles.len())?;
+            if let Some(index) = crank_angles.iter().position(|v| !usable(*v)) {
+                return Err(TaskError::NotFinite { index, value: crank_angles[index] });
+            }
+        }
+        if let Some(weights) = &options.weights {
+            same_length("weight", weights.len())?;
+            if let Some(index) = weights.iter().position(|w| !(*w > 0.0 && usable(*w))) {
+                let value = weights[index];
+                return Err(TaskError::OutOfRange { what: "weight", index, value, must: "positive" });
+            }
+        }
+        if let Some(tolerances) = &options.tolerances {
+            same_length("tolerance", tolerances.len())?;
+            if let Some(index) = tolerances.iter().position(|t| !(*t >= 0.0 && usable(*t))) {
+                let value = tolerances[index];
+                return Err(TaskError::OutOfRange { what: "tolerance", index, value, must: "0 or more" });
+            }
+        }
+        let (mut low, mut high) = (points[0], points[0]);
+        for p in &points {
+            for axis in 0..2 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        let size = f64::hypot(high[0] - low[0], high[1] - low[1]);
+        if size < SMALLEST_SIZE {
+            return Err(TaskError::NoExtent);
+        }
+        for i in 0..n - 1 {
+            let timed_equal = match &timing {
+                Timing::Free => false,
+                Timing::Prescribed { crank_angles, .. } => {
+                    let turns = (crank_angles[i + 1] - crank_angles[i]) / std::f64::consts::TAU;
+                    (turns - turns.round()).abs() <= 1e-9
+                }
+            };
+            if points[i] == points[i + 1] && !timed_equal {
+                return Err(TaskError::AdjacentEqual(i));
+            }
+        }
+        Ok(PathTask {
+            points: points.into_iter().map(crate::mechanism::point).collect(),
+            weights: options.weights.unwrap_or_else(|| vec![1.0; n]),
+            tolerances: options.tolerances,
+            closed: options.closed,
+            comes_back: Return::default(),
+            timing,
+            size,
+            centre: Complex::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])),
+        })
+    }
+
+    /// Returns the same task with other weights, one per point.
+    ///
+    /// # Errors
+    /// [`TaskError`] if one is not positive or there are not as many as points.
+    pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, TaskError> {
+        let options =
+            PathOptions { weights: Some(weights), tolerances: self.tolerances, closed: self.closed };
+        let points = self.points.into_iter().map(crate::mechanism::xy).collect();
+        Ok(PathTask::new(points, self.timing, options)?.coming_back(self.comes_back))
+    }
+
+    /// Returns the same task with another rule for the way back to its first point.
+    pub fn coming_back(self, comes_back: Return) -> Self {
+        PathTask { comes_back, ..self }
+    }
+
+    /// Returns the target points.
+    pub fn points(&self) -> &[Complex] {
+        &self.points
+    }
+
+    /// Returns the number of points.
+    pub fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Returns whether there are no points: never, since a path has at least two.
+    pub fn is_empty(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Returns the positive weight of each point, 1 if none was given.
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Returns the largest error accepted at each point.
+    pub fn tolerances(&self) -> Option<&[f64]> {
+        self.tolerances.as_deref()
+    }
+
+    /// Returns whether the target is a closed curve.
+    pub fn closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Returns the rule for the motion's way back to the first point; it matters only if [`PathTask::returns`].
+    pub fn comes_back(&self) -> Return {
+        self.comes_back
+    }
+
+    /// Returns whether the motion has to come back to the first point: the target is closed, or its last point repeats
+    /// the first and the timing is free. (Prescribed angles determine themselves how the repeated point is reached.)
+    pub fn returns(&self) -> bool {
+        self.closed || (self.timing == Timing::Free && self.repeats_first())
+    }
+
+    /// Returns whether the last point repeats the first.
+    pub fn repeats_first(&self) -> bool {
+        self.points.len() > 2 && self.points[0] == self.points[self.points.len() - 1]
+    }
+
+    /// Returns the timing.
+    pub fn timing(&self) -> &Timing {
+        &self.timing
+    }
+
+    /// Returns the diagonal of the target's bounding box; positive.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Returns the centre of the target's bounding box.
+    pub fn centre(&self) -> Complex {
+        self.centre
+    }
+}

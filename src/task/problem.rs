@@ -1,0 +1,195 @@
+//! The mathematical problem: design space, residuals with derivatives, requirements, fitness.
+//!
+//! A [`Problem`] is a checked [`ProblemSpec`]. The discrete choices of a search besides the design vector (the
+//! assembly, the crank's direction, the type aimed at, the side of the coupler point) are a [`Setting`].
+
+use super::spec::{
+    ClosingPolicy, DirectionPolicy, Objective, OnePolicy, OrderPolicy, ProblemSpec, RequireSpec,
+};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
+use crate::task::forms::design_space::DesignSpace;
+use crate::task::forms::requirements::Requirements;
+use crate::task::{AngleOffset, PathTask, Return, TaskError, Timing};
+use serde::{Deserialize, Serialize};
+
+/// A checked problem.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    spec: ProblemSpec,
+    task: PathTask,
+    types: Vec<LinkageType>,
+}
+
+/// The discrete choices of a search besides the design vector.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The type aimed at; `None`: any.
+    pub aim: Option<LinkageType>,
+    /// The assembly sign t1 (prescribed timing).
+    pub assembly: AssemblyMode,
+    /// The direction of the crank. +1: the prescribed increments as written, -1: reversed. With free timing the sense
+    /// in which starts run.
+    pub direction: f64,
+    /// The side t2 of the coupler point, used if d and e are coordinates of the design.
+    pub side: CouplerSide,
+}
+
+/// Returns the task for the largest deviation. Its weights replace those of the file, which do not enter: with (least
+/// tolerance / tol_j)^2 least squares come nearest to it.
+fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
+    let weights = match task.tolerances() {
+        None => vec![1.0; task.len()],
+        Some(tolerances) => {
+            if let Some((index, &value)) = tolerances.iter().enumerate().find(|(_, t)| **t <= 0.0) {
+                let must = "positive where deviations are measured by it";
+                return Err(TaskError::OutOfRange { what: "tolerance", index, value, must });
+            }
+            let least = tolerances.iter().copied().fold(f64::INFINITY, f64::min);
+            tolerances.iter().map(|t| (least / t).powi(2).max(LEAST_WEIGHT)).collect()
+        }
+    };
+    task.with_weights(weights)
+}
+
+/// Returns the ways in which the motion may come back to the first point, if it has to.
+fn way_back(require: &RequireSpec) -> Return {
+    match (require.closing, require.branch) {
+        (ClosingPolicy::Any, _) => Return::Any,
+        (ClosingPolicy::OneWay, OnePolicy::Any) => Return::AroundTheCircuit,
+        (ClosingPolicy::OneWay, OnePolicy::One) => Return::TurningOn,
+    }
+}
+
+/// Returns those of the given types (none: of all) whose crank turns fully. If no type does, they stay as they are:
+/// nothing that they allow can be acceptable then, and the search reports that.
+fn turning(types: &[LinkageType]) -> Vec<LinkageType> {
+    let turns = |kind: &LinkageType| kind.input_turns_fully() || *kind == LinkageType::ChangePoint;
+    let left: Vec<LinkageType> = types.iter().copied().filter(turns).collect();
+    match (types, left.as_slice()) {
+        ([], _) => vec![LinkageType::CrankRocker, LinkageType::DoubleCrank],
+        (_, []) => types.to_vec(),
+        _ => left,
+    }
+}
+
+/// Least weight of a point, in parts of the largest, so that each weight stays above zero.
+const LEAST_WEIGHT: f64 = 1e-12;
+
+impl Problem {
+    /// Creates a problem from its resolved data.
+    ///
+    /// # Errors
+    /// As [`PathTask::new`]; and if the largest deviation is minimised and a tolerance is zero.
+    pub fn new(spec: ProblemSpec) -> Result<Self, TaskError> {
+        let mut task = spec.task.path.to_task()?;
+        if spec.solve.objective == Objective::MaxDeviation {
+            task = measured_by_tolerances(task)?;
+        }
+        task = task.coming_back(way_back(&spec.require));
+        let mut types = spec.require.types.clone();
+        types.sort();
+        types.dedup();
+        let mut problem = Problem { spec, task, types };
+        if problem.has_to_turn_on() {
+            problem.types = turning(&problem.types);
+        }
+        Ok(problem)
+    }
+
+    /// Returns the data it was made from.
+    pub fn spec(&self) -> &ProblemSpec {
+        &self.spec
+    }
+
+    /// Returns the task.
+    pub fn task(&self) -> &PathTask {
+        &self.task
+    }
+
+    /// Returns whether only a crank that turns fully can be acceptable: the motion has to come back to its first point,
+    /// in order, without reversing and without passing a toggle.
+    pub fn has_to_turn_on(&self) -> bool {
+        self.task.returns() && self.order_required() && self.task.comes_back() == Return::TurningOn
+    }
+
+    /// Returns the types that are searched for, sorted; empty: any. They are the required ones; if the crank has to
+    /// turn fully, those of them whose crank does.
+    pub fn types(&self) -> &[LinkageType] {
+        &self.types
+    }
+
+    /// Returns whether searches hold their fits to one of the types from the start: true if types are required. If only
+    /// the crank has to turn fully, fits are free to pass a change point, and those that end beyond it are led back.
+    pub fn aims_at_types(&self) -> bool {
+        !self.spec.require.types.is_empty()
+    }
+
+    /// Returns whether the crank angle's offset is an unknown of the design vector.
+    pub fn offset_is_free(&self) -> bool {
+        matches!(self.task.timing(), Timing::Prescribed { offset: AngleOffset::Free, .. })
+    }
+
+    /// Returns the design space for a side of the coupler point.
+    pub fn space(&self, side: CouplerSide) -> DesignSpace {
+        DesignSpace::new(
+            &self.spec.design,
+            &self.task,
+            self.offset_is_free(),
+            self.spec.require.pivots_in,
+            side,
+        )
+    }
+
+    /// Returns the requirements over a design space.
+    pub fn requirements(&self, space: &DesignSpace) -> Requirements {
+        Requirements::new(&self.spec.require, space.derived(), self.task.size())
+    }
+
+    /// Returns the directions in which prescribed increments may be run, +1 first; for free timing the allowed senses.
+    pub fn directions(&self) -> &'static [f64] {
+        match (self.task.timing(), self.spec.require.direction) {
+            (Timing::Prescribed { offset: AngleOffset::Fixed | AngleOffset::Ground, .. }, _) => &[1.0],
+            (_, DirectionPolicy::Any) => &[1.0, -1.0],
+            (Timing::Free, DirectionPolicy::Ccw) => &[1.0],
+            (Timing::Free, DirectionPolicy::Cw) => &[-1.0],
+            (Timing::Prescribed { crank_angles, .. }, policy) => {
+                let rising = crank_angles.last() >= crank_angles.first();
+                if rising == (policy == DirectionPolicy::Ccw) { &[1.0] } else { &[-1.0] }
+            }
+        }
+    }
+
+    /// Returns the sides of the coupler point to try: both only if d and e are the coordinates.
+    pub fn sides(&self) -> &'static [CouplerSide] {
+        if DesignSpace::has_side(&self.spec.design) {
+            &[CouplerSide::Plus, CouplerSide::Minus]
+        } else {
+            &[CouplerSide::Plus]
+        }
+    }
+
+    /// Returns whether the points must be passed in order.
+    pub fn order_required(&self) -> bool {
+        self.spec.require.order == OrderPolicy::Required
+    }
+
+    /// Returns whether the motion may pass a toggle.
+    pub fn branch_any(&self) -> bool {
+        self.spec.require.branch == OnePolicy::Any
+    }
+
+    /// Returns whether the points may lie on different circuits.
+    pub fn circuit_any(&self) -> bool {
+        self.spec.require.circuit == OnePolicy::Any
+    }
+
+    /// Returns e^{i psi_j} of the prescribed angles in a direction; empty for free timing.
+    pub fn phases(&self, direction: f64) -> Vec<Complex> {
+        match self.task.timing() {
+            Timing::Free => Vec::new(),
+            Timing::Prescribed { crank_angles, .. } => {
+                crank_angles.iter().map(|psi| Complex::from_polar(1.0, direction * psi)).collect()
+            }
+        }
+    }
+}

@@ -1,0 +1,535 @@
+//! The problem as data: every key of a problem file with its default filled in.
+//!
+//! It is written as `problem.resolved` in a record, and a run starts from it; a problem file, a library caller and
+//! `verify` all lead to it. Angles in degrees, lengths in the file's unit.
+
+use crate::mechanism::{LinkageType, MAX_MAGNITUDE};
+use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
+use crate::numbers::optimise::genetic::GeneticParameters;
+use crate::task::resampling::{resample, smooth};
+use crate::task::{AngleOffset, Defect, PathOptions, PathTask, TaskError, Timing};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An interval [low, high]; a fixed value has low = high.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Limits(pub f64, pub f64);
+
+impl Limits {
+    /// Returns whether it fixes a value.
+    pub fn is_fixed(&self) -> bool {
+        self.0 == self.1
+    }
+
+    /// Returns the nearest value inside.
+    pub fn clamp(&self, value: f64) -> f64 {
+        value.max(self.0).min(self.1)
+    }
+}
+
+/// A problem with every default filled in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ProblemSpec {
+    /// What is wanted.
+    pub task: TaskSpec,
+    /// Where the parameters may lie.
+    pub design: DesignSpec,
+    /// What an acceptable linkage satisfies.
+    pub require: RequireSpec,
+    /// How to search.
+    pub solve: SolveSpec,
+}
+
+impl ProblemSpec {
+    /// Returns the same problem with everything moved by `by`: points, pivots' bounds, boxes.
+    #[must_use]
+    pub fn shifted(&self, by: [f64; 2]) -> Self {
+        let mut spec = self.clone();
+        let path = &mut spec.task.path;
+        for point in path.points.iter_mut().chain(path.raw.iter_mut().flat_map(|raw| &mut raw.points)) {
+            *point = [point[0] + by[0], point[1] + by[1]];
+        }
+        for pivot in [&mut spec.design.crank_pivot, &mut spec.design.follower_pivot].into_iter().flatten() {
+            for (limits, by) in pivot.iter_mut().zip(by) {
+                *limits = Limits(limits.0 + by, limits.1 + by);
+            }
+        }
+        for b in [&mut spec.require.pivots_in, &mut spec.require.footprint_in].into_iter().flatten() {
+            *b = [b[0] + by[0], b[1] + by[1], b[2] + by[0], b[3] + by[1]];
+        }
+        spec
+    }
+}
+
+/// The task; a path is the only kind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TaskSpec {
+    /// A path to trace.
+    pub path: PathSpec,
+}
+
+/// A path: points and what stands beside them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct PathSpec {
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// One positive weight a point; they enter the objective only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<Vec<f64>>,
+    /// The largest error accepted, one a point.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<Vec<f64>>,
+    /// Prescribed timing; absent: free.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub timing: Option<TimingSpec>,
+    /// The points before they were smoothed or resampled; absent where `points` are what was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawPoints>,
+}
+
+/// Points as they were digitised, and what made the target's points of them: see [`crate::task::resampling`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RawPoints {
+    /// As they were given.
+    pub points: Vec<[f64; 2]>,
+    /// The standard deviation of the smoothing, a length along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub smooth: Option<f64>,
+    /// How many points were taken evenly along the path.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub samples: Option<usize>,
+}
+
+impl RawPoints {
+    /// Returns the target's points: smoothed, then resampled.
+    pub fn target(&self, closed: bool) -> Vec<[f64; 2]> {
+        let smoothed = match self.smooth {
+            Some(deviation) => smooth(&self.points, closed, deviation),
+            None => self.points.clone(),
+        };
+        match self.samples {
+            Some(count) => resample(&smoothed, closed, count),
+            None => smoothed,
+        }
+    }
+}
+
+/// Prescribed crank angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct TimingSpec {
+    /// One a point, degrees, counter-clockwise positive.
+    pub crank_deg: Vec<f64>,
+    /// What they are measured from.
+    pub offset: AngleOffset,
+}
+
+impl PathSpec {
+    /// Returns the task, checked.
+    ///
+    /// # Errors
+    /// As [`PathTask::new`].
+    pub fn to_task(&self) -> Result<PathTask, TaskError> {
+        let timing = match &self.timing {
+            None => Timing::Free,
+            Some(t) => Timing::Prescribed {
+                crank_angles: t.crank_deg.iter().map(|d| d.to_radians()).collect(),
+                offset: t.offset,
+            },
+        };
+        let options = PathOptions {
+            weights: self.weight.clone(),
+            tolerances: self.tolerance.clone(),
+            closed: self.closed,
+        };
+        PathTask::new(self.points.clone(), timing, options)
+    }
+}
+
+/// Where the parameters may lie. A key that is absent does not bind.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DesignSpec {
+    /// The crank's pivot.
+    #[serde(rename = "A", default, skip_serializing_if = "Option::is_none")]
+    pub crank_pivot: Option<[Limits; 2]>,
+    /// The follower's pivot.
+    #[serde(rename = "B", default, skip_serializing_if = "Option::is_none")]
+    pub follower_pivot: Option<[Limits; 2]>,
+    /// |AC|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub a: Option<Limits>,
+    /// |CD|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub b: Option<Limits>,
+    /// |BD|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub c: Option<Limits>,
+    /// |CP|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d: Option<Limits>,
+    /// |DP|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub e: Option<Limits>,
+    /// |AB|.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<Limits>,
+    /// The direction from A to B, degrees from the x axis.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground_angle_deg: Option<Limits>,
+    /// P along C -> D from C.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_x: Option<Limits>,
+    /// P across C -> D, positive to the left.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coupler_y: Option<Limits>,
+}
+
+/// The default of `link_ratio_max`.
+pub const DEFAULT_LINK_RATIO: f64 = 20.0;
+/// The default half width of the pivots' box and the greatest default length, in sizes of the target.
+pub const DEFAULT_REACH: f64 = 5.0;
+/// The least default length of a link, in sizes of the target.
+pub const DEFAULT_SHORTEST: f64 = 0.02;
+
+impl DesignSpec {
+    /// Fills in the defaults for a target: pivots within 5 sizes of its centre, links in [0.02, 5] sizes,
+    /// coupler point within 5 sizes along and across.
+    ///
+    /// A quantity that other given keys determine gets no default of its own: B if `ground` or `ground_angle_deg` is
+    /// given, the ground if both pivots are, coupler_x and coupler_y if `d` or `e` is given.
+    pub fn resolve(&mut self, task: &PathTask) {
+        let (size, centre) = (task.size(), task.centre());
+        // No default allows coordinates that a linkage cannot have.
+        let within = |low: f64, high: f64| Limits(low.max(-MAX_MAGNITUDE), high.min(MAX_MAGNITUDE));
+        let around = |c: f64| within(c - DEFAULT_REACH * size, c + DEFAULT_REACH * size);
+        let length = within(DEFAULT_SHORTEST * size, DEFAULT_REACH * size);
+        let pivot_box = [around(centre.re), around(centre.im)];
+        let polar = self.ground.is_some() || self.ground_angle_deg.is_some();
+        let both_pivots = self.crank_pivot.is_some() && self.follower_pivot.is_some();
+        self.crank_pivot.get_or_insert(pivot_box);
+        if !polar {
+            self.follower_pivot.get_or_insert(pivot_box);
+        }
+        if !both_pivots {
+            self.ground.get_or_insert(length);
+        }
+        for key in [&mut self.a, &mut self.b, &mut self.c] {
+            key.get_or_insert(length);
+        }
+        if self.d.is_none() && self.e.is_none() {
+            let offset = within(-DEFAULT_REACH * size, DEFAULT_REACH * size);
+            self.coupler_x.get_or_insert(offset);
+            self.coupler_y.get_or_insert(offset);
+        }
+    }
+}
+
+/// Over which motion the transmission angle is judged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum TransmissionOver {
+    /// The full turn of the crank.
+    Cycle,
+    /// The crank angles between the target points.
+    Used,
+}
+
+/// Whether a defect is forbidden.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OrderPolicy {
+    /// The points are passed in their order.
+    #[default]
+    Required,
+    /// Any order will do.
+    Any,
+}
+
+/// How the motion comes back to the first point of a target that ends where it begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClosingPolicy {
+    /// Without reversing: the crank turns fully or, where branch = "any", the circuit is run through its toggles.
+    #[default]
+    OneWay,
+    /// Also back through all points: a crank that rocks to and fro will do.
+    Any,
+}
+
+impl ClosingPolicy {
+    /// Returns whether it is the default.
+    pub fn is_one_way(&self) -> bool {
+        *self == ClosingPolicy::OneWay
+    }
+}
+
+/// Whether the motion must stay on one circuit or branch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum OnePolicy {
+    /// It must.
+    #[default]
+    One,
+    /// It need not.
+    Any,
+}
+
+/// Which way the crank turns along the points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum DirectionPolicy {
+    /// Either way.
+    #[default]
+    Any,
+    /// Counter-clockwise.
+    Ccw,
+    /// Clockwise.
+    Cw,
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RequireSpec {
+    /// The types allowed; empty: any.
+    #[serde(rename = "type")]
+    pub types: Vec<LinkageType>,
+    /// The least of min(mu, 180 - mu) over the motion, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_deg_min: Option<f64>,
+    /// Over which motion; absent: the cycle where the input turns fully, else the used part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_over: Option<TransmissionOver>,
+    /// Longest over shortest of ground, a, b, c.
+    pub link_ratio_max: f64,
+    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivots_in: Option<[f64; 4]>,
+    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub footprint_in: Option<[f64; 4]>,
+    /// Whether the points must be passed in order.
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
+    /// there was a choice keep their digest.
+    #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
+    pub closing: ClosingPolicy,
+}
+
+impl RequireSpec {
+    /// Returns whether a defect is disallowed.
+    pub fn forbids(&self, defect: &Defect) -> bool {
+        match defect {
+            Defect::Order { .. } => self.order == OrderPolicy::Required,
+            Defect::Branch { .. } => self.branch == OnePolicy::One,
+            Defect::Circuit { .. } => self.circuit == OnePolicy::One,
+        }
+    }
+}
+
+impl Default for RequireSpec {
+    fn default() -> Self {
+        RequireSpec {
+            types: Vec::new(),
+            transmission_deg_min: None,
+            transmission_over: None,
+            link_ratio_max: DEFAULT_LINK_RATIO,
+            pivots_in: None,
+            footprint_in: None,
+            order: OrderPolicy::default(),
+            direction: DirectionPolicy::default(),
+            circuit: OnePolicy::default(),
+            branch: OnePolicy::default(),
+            closing: ClosingPolicy::default(),
+        }
+    }
+}
+
+/// How to search.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Chooses and combines the others.
+    #[default]
+    Auto,
+    /// A real-coded genetic algorithm on the design vector.
+    Genetic,
+    /// Differential evolution on the design vector.
+    DifferentialEvolution,
+    /// Levenberg-Marquardt from many starts.
+    LeastSquares,
+    /// Every linkage through exactly nine points, by following the solutions of the equations from a known set.
+    Continuation,
+}
+
+impl Method {
+    /// Returns the name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Method::Auto => "auto",
+            Method::Genetic => "genetic",
+            Method::DifferentialEvolution => "differential-evolution",
+            Method::LeastSquares => "least-squares",
+            Method::Continuation => "continuation",
+        }
+    }
+}
+
+/// What is minimised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Objective {
+    /// The weighted sum of squared structural errors.
+    #[default]
+    SumOfSquares,
+    /// The largest structural error, each in parts of its point's tolerance where tolerances are given; weights
+    /// do not enter.
+    MaxDeviation,
+}
+
+/// The measure by which candidates are ranked, as it is shown to a reader.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// The sum of squared errors: no point has another weight than 1.
+    #[default]
+    Sum,
+    /// The weighted sum of squared errors.
+    WeightedSum,
+    /// The largest error.
+    Largest,
+    /// The largest error in parts of its point's tolerance.
+    LargestPart,
+}
+
+/// In which variables the population searches move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Variables {
+    /// The parameters of the linkage, and the crank's offset where it is free: the literature's form.
+    #[default]
+    Nine,
+    /// Ratios of links and at most an angle or two; pivots, size and coupler point by linear least squares.
+    Reduced,
+}
+
+impl Variables {
+    /// Returns whether these are the literature's variables.
+    pub fn is_nine(&self) -> bool {
+        *self == Variables::Nine
+    }
+}
+
+fn advised() -> bool {
+    true
+}
+
+fn is_advised(advice: &bool) -> bool {
+    *advice
+}
+
+/// How to search and when to stop.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SolveSpec {
+    /// The method.
+    pub method: Method,
+    /// What is minimised.
+    pub objective: Objective,
+    /// In which variables `genetic` and `differential-evolution` move; the other methods do not read it.
+    #[serde(default)]
+    pub variables: Variables,
+    /// Every draw comes from this number.
+    pub seed: u64,
+    /// How many distinct answers are wanted.
+    pub candidates: usize,
+    /// How many evaluations of the objective at most.
+    pub evaluations: u64,
+    /// Seconds at most, of search and advice together; when it bites the record says that the run cannot be repeated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_limit_s: Option<f64>,
+    /// Whether advice is worked out beside the answers: what conflicts, what to build, what limits cost.
+    #[serde(default = "advised", skip_serializing_if = "is_advised")]
+    pub advice: bool,
+    /// What a certificate is worked out with after the search, where one is asked for. It decides no candidate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certify: Option<CertifySpec>,
+    /// The genetic algorithm's parameters.
+    pub genetic: GeneticParameters,
+    /// Differential evolution's parameters.
+    pub differential_evolution: DifferentialEvolutionParameters,
+}
+
+impl ProblemSpec {
+    /// Returns the measure by which its candidates are ranked.
+    pub fn measure(&self) -> Measure {
+        let path = &self.task.path;
+        match self.solve.objective {
+            Objective::SumOfSquares if path.weight.iter().flatten().any(|w| *w != 1.0) => {
+                Measure::WeightedSum
+            }
+            Objective::SumOfSquares => Measure::Sum,
+            Objective::MaxDeviation if path.tolerance.is_some() => Measure::LargestPart,
+            Objective::MaxDeviation => Measure::Largest,
+        }
+    }
+}
+
+impl SolveSpec {
+    /// Returns whether the search moves in the reduced variables: a population search that was asked to.
+    pub fn moves_reduced(&self) -> bool {
+        let population = matches!(self.method, Method::Genetic | Method::DifferentialEvolution);
+        population && self.variables == Variables::Reduced
+    }
+}
+
+impl Default for SolveSpec {
+    fn default() -> Self {
+        SolveSpec {
+            method: Method::Auto,
+            objective: Objective::SumOfSquares,
+            variables: Variables::Nine,
+            seed: 1,
+            candidates: 5,
+            evaluations: 200_000,
+            time_limit_s: None,
+            advice: true,
+            certify: None,
+            genetic: GeneticParameters::default(),
+            differential_evolution: DifferentialEvolutionParameters::default(),
+        }
+    }
+}
+
+/// How a certificate is worked out ([`crate::judge::certificate`]).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CertifySpec {
+    /// The gap between the best candidate and the proved bound at which it ends, relative, in (0, 1).
+    pub gap: f64,
+    /// Seconds at most; what is proved by then stands.
+    pub time_limit_s: f64,
+}
+
+impl Default for CertifySpec {
+    fn default() -> Self {
+        CertifySpec { gap: 1e-4, time_limit_s: 300.0 }
+    }
+}
+
+/// The longest time for a certificate, seconds.
+pub const MAX_CERTIFY_S: f64 = 1e6;
+
+pub use crate::task::resampling::MAX_SMOOTHED;
+
+/// The most points of a target.
+pub const MAX_POINTS: usize = 100_000;
+/// The most candidates that a run returns.
+pub const MAX_CANDIDATES: usize = 100;
+/// The largest budget of evaluations.
+pub const MAX_EVALUATIONS: u64 = 1_000_000_000_000;
+/// The largest population of a population search.
+pub const MAX_POPULATION: usize = 1_000_000;
