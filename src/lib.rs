@@ -74,6 +74,11 @@ pub use synthesis::{Observer, Progress};
 pub use task::spec::ProblemSpec;
 pub use task::{AngleOffset, Defect, PathTask, Problem, TaskError, Timing};
 
+/// The example of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// All rooms, for this repository's integration tests, benchmarks, fuzz targets and commands.
 #[doc(hidden)]
 pub mod internals {

@@ -18,7 +18,7 @@ use crate::task::Problem;
 /// `None` if the nine numbers do not form a linkage: a negative or zero link, a number that is not finite.
 ///
 /// ```
-/// use linkwright::internals::mechanism::AssemblyMode;
+/// use linkwright::AssemblyMode;
 /// use linkwright::internals::app::published::linkage_of;
 /// let vector = [4.0, 1.0, 3.0, 3.0, 1.5, 2.0, 5.0, 6.0, 0.0];
 /// let l = linkage_of(&vector, AssemblyMode::Plus).expect("four links and a point");

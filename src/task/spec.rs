@@ -89,7 +89,7 @@ pub struct PathSpec {
     pub raw: Option<RawPoints>,
 }
 
-/// Points as they were digitised, and what made the target's points of them: see [`crate::task::resampling`].
+/// Points as they were digitised, with the smoothing and resampling that made the target's points of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RawPoints {
     /// As they were given.

@@ -143,7 +143,7 @@ pub enum SliderLine {
 /// A chain with its names resolved: see [`ChainBuilder`].
 ///
 /// ```
-/// use linkwright::internals::mechanism::{AssemblyMode, ChainBuilder};
+/// use linkwright::{AssemblyMode, ChainBuilder};
 /// // An in-line slider-crank, 3-4-5: crank 3 upright, rod 5, the slider is 4 ahead.
 /// let chain = ChainBuilder::new()
 ///     .pivot("A", [0.0, 0.0])

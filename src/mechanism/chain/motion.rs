@@ -103,7 +103,7 @@ impl Chain {
     /// the points before it. No answer holds a NaN or an infinity.
     ///
     /// ```
-    /// # use linkwright::internals::mechanism::{AssemblyMode, ChainBuilder};
+    /// # use linkwright::{AssemblyMode, ChainBuilder};
     /// # use linkwright::internals::mechanism::chain::Outcome;
     /// // In line, crank 3, rod 5: upright, the slider runs at omega * 3 and the rod doesn't turn.
     /// let chain = ChainBuilder::new().pivot("A", [0.0, 0.0]).crank("A", "B", 3.0)

@@ -156,7 +156,7 @@ pub const FLAT_TOLERANCE: f64 = 1e-12;
 /// A four-bar linkage: fixed pivots, five lengths and two signs.
 ///
 /// ```
-/// use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+/// use linkwright::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 /// let linkage = FourBar::new(NaturalCoordinates {
 ///     crank_pivot: [0.0, 0.0], follower_pivot: [4.0, 1.0],
 ///     crank: 2.0, coupler: 5.0, follower: 5.0, crank_side: 5.0, follower_side: 5.0,
@@ -164,7 +164,7 @@ pub const FLAT_TOLERANCE: f64 = 1e-12;
 /// })?;
 /// let joints = linkage.position(0.3).joints().unwrap();
 /// assert!(((joints.follower_pin - joints.crank_pin).norm() - 5.0).abs() < 1e-14);
-/// # Ok::<(), linkwright::internals::mechanism::LinkageError>(())
+/// # Ok::<(), linkwright::LinkageError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "NaturalCoordinates", into = "NaturalCoordinates")]

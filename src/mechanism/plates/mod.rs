@@ -112,7 +112,7 @@ impl Plate {
     /// Builds the plate of one link of a linkage.
     ///
     /// ```
-    /// use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
+    /// use linkwright::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
     /// use linkwright::internals::mechanism::plates::{Link, Plate};
     /// let linkage = FourBar::new(NaturalCoordinates {
     ///     crank_pivot: [0.0, 0.0], follower_pivot: [40.0, 10.0],
@@ -121,7 +121,7 @@ impl Plate {
     /// })?;
     /// let crank = Plate::of(&linkage, Link::Crank, 5.0);
     /// assert!((crank.perimeter() - (2.0 * 20.0 + 10.0 * std::f64::consts::PI)).abs() < 1e-12);
-    /// # Ok::<(), linkwright::internals::mechanism::LinkageError>(())
+    /// # Ok::<(), linkwright::LinkageError>(())
     /// ```
     pub fn of(linkage: &FourBar, link: Link, radius: f64) -> Self {
         let [ground, crank, coupler, follower] = linkage.links();

@@ -40,7 +40,7 @@ const fn mix(word: u64) -> u64 {
 /// The same pair always gives the same stream; two indices of one seed give states that differ in every word.
 ///
 /// ```
-/// # use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
+/// # use linkwright_arithmetic::streams::{stream, unit};
 /// assert_eq!(unit(&mut stream(7, 3)), unit(&mut stream(7, 3)));
 /// assert_ne!(unit(&mut stream(7, 3)), unit(&mut stream(7, 4)));
 /// ```

@@ -28,7 +28,7 @@ const DEPENDENT: f64 = 1e-9;
 /// Columns should be of like size: scale them to length 1.
 ///
 /// ```
-/// use linkwright::internals::numbers::optimise::nonnegative::nonnegative_least_squares;
+/// use linkwright_optimise::nonnegative::nonnegative_least_squares;
 /// let found = nonnegative_least_squares(&[vec![1.0, 0.0], vec![0.0, 1.0]], &[2.0, -3.0]);
 /// assert_eq!((found.values, found.residual), (vec![2.0, 0.0], 3.0));
 /// ```

@@ -75,7 +75,7 @@ impl Fitness {
     /// violation among the infeasible. A fitness whose deciding number is NaN comes after all others. A total order.
     ///
     /// ```
-    /// # use linkwright::internals::numbers::optimise::population::Fitness;
+    /// # use linkwright_optimise::population::Fitness;
     /// let costly = Fitness { violation: 0.0, cost: 900.0 };
     /// let infeasible = Fitness { violation: 1e-3, cost: 1.0 };
     /// assert!(costly.compare(&infeasible).is_lt());

@@ -37,7 +37,7 @@ pub const CYCLE_ROWS: usize = 24;
 /// them.
 ///
 /// ```
-/// # use linkwright::{analysis::{Request, analyze}, linkage::{motion::CrankMotion, *}};
+/// # use linkwright::internals::mechanism::{analysis::{Request, analyze}, four_bar::motion::CrankMotion, *};
 /// let linkage = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
 ///     point([2.5, 4.3]), AssemblyMode::Plus)?;
 /// let request = Request { name: "mine".into(), unit: None, linkage, crank_deg: vec![30.0, 60.0],
