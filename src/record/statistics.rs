@@ -3,11 +3,30 @@
 //! Sums of squares are compared with a tolerance of [`WITHIN`], and below the problem's exactness floor every sum
 //! counts as zero: there, only rounding is left.
 
-use super::suite::Run;
+use super::Reason;
 use serde::Serialize;
 
 /// The relative tolerance within which a sum of squares reaches another: published optima have seven digits and more.
 pub const WITHIN: f64 = 1e-6;
+
+/// The results of one run: one problem, one method, one seed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Run {
+    /// The seed.
+    pub seed: u64,
+    /// Whether the first candidate is accepted; `false` without a candidate.
+    pub accepted: bool,
+    /// The sum of squares of the first candidate at the crank angles; `None` without a candidate.
+    pub sum_sq: Option<f64>,
+    /// The sum of squared distances of the points to that candidate's whole curve.
+    pub to_curve_sum_sq: Option<f64>,
+    /// The number of evaluations of the objective.
+    pub evaluations: u64,
+    /// The time from the checked problem to the ranked candidates with their figures, in seconds.
+    pub search_s: f64,
+    /// The reason why the search ended.
+    pub reason: Reason,
+}
 
 /// The sums of squares with which the runs of a problem are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]

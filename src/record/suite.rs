@@ -1,7 +1,7 @@
 //! The figures of a suite: problems with a known answer, many seeds each.
 
-use super::statistics::Summary;
-use super::{Certificate, Reason, Tool};
+pub use super::statistics::{Run, Summary};
+use super::{Certificate, Tool};
 use crate::task::spec::Method;
 use serde::Serialize;
 
@@ -71,25 +71,6 @@ pub struct MethodResult {
     pub summary: Summary,
     /// The runs, in the order of their seeds.
     pub runs: Vec<Run>,
-}
-
-/// The results of one run: one problem, one method, one seed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Run {
-    /// The seed.
-    pub seed: u64,
-    /// Whether the first candidate is accepted; `false` without a candidate.
-    pub accepted: bool,
-    /// The sum of squares of the first candidate at the crank angles; `None` without a candidate.
-    pub sum_sq: Option<f64>,
-    /// The sum of squared distances of the points to that candidate's whole curve.
-    pub to_curve_sum_sq: Option<f64>,
-    /// The number of evaluations of the objective.
-    pub evaluations: u64,
-    /// The time from the checked problem to the ranked candidates with their figures, in seconds.
-    pub search_s: f64,
-    /// The reason why the search ended.
-    pub reason: Reason,
 }
 
 /// An accepted answer that is smaller than the best known.
