@@ -71,8 +71,8 @@ pub use report::export::{
 };
 pub use report::html::report_html;
 pub use synthesis::{Observer, Progress};
-pub use task::spec::ProblemSpec;
-pub use task::{AngleOffset, Defect, PathTask, Problem, TaskError, Timing};
+pub use task::spec::{DesignSpec, Limits, ProblemSpec, RequireSpec, SolveSpec};
+pub use task::{AngleOffset, Defect, PathTask, Problem, ProblemBuilder, TaskError, Timing};
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

@@ -2,6 +2,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
+//! | [`builder`] | a builder of problems from points, with the defaults of a problem file |
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
@@ -9,6 +10,7 @@
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 
+mod builder;
 pub mod defect;
 pub mod forms;
 mod path;
@@ -16,6 +18,7 @@ pub mod problem;
 pub mod resampling;
 pub mod spec;
 
+pub use builder::ProblemBuilder;
 pub use defect::Defect;
 pub use path::{AngleOffset, PathOptions, PathTask, Return, SMALLEST_SIZE, TaskError, Timing};
 pub use problem::{Problem, Setting};

@@ -29,7 +29,7 @@ use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
 use crate::task::spec::{
     DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec,
-    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
+    ProblemSpec, RequireSpec, SolveSpec, TimingSpec,
 };
 use raw::{RawExpect, RawRequire, RawSolve};
 use schemars::JsonSchema;
@@ -207,7 +207,7 @@ fn parse_at(
     let path = raw.task.take().and_then(|t| t.0.path).map(|p| p.0);
     let path::PathRead { spec: path, task, unit, mut warnings } =
         path::path_of(&toml, path, whereabouts, raw.unit, tolerance_is_set)?;
-    let mut design = design::spec_of(&raw.design.0);
+    let design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
     warnings.extend(design::against_requirements(&toml, &design, &require)?);
@@ -220,8 +220,7 @@ fn parse_at(
         warnings.extend(deviation_of(&toml, &path)?);
     }
     let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
-    design.resolve(&task);
-    let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
+    let spec = ProblemSpec::resolved(path, &task, design, require, solve);
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
     warnings.extend(closing::against(&toml, &spec));

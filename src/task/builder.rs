@@ -1,0 +1,157 @@
+//! A builder of problems from points, with the defaults of a problem file.
+
+use super::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec};
+use super::{AngleOffset, PathTask, Problem, TaskError};
+
+/// A problem that is put together from its points; every part that is left out has the default of a problem file.
+///
+/// Lengths are in the unit of the points, angles in degrees. Limits of the design and requirements are taken as they
+/// are: [`parse_problem`](crate::parse_problem) checks those that a person wrote.
+///
+/// ```
+/// use linkwright::{Job, Problem};
+/// let spec = Problem::builder(vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.5], [3.0, 1.0]]).tolerance(0.1).spec()?;
+/// assert_eq!((spec.solve.candidates, spec.require.link_ratio_max), (5, 20.0));
+/// assert!(spec.design.a.is_some_and(|limits| limits.0 > 0.0));
+/// let job = Job { name: "arc".into(), source: None, unit: None, spec };
+/// # Ok::<(), linkwright::TaskError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProblemBuilder {
+    path: PathSpec,
+    design: DesignSpec,
+    require: RequireSpec,
+    solve: SolveSpec,
+}
+
+impl Problem {
+    /// Begins a problem: a path through these points, open, with free timing.
+    pub fn builder(points: Vec<[f64; 2]>) -> ProblemBuilder {
+        let path = PathSpec { points, closed: false, weight: None, tolerance: None, timing: None, raw: None };
+        ProblemBuilder {
+            path,
+            design: DesignSpec::default(),
+            require: RequireSpec::default(),
+            solve: SolveSpec::default(),
+        }
+    }
+}
+
+impl ProblemBuilder {
+    /// Makes the target a closed curve, or an open one.
+    #[must_use]
+    pub fn closed(mut self, closed: bool) -> Self {
+        self.path.closed = closed;
+        self
+    }
+
+    /// Sets the weights of the squared errors, one for each point, above 0.
+    #[must_use]
+    pub fn weights(mut self, weights: Vec<f64>) -> Self {
+        self.path.weight = Some(weights);
+        self
+    }
+
+    /// Sets the largest error accepted at every point, 0 or more.
+    #[must_use]
+    pub fn tolerance(self, tolerance: f64) -> Self {
+        let points = self.path.points.len();
+        self.tolerances(vec![tolerance; points])
+    }
+
+    /// Sets the largest error accepted at each point, 0 or more.
+    #[must_use]
+    pub fn tolerances(mut self, tolerances: Vec<f64>) -> Self {
+        self.path.tolerance = Some(tolerances);
+        self
+    }
+
+    /// Prescribes the timing: the crank angle at each point, degrees, counter-clockwise positive, measured from `offset`.
+    #[must_use]
+    pub fn timing(mut self, crank_deg: Vec<f64>, offset: AngleOffset) -> Self {
+        self.path.timing = Some(TimingSpec { crank_deg, offset });
+        self
+    }
+
+    /// Sets the limits of the parameters; those that are `None` get their defaults from the points.
+    #[must_use]
+    pub fn design(mut self, design: DesignSpec) -> Self {
+        self.design = design;
+        self
+    }
+
+    /// Sets the requirements.
+    #[must_use]
+    pub fn require(mut self, require: RequireSpec) -> Self {
+        self.require = require;
+        self
+    }
+
+    /// Sets the options of the search.
+    #[must_use]
+    pub fn solve(mut self, solve: SolveSpec) -> Self {
+        self.solve = solve;
+        self
+    }
+
+    /// Returns the problem as data, with every default filled in.
+    ///
+    /// # Errors
+    /// [`TaskError`] if the points with their lists make no task.
+    pub fn spec(self) -> Result<ProblemSpec, TaskError> {
+        let task = self.path.to_task()?;
+        Ok(self.spec_of(&task))
+    }
+
+    /// Returns the checked problem.
+    ///
+    /// # Errors
+    /// [`TaskError`] if the points with their lists make no task.
+    pub fn build(self) -> Result<Problem, TaskError> {
+        Problem::new(self.spec()?)
+    }
+
+    /// Returns the problem as data, for the task that its path is.
+    fn spec_of(mut self, task: &PathTask) -> ProblemSpec {
+        self.design.resolve(task);
+        let ProblemBuilder { path, design, require, solve } = self;
+        ProblemSpec { task: TaskSpec { path }, design, require, solve }
+    }
+}
+
+impl ProblemSpec {
+    /// Returns the problem of a path, which is this task, with the defaults of a problem file where the parts are silent.
+    pub(crate) fn resolved(
+        path: PathSpec,
+        task: &PathTask,
+        design: DesignSpec,
+        require: RequireSpec,
+        solve: SolveSpec,
+    ) -> Self {
+        ProblemBuilder { path, design, require, solve }.spec_of(task)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_built_problem_is_that_of_a_file_with_the_same_keys() {
+        let points = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.5], [3.0, 1.0]];
+        let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\ntolerance = 0.1\n\
+                    weight = [1, 2, 1, 1]\n[task.path.timing]\ncrank_deg = [0, 20, 40, 60]\noffset = \"ground\"\n\
+                    [require]\nlink_ratio_max = 8\n[solve]\nseed = 7\n";
+        let file = crate::parse_problem("it.toml", text, None, &[]).expect("a problem");
+        let built = Problem::builder(points)
+            .tolerance(0.1)
+            .weights(vec![1.0, 2.0, 1.0, 1.0])
+            .timing(vec![0.0, 20.0, 40.0, 60.0], AngleOffset::Ground)
+            .require(RequireSpec { link_ratio_max: 8.0, ..RequireSpec::default() })
+            .solve(SolveSpec { seed: 7, ..SolveSpec::default() });
+        assert_eq!(built.clone().spec(), Ok(file.spec));
+        assert!(built.build().is_ok());
+        assert!(Problem::builder(vec![[0.0, 0.0]]).build().is_err());
+        assert!(Problem::builder(vec![[0.0, 0.0], [1.0, 0.0]]).tolerances(vec![0.1]).spec().is_err());
+    }
+}
