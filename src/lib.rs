@@ -2,44 +2,53 @@
 //!
 //! ```text
 //!                    P                given: points T_1 .. T_n (and, if you like, the crank angle at each)
-//!                   / \               found: A, B, a, b, c, d, e and the signs t1, t2 with
+//!                   / \               found: A, B, a, b, c, d, e, the assembly t1 and the side t2 of P with
 //!                d /   \ e
-//!                 /  b  \                    sum_j |T_j - P(phi_j)|^2  least
+//!                 /  b  \                    sum_j |T_j - P(phi_j)|^2  least (or the largest deviation)
 //!                C-------D
-//!             a /         \ c                and every requirement met: type, transmission angle, pivots,
-//!              A-----------B                 footprint, order, circuit, branch
+//!             a /         \ c                and every requirement met: type, transmission angle, link ratio,
+//!              A-----------B                 pivots, footprint, order, circuit, branch
 //! ```
 //!
 //! ```
-//! use linkwright::{Context, Job, parse_problem, run};
+//! use linkwright::spec::RequireSpec;
+//! use linkwright::{Context, ExportFormat, ExportSettings, ExportSubject, Job, Problem, export, run};
 //! use std::sync::atomic::AtomicBool;
-//! let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.5], [3, 1]]\n";
-//! let file = parse_problem("path.toml", text, None, &[]).map_err(|e| e.to_string())?;
+//!
+//! let points = vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.5], [3.0, 1.0]];
+//! let require = RequireSpec { transmission_deg_min: Some(30.0), ..RequireSpec::default() };
+//! let job = Job::new("arc", Problem::builder(points).require(require).spec()?);
 //! let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
-//! let record = run(&Job::from(file), &context)?.record;
-//! assert!(record.candidates[0].accepted && record.candidates[0].error.rms < 1e-9);
+//! let record = run(&job, &context)?.record;
+//! let best = &record.candidates[0];
+//! assert!(best.accepted && best.error.rms < 1e-9);
+//! let [ground, crank, coupler, follower] = best.linkage.links();
+//! assert!(ground.min(crank).min(coupler).min(follower) > 0.0);
+//! let settings = ExportSettings { scale: Some(20.0), unit: Some(linkwright::Unit::Mm), ..Default::default() };
+//! let drawing = export(&ExportSubject::of_candidate(&record, best), ExportFormat::Dxf, &settings)?;
+//! assert!(!drawing.bytes.is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # The house
+//! # The layers
 //!
-//! Nine storeys, each one folder of `src/`; a storey uses only the storeys that its row names. `mod.rs` of a storey lists
-//! its rooms.
+//! Nine layers ("storeys"), each one folder of `src/`; outside tests, a layer uses only the layers that its row names.
+//! `mod.rs` of a layer lists its modules; a module is the file `x.rs` or the folder `x/`.
 //!
-//! | storey | what it holds | may use |
+//! | layer | holds | may use |
 //! |---|---|---|
-//! | `numbers` | numerical mathematics that knows nothing of linkages, a package for each subject: [`arithmetic`](internals::numbers::arithmetic) (lanes, double-double, random streams), [`optimise`](internals::numbers::optimise) (least squares, populations, convex programs), [`nine_point`](internals::numbers::nine_point) (path tracking), [`bound`](internals::numbers::bound) (branch and bound), [`checker`](internals::numbers::checker) (the check of its proofs, without its code) and [`leaves`](internals::numbers::leaves) (their file) | |
+//! | `numbers` | packages of their own that use nothing of this one: `arithmetic/` (lanes, double-double numbers, random streams), `optimise/` (least squares, population searches, convex programs), `nine_point/` (all four-bars through nine points, by homotopy continuation), `bound/` (lower bounds by branch and bound), `checker/` (checks the proofs of `bound` independently), `leaves/` (the file format of those proofs) | |
 //! | `mechanism` | what a linkage is and where it is: the [`four_bar`](internals::mechanism::four_bar) (position, gradient, mobility, transmission angle, coupler curve, cognates), the [`chain`](internals::mechanism::chain), their [`analysis`](internals::mechanism::analysis), their [`plates`](internals::mechanism::plates) | numbers |
 //! | `task` | what is wanted: the path, the [`spec`](internals::task::spec) with every key of a problem file, the checked [`Problem`], and the task as mathematics in [`forms`](internals::task::forms) (design space, residuals, [rows of the requirements](internals::task::forms::requirements)) | numbers, mechanism |
-//! | `record` | the truth on disk: what was asked, done and found | numbers, mechanism, task |
-//! | `judge` | is it so: the [`referee`](internals::judge::referee) (order, circuit and branch defects), [`assess`](internals::judge::assess) (every figure of a candidate), ranking, warnings, cognates, costs, [`certificate`](internals::judge::certificate), [`practicality`](internals::judge::practicality), and [`verify`](internals::judge::verify), which recomputes a record | numbers, mechanism, task, record |
-//! | `synthesis` | what to try: the [`plan`](internals::synthesis::plan) of a search, starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for [`timed`](internals::synthesis::timed) and [`free`](internals::synthesis::free) timing, populations, [`conflicts`](internals::synthesis::conflicts), live fitting, snapping | numbers, mechanism, task, record, judge |
-//! | `files` | text in: problem, points, linkage and drawing files, schemas, and errors that point at their place | numbers, mechanism, task, record |
+//! | `record` | the record of a run: what was asked, done and found | numbers, mechanism, task |
+//! | `judge` | verdicts: the [`referee`](internals::judge::referee) (order, circuit and branch defects), [`assess`](internals::judge::assess) (every figure of a candidate), ranking, warnings, cognates, costs, [`certificate`](internals::judge::certificate), [`practicality`](internals::judge::practicality), and [`verify`](internals::judge::verify), which recomputes a record | numbers, mechanism, task, record |
+//! | `synthesis` | the search: its [`plan`](internals::synthesis::plan), starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for prescribed ([`timed`](internals::synthesis::timed)) and [`free`](internals::synthesis::free) timing, population searches, [`conflicts`](internals::synthesis::conflicts) of requirements, fitting while a target is dragged, rounding lengths to stock sizes; its limits and its cancellation | numbers, mechanism, task, record, judge |
+//! | `files` | file formats: problem, points, linkage and drawing files are read, with errors that point at their place; schemas, templates | numbers, mechanism, task, record |
 //! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
-//! | `app` | the doors: a job in, a record out ([`run`](internals::app::run)), folders of results, checkpoints, the [`suite`](internals::app::suite), the command line (feature `cli`), the studio (feature `studio`) | everything |
+//! | `app` | entry points: a job in, a record out ([`run`](internals::app::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
 //!
-//! Public are the names below; `internals` holds the rest for this repository's own tests and tools, and versions say
-//! nothing about it.
+//! The public interface is the names below. `internals` is for this repository's own tests and tools; versions say nothing
+//! about it.
 
 mod app;
 mod files;
@@ -51,15 +60,15 @@ mod report;
 mod synthesis;
 mod task;
 
-pub use app::run::{Context, Finished, Job, RunError, run};
+pub use app::run::{Context, Finished, Job, RunError, prove, run};
 pub use files::diagnostic::Diagnostic;
 pub use files::linkage_file::{
-    AnyLinkageFile, load_any as load_linkage, parse_any as parse_linkage, to_toml as linkage_to_toml,
+    AnyLinkageFile, LinkageFile, load_any as load_linkage, parse_any as parse_linkage,
+    to_toml as linkage_to_toml,
 };
 pub use files::problem_file::{ProblemFile, load_any as load_problem, parse as parse_problem};
 pub use judge::certificate::{NoCertificate, Request as CertificateRequest, certify};
 pub use judge::verify::{Mismatch, verify};
-pub use mechanism::analysis::{Analysis, Request as AnalysisRequest, analyze};
 pub use mechanism::four_bar::cognate::Cognate;
 pub use mechanism::{
     AssemblyMode, Chain, ChainBuilder, Complex, CouplerCurve, CouplerSide, FourBar, Joints, Linkage,
@@ -67,12 +76,36 @@ pub use mechanism::{
 };
 pub use record::{Candidate, Certificate, Record};
 pub use report::export::{
-    Exported, Format as ExportFormat, Settings as ExportSettings, Subject as ExportSubject, export,
+    Exported, Format as ExportFormat, Refusal as ExportRefusal, Settings as ExportSettings,
+    Subject as ExportSubject, export,
 };
 pub use report::html::report_html;
 pub use synthesis::{Observer, Progress};
-pub use task::spec::{DesignSpec, Limits, ProblemSpec, RequireSpec, SolveSpec};
-pub use task::{AngleOffset, Defect, PathTask, Problem, ProblemBuilder, TaskError, Timing};
+pub use task::{AngleOffset, Defect, PathOptions, PathTask, Problem, ProblemBuilder, TaskError, Timing};
+
+/// Problems as data: every key of a problem file.
+pub mod spec {
+    pub use crate::task::spec::{
+        CertifySpec, ClosingPolicy, DesignSpec, DirectionPolicy, Limits, Method, Objective, OnePolicy,
+        OrderPolicy, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec, TransmissionOver,
+        Variables,
+    };
+}
+
+/// The parts of a record.
+pub mod results {
+    pub use crate::record::digest::ProblemError;
+    pub use crate::record::{
+        CurveErrorRecord, ErrorRecord, ExactLinkage, ExactRecord, Figure, Reason, Requirement, Termination,
+        Warning, WarningKind,
+    };
+}
+
+/// Positions, velocities, accelerations and mobility of a given linkage.
+pub mod analysis {
+    pub use crate::mechanism::analysis::{Analysis, PositionMethod, Request, analyze};
+    pub use crate::mechanism::four_bar::motion::CrankMotion;
+}
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

@@ -33,6 +33,13 @@ pub struct Job {
     pub spec: ProblemSpec,
 }
 
+impl Job {
+    /// Creates a job from its name and a problem without a source and without a unit.
+    pub fn new(name: impl Into<String>, spec: ProblemSpec) -> Self {
+        Job { name: name.into(), source: None, unit: None, spec }
+    }
+}
+
 impl From<ProblemFile> for Job {
     fn from(ProblemFile { name, source, unit, spec, .. }: ProblemFile) -> Self {
         Job { name, source, unit, spec }

@@ -1,4 +1,4 @@
-//! The judge: every figure and verdict of a candidate, by code that no search uses to decide where to look.
+//! The judge: every figure and verdict of a candidate, computed without a search; searches rank by them.
 //!
 //! | room | what it holds |
 //! |---|---|

@@ -3,9 +3,9 @@
 //! Circuits and branches are those of Chase and Mirth (1993), determined from the closed forms of
 //! [`crate::mechanism::four_bar::mobility`]; that the loop stays closed between the points is checked on dense samples. Nothing
 //! here uses an optimiser: every verdict follows from the linkage and its positions alone. Searches use the referee:
-//! they rank by its verdicts and keep its [`ORDER_TOLERANCE`].
+//! they rank by its verdicts and keep the same [`ORDER_TOLERANCE`].
 //!
-//! *Order* is judged if the timing is free (prescribed angles are an order by themselves): the parameter of the circuit
+//! *Order* is judged if the timing is free (prescribed angles are an order by themselves, but for a closed target): the parameter of the circuit
 //! (the crank angle, or psi if the input rocks) must run one way through the points and less than once around.
 //!
 //! A target that ends where it begins ([`PathTask::returns`]) has one step more, from its last point back to its first,

@@ -9,11 +9,11 @@ use super::{AngleOffset, PathTask, Problem, TaskError};
 /// are: [`parse_problem`](crate::parse_problem) checks those that a person wrote.
 ///
 /// ```
-/// use linkwright::{Job, Problem};
+/// use linkwright::Problem;
 /// let spec = Problem::builder(vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.5], [3.0, 1.0]]).tolerance(0.1).spec()?;
 /// assert_eq!((spec.solve.candidates, spec.require.link_ratio_max), (5, 20.0));
 /// assert!(spec.design.a.is_some_and(|limits| limits.0 > 0.0));
-/// let job = Job { name: "arc".into(), source: None, unit: None, spec };
+/// let job = linkwright::Job::new("arc", spec);
 /// # Ok::<(), linkwright::TaskError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

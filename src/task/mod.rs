@@ -6,7 +6,7 @@
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
-//! | [`problem`] | the mathematical problem: design space, residuals with derivatives, requirements, fitness |
+//! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 

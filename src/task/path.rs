@@ -2,8 +2,8 @@
 //!
 //! A target of n points T_j is met by a linkage at positions (phi_j, t1_j); the structural error at point j is T_j -
 //! P(phi_j, t1_j). With *prescribed timing* the crank angles are given (up to a common offset, from the x axis, or from
-//! the ground line A -> B); with *free timing* each is chosen to be nearest. This module depends on the linkage module
-//! and on nothing else of the crate.
+//! the ground line A -> B); with *free timing* each is chosen to be nearest. This module uses `mechanism` and
+//! nothing else of the crate.
 
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
 

@@ -1,4 +1,4 @@
-//! The mathematical problem: design space, residuals with derivatives, requirements, fitness.
+//! The checked problem, and the discrete choices of a search.
 //!
 //! A [`Problem`] is a checked [`ProblemSpec`]. The discrete choices of a search besides the design vector (the
 //! assembly, the crank's direction, the type aimed at, the side of the coupler point) are a [`Setting`].

@@ -67,7 +67,7 @@ pub struct Settings {
     /// The number of frames of a turn.
     pub frames: Option<usize>,
     /// The settings as they were typed.
-    typed: Vec<(String, String)>,
+    pub typed: Vec<(String, String)>,
 }
 
 impl Settings {
