@@ -1,15 +1,21 @@
 // Called by check-compare: opens the pages and uses them.
-import { chromium } from "playwright-core";
+
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync } from "node:fs";
 import { resolve } from "node:path";
+import { chromium } from "playwright-core";
 
 const [run, files, shots] = process.argv.slice(2);
 const browser = await chromium.launch({
   executablePath: "/usr/bin/chromium",
   args: [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
   ],
 });
 
@@ -19,7 +25,10 @@ async function opened(file, width, height, colorScheme) {
   const messages = [];
   page.on("console", (message) => messages.push(message.text()));
   page.on("pageerror", (error) => messages.push(error.message));
-  page.on("dialog", (dialog) => { messages.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
+  page.on("dialog", (dialog) => {
+    messages.push(`dialog: ${dialog.message()}`);
+    dialog.dismiss();
+  });
   page.on("request", (request) => request.url().startsWith("file:") || messages.push(`asks for ${request.url()}`));
   await page.goto(`file://${resolve(file)}`);
   return { context, page, messages };
@@ -30,10 +39,18 @@ const column = (page, table, n) =>
 
 // Looks: nothing sticks out of the page, at any width and in both schemes.
 for (const file of [run, files]) {
-  for (const [name, width, height] of [["desktop", 1280, 900], ["phone", 390, 844], ["narrow", 320, 640]]) {
+  for (const [name, width, height] of [
+    ["desktop", 1280, 900],
+    ["phone", 390, 844],
+    ["narrow", 320, 640],
+  ]) {
     for (const scheme of ["light", "dark"]) {
       const { context, page, messages } = await opened(file, width, height, scheme);
-      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth - innerWidth), 0, `${name}: sticks out`);
+      assert.equal(
+        await page.evaluate(() => document.documentElement.scrollWidth - innerWidth),
+        0,
+        `${name}: sticks out`,
+      );
       const paper = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
       assert.equal(paper === "rgb(255, 255, 255)", scheme === "light", paper);
       assert.deepEqual(messages, []);
@@ -55,10 +72,16 @@ for (const file of [run, files]) {
   const sort = page.locator("#figures thead button").nth(rms);
   await sort.click();
   const numbers = (list) => list.map(Number);
-  assert.deepEqual(numbers(await column(page, "#figures", rms)), numbers(before).sort((x, y) => x - y));
+  assert.deepEqual(
+    numbers(await column(page, "#figures", rms)),
+    numbers(before).sort((x, y) => x - y),
+  );
   await sort.focus();
   await page.keyboard.press("Enter");
-  assert.deepEqual(numbers(await column(page, "#figures", rms)), numbers(before).sort((x, y) => y - x));
+  assert.deepEqual(
+    numbers(await column(page, "#figures", rms)),
+    numbers(before).sort((x, y) => y - x),
+  );
   assert.equal(await page.locator("#figures th").nth(rms).getAttribute("aria-sort"), "descending");
   assert.equal(await page.locator("#figures th[aria-sort]").count(), 1);
 
@@ -92,8 +115,10 @@ for (const file of [run, files]) {
   });
   assert.equal(await page.evaluate(() => window.broken), undefined);
   assert.equal(messages.filter((message) => !message.includes("Content Security Policy")).length, 0);
-  const unnamed = await page.$$eval("button, input, svg[role=img]", (all) =>
-    all.filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).length);
+  const unnamed = await page.$$eval(
+    "button, input, svg[role=img]",
+    (all) => all.filter((e) => !(e.ariaLabel || e.textContent.trim() || e.labels?.length)).length,
+  );
   assert.equal(unnamed, 0, "every control and drawing has a name");
   const pdf = await page.pdf({ format: "A4" });
   assert.ok(pdf.length > 10_000);
@@ -101,7 +126,7 @@ for (const file of [run, files]) {
 }
 {
   const { context, page, messages } = await opened(run.replace(".html", ".svg"), 900, 900, "light");
-  assert.equal(await page.locator("text").count() > 3, true);
+  assert.equal((await page.locator("text").count()) > 3, true);
   assert.deepEqual(messages, []);
   assert.ok(!readFileSync(run.replace(".html", ".svg"), "utf8").includes("<img"));
   await context.close();

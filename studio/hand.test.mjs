@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { browser as launched, doing, endAll, opened, problemText, shots, status, studio } from "./harness.mjs";
+import { doing, endAll, browser as launched, opened, problemText, shots, status, studio } from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-hand-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
@@ -24,7 +24,8 @@ let port = 18500;
 
 /** A studio on a port of its own, with a page. */
 async function begun(file, options) {
-  const running = await studio("--port", String(port += 1), "--out", join(work, "results"), ...(file ? [file] : []));
+  port += 1;
+  const running = await studio("--port", String(port), "--out", join(work, "results"), ...(file ? [file] : []));
   return { ...running, ...(await opened(browser, running.address, options)) };
 }
 
@@ -33,15 +34,19 @@ const button = (page, name) => page.getByRole("button", { name, exact: true });
 const texts = (page) => page.locator("#coordinates").inputValue();
 
 /** The middle of something on the board. */
-const middle = (page, selector) => page.evaluate((selector) => {
-  const { x, y, width, height } = document.querySelector(selector).getBoundingClientRect();
-  return [x + width / 2, y + height / 2];
-}, selector);
+const middle = (page, selector) =>
+  page.evaluate((selector) => {
+    const { x, y, width, height } = document.querySelector(selector).getBoundingClientRect();
+    return [x + width / 2, y + height / 2];
+  }, selector);
 
 /** Draws with the pen around a place, in parts of the board. */
 async function drawn(page, at = [0.5, 0.45], size = 0.2) {
   const box = await page.locator("#board svg").boundingBox();
-  const place = (t) => [box.x + box.width * (at[0] + size * Math.cos(t)), box.y + box.height * (at[1] + size * Math.sin(t) + 0.04 * Math.cos(2 * t))];
+  const place = (t) => [
+    box.x + box.width * (at[0] + size * Math.cos(t)),
+    box.y + box.height * (at[1] + size * Math.sin(t) + 0.04 * Math.cos(2 * t)),
+  ];
   await page.mouse.move(...place(0));
   await page.mouse.down();
   for (let i = 1; i <= 60; i += 1) await page.mouse.move(...place((i * 2 * Math.PI) / 60));
@@ -57,7 +62,8 @@ test("a click on a point chooses it and changes nothing; what is dragged is all 
   assert.equal(await problemText(page), before);
   assert.ok(await button(page, "Undo").isDisabled(), "there is nothing to undo");
   // One of nine points with sixteen digits is dragged: the others keep theirs.
-  const points = (text) => [...text.match(/points = (\[[^]*?\n?\])\n/)[1].matchAll(/\[(-?[\d.e-]+), (-?[\d.e-]+)\]/g)].map((one) => one[0]);
+  const points = (text) =>
+    [...text.match(/points = (\[[\s\S]*?\n?\])\n/)[1].matchAll(/\[(-?[\d.e-]+), (-?[\d.e-]+)\]/g)].map((one) => one[0]);
   await page.locator("#board svg").scrollIntoViewIfNeeded();
   const [x, y] = await middle(page, ".handle[data-point='4']");
   await page.mouse.move(x, y);
@@ -66,7 +72,10 @@ test("a click on a point chooses it and changes nothing; what is dragged is all 
   await page.mouse.up();
   const [old, now] = [points(before), points(await problemText(page))];
   assert.equal(now.length, 9);
-  assert.deepEqual(now.map((point, i) => (point === old[i] ? "" : i)).filter((i) => i !== ""), [4]);
+  assert.deepEqual(
+    now.map((point, i) => (point === old[i] ? "" : i)).filter((i) => i !== ""),
+    [4],
+  );
   await button(page, "Undo").click();
   assert.equal(await problemText(page), before);
   // A click clears no step that can be done again.
@@ -80,7 +89,10 @@ test("a click on a point chooses it and changes nothing; what is dragged is all 
 
 test("digitised points stay what they are when one is clicked", async () => {
   const file = join(work, "raw.toml");
-  writeFileSync(file, `format = 1\nname = "raw"\n[task.path]\npoints = [${Array.from({ length: 24 }, (_, i) => `[${30 * Math.cos(i / 4)}, ${20 * Math.sin(i / 4)}]`)}]\nsmooth = 0.4\nsamples = 16\n`);
+  writeFileSync(
+    file,
+    `format = 1\nname = "raw"\n[task.path]\npoints = [${Array.from({ length: 24 }, (_, i) => `[${30 * Math.cos(i / 4)}, ${20 * Math.sin(i / 4)}]`)}]\nsmooth = 0.4\nsamples = 16\n`,
+  );
   const { page, context, end } = await begun(file);
   assert.match(await page.locator("#kept").textContent(), /24 digitised points/);
   await page.mouse.click(...(await middle(page, ".handle[data-point='3']")));
@@ -106,7 +118,12 @@ test("what is gone stays gone: after Clear no answer to the old target comes bac
   // Three clicked points are a new target, whatever the old one's linkages were.
   await button(page, "Points").click();
   const box = await page.locator("#board svg").boundingBox();
-  for (const [x, y] of [[0.3, 0.5], [0.5, 0.3], [0.7, 0.5]]) await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
+  for (const [x, y] of [
+    [0.3, 0.5],
+    [0.5, 0.3],
+    [0.7, 0.5],
+  ])
+    await page.mouse.click(box.x + x * box.width, box.y + y * box.height);
   await page.waitForSelector("#strip li");
   assert.deepEqual(said, []);
   await context.close();
@@ -155,13 +172,19 @@ test("two fingers move and zoom, a palm and a lost pointer leave nothing behind"
   await fingers("touchEnd");
   assert.ok(await button(page, "Undo").isDisabled());
   // A palm beside a pen draws nothing, and a stroke whose pointer is taken away is none.
-  const touch = (type, id, x, y, pointerType = "touch") => page.evaluate(([type, pointerId, x, y, pointerType]) => {
-    const svg = document.querySelector("#board svg");
-    svg.setPointerCapture = () => {};
-    const box = svg.getBoundingClientRect();
-    const [clientX, clientY] = [box.x + x * box.width, box.y + y * box.height];
-    svg.dispatchEvent(new PointerEvent(type, { bubbles: true, cancelable: true, pointerId, pointerType, clientX, clientY }));
-  }, [type, id, x, y, pointerType]);
+  const touch = (type, id, x, y, pointerType = "touch") =>
+    page.evaluate(
+      ([type, pointerId, x, y, pointerType]) => {
+        const svg = document.querySelector("#board svg");
+        svg.setPointerCapture = () => {};
+        const box = svg.getBoundingClientRect();
+        const [clientX, clientY] = [box.x + x * box.width, box.y + y * box.height];
+        svg.dispatchEvent(
+          new PointerEvent(type, { bubbles: true, cancelable: true, pointerId, pointerType, clientX, clientY }),
+        );
+      },
+      [type, id, x, y, pointerType],
+    );
   await touch("pointerdown", 3, 0.3, 0.3, "pen");
   for (let i = 1; i <= 20; i += 1) {
     await touch("pointermove", 3, 0.3 + i / 50, 0.3, "pen");
@@ -169,7 +192,16 @@ test("two fingers move and zoom, a palm and a lost pointer leave nothing behind"
     if (i > 5) await touch("pointermove", 4, 0.9, 0.9 - i / 50);
   }
   const line = await page.locator(".board .stroke").getAttribute("d");
-  assert.equal(new Set(line.slice(1).split("L").map((point) => point.split(" ")[1])).size, 1, "one straight line");
+  assert.equal(
+    new Set(
+      line
+        .slice(1)
+        .split("L")
+        .map((point) => point.split(" ")[1]),
+    ).size,
+    1,
+    "one straight line",
+  );
   await touch("pointercancel", 3, 0.7, 0.3, "pen");
   assert.equal(await problemText(page), before);
   assert.deepEqual(said, []);
@@ -183,9 +215,13 @@ test("a new stroke begins a new path: what belonged to the old points goes, what
   await drawn(page);
   await doing(page, "done");
   const text = await problemText(page);
-  for (const gone of ["crank_deg", "weight", "[design]", "source"]) assert.ok(!text.includes(gone), `${gone} in\n${text}`);
+  for (const gone of ["crank_deg", "weight", "[design]", "source"])
+    assert.ok(!text.includes(gone), `${gone} in\n${text}`);
   assert.ok(await page.locator("#kept").isHidden());
-  assert.match(await page.locator("#stays").textContent(), /Still asked as before: driven by, longest over shortest link\./);
+  assert.match(
+    await page.locator("#stays").textContent(),
+    /Still asked as before: driven by, longest over shortest link\./,
+  );
   await button(page, "Ask nothing but the path").click();
   await page.locator("#transmission").fill("25");
   await page.keyboard.press("Tab");
@@ -271,7 +307,10 @@ test("Ctrl+Z undoes from every control that is no text; texts that were typed ar
 test("the focus stays where work is done", async () => {
   const { page, said, context, end } = await begun();
   await doing(page, "done");
-  const focus = () => page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent.slice(0, 40));
+  const focus = () =>
+    page.evaluate(
+      () => document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent.slice(0, 40),
+    );
   await page.getByRole("button", { name: "Got it" }).focus();
   await page.keyboard.press("Enter");
   assert.match(await focus(), /^The target/);
@@ -314,7 +353,13 @@ test("each tab keeps its own drawing; another problem from the command line is a
   await page.waitForSelector("#strip li");
   assert.equal(await texts(page), mine);
   await first.end();
-  const second = await studio("--port", String(port), "--out", join(work, "results"), join(problems, "examples/pivot-box.toml"));
+  const second = await studio(
+    "--port",
+    String(port),
+    "--out",
+    join(work, "results"),
+    join(problems, "examples/pivot-box.toml"),
+  );
   await page.goto(second.address);
   if (process.env.PAGE) await page.goto(new URL("/", second.address).href);
   await page.waitForFunction(() => document.querySelector("#left").value === "-20");

@@ -14,14 +14,25 @@ export function browser() {
   const local = built ? ["--disable-features=LocalNetworkAccessChecks"] : [];
   return chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync", ...local],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      ...local,
+    ],
   });
 }
 
 const running = new Set();
 
 /** Ends what a failed test has left. */
-export const endAll = () => running.forEach((child) => child.kill("SIGKILL"));
+export function endAll() {
+  for (const child of running) child.kill("SIGKILL");
+}
 
 /** A studio of its own; its address, and how to end it. */
 export async function studio(...options) {
@@ -32,16 +43,35 @@ export async function studio(...options) {
     child.stdout.once("data", (text) => tell(String(text).trim()));
     child.once("exit", (code) => fail(new Error(`the studio ended with ${code}`)));
   });
-  return { address, child, end: () => new Promise((ended) => { child.once("exit", ended); child.kill("SIGINT"); }) };
+  return {
+    address,
+    child,
+    end: () =>
+      new Promise((ended) => {
+        child.once("exit", ended);
+        child.kill("SIGINT");
+      }),
+  };
 }
 
 /** A page of it, watched: what the console says is kept. In a context of its own, or one more in `context`. */
 export async function opened(browser, address, { context: shared, ...options } = {}) {
-  const context = shared ?? (await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options }));
+  const context =
+    shared ?? (await browser.newContext({ viewport: { width: 1280, height: 900 }, acceptDownloads: true, ...options }));
   if (built && !shared) {
-    const headers = { "content-security-policy": "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:" };
-    for (const [path, file, contentType] of [["/app.js", "app.js", "text/javascript"], ["/style.css", "style.css", "text/css"], ["/", "index.html", "text/html; charset=utf-8"]]) {
-      await context.route((url) => url.pathname === path && !url.search, (route) => route.fulfill({ body: readFileSync(`${built}/${file}`), contentType, headers }));
+    const headers = {
+      "content-security-policy":
+        "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:",
+    };
+    for (const [path, file, contentType] of [
+      ["/app.js", "app.js", "text/javascript"],
+      ["/style.css", "style.css", "text/css"],
+      ["/", "index.html", "text/html; charset=utf-8"],
+    ]) {
+      await context.route(
+        (url) => url.pathname === path && !url.search,
+        (route) => route.fulfill({ body: readFileSync(`${built}/${file}`), contentType, headers }),
+      );
     }
   }
   const page = await context.newPage();
@@ -57,10 +87,18 @@ export async function opened(browser, address, { context: shared, ...options } =
 export const status = (page) => page.locator("#status").textContent();
 
 /** Waits until the last edit is answered and this is done for it. */
-export const doing = (page, what) => page.waitForFunction((what) => document.body.dataset.doing === what && document.body.dataset.answered === document.body.dataset.asked, what, { timeout: 90_000 });
+export const doing = (page, what) =>
+  page.waitForFunction(
+    (what) => document.body.dataset.doing === what && document.body.dataset.answered === document.body.dataset.asked,
+    what,
+    { timeout: 90_000 },
+  );
 
 /** The problem file that the page saves. */
 export async function problemText(page) {
-  const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name: "Problem file" }).click()]);
+  const [download] = await Promise.all([
+    page.waitForEvent("download"),
+    page.getByRole("button", { name: "Problem file" }).click(),
+  ]);
   return readFileSync(await download.path(), "utf8");
 }

@@ -6,7 +6,7 @@ import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { browser as launched, doing, endAll, opened, shots, status, studio } from "./harness.mjs";
+import { doing, endAll, browser as launched, opened, shots, status, studio } from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-pins-"));
 const problems = new URL("../problems/", import.meta.url).pathname;
@@ -23,14 +23,16 @@ after(async () => {
 });
 
 async function begun(...options) {
-  const running = await studio("--port", String(port += 1), "--out", join(work, `results-${port}`), ...options);
+  port += 1;
+  const running = await studio("--port", String(port), "--out", join(work, `results-${port}`), ...options);
   return { ...running, ...(await opened(browser, running.address)) };
 }
 
 const shot = (page, name) => shots && page.screenshot({ path: join(shots, `${name}.png`), fullPage: true });
 const button = (page, name) => page.getByRole("button", { name, exact: true });
 const pressed = (page) => page.locator(".pick[aria-pressed=true] strong").allTextContents();
-const said = (page, says) => page.waitForFunction((says) => new RegExp(says).test(document.querySelector("#desk-said").textContent), says.source);
+const said = (page, says) =>
+  page.waitForFunction((says) => new RegExp(says).test(document.querySelector("#desk-said").textContent), says.source);
 
 async function saved(page, act) {
   const [download] = await Promise.all([page.waitForEvent("download"), act()]);
@@ -38,7 +40,10 @@ async function saved(page, act) {
 }
 
 /** The numbers of the linkage that the page saves, to what a search changes of one that it has found again. */
-const linkage = async (page) => (await saved(page, () => button(page, "Linkage file").click())).text.match(/(?<= |\[)-?\d+\.\d+(e-?\d+)?/g).map((number) => Number(number).toFixed(2).replace("-0.00", "0.00"));
+const linkage = async (page) =>
+  (await saved(page, () => button(page, "Linkage file").click())).text
+    .match(/(?<= |\[)-?\d+\.\d+(e-?\d+)?/g)
+    .map((number) => Number(number).toFixed(2).replace("-0.00", "0.00"));
 
 test("what is chosen stays chosen while candidates come, go and change places", async () => {
   const { page, said: console_, context, end } = await begun();
@@ -110,7 +115,9 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   // Everything about it, as it was found.
   await card.click();
   await page.locator("#details summary").click();
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+  );
   await page.waitForSelector(".details-charts figure");
   await page.locator("#format").selectOption("toml");
   const file = await saved(page, () => page.locator("#export").click());
@@ -121,13 +128,17 @@ test("pins keep their target: shown, compared, saved beside another; none is dro
   await page.locator(".pick", { hasText: "Linkage 2" }).click();
   await button(page, "Compare").click();
   await page.waitForSelector("#comparison tbody tr:nth-child(4)");
-  const names = (await page.locator("#comparison tbody th").allTextContents()).map((text) => text.replace(/^\d+\. /, ""));
+  const names = (await page.locator("#comparison tbody th").allTextContents()).map((text) =>
+    text.replace(/^\d+\. /, ""),
+  );
   assert.deepEqual(names.sort(), ["on the board", "pinned 1", "pinned 2", "pinned 3"]);
   assert.doesNotMatch(await page.locator("#comparison").textContent(), /not true/);
   await shot(page, "compared");
   // A pin's target is drawn again, and that is one step.
   await card.click();
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+  );
   await button(page, "Draw its target").click();
   assert.equal(await page.locator("#point-count").textContent(), "19");
   await button(page, "Undo").click();
@@ -145,7 +156,9 @@ test("the details say whether they are of what stands, and what they save is wha
   const { page, said: console_, context, end } = await begun();
   await doing(page, "done");
   await page.locator("#details summary").click();
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+  );
   await page.locator("#format").selectOption("json");
   const save = async () => JSON.parse((await saved(page, () => page.locator("#export").click())).text);
   const before = await save();
@@ -157,19 +170,31 @@ test("the details say whether they are of what stands, and what they save is wha
   await page.mouse.move(x, y);
   await page.mouse.down();
   for (let i = 1; i <= 10; i += 1) await page.mouse.move(x, y - i);
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stood");
-  assert.deepEqual(await page.evaluate(async () => {
-    const asked = [];
-    const { fetch } = window;
-    window.fetch = (path, init) => { asked.push([path, init?.body]); return fetch(path, init); };
-    document.querySelector("#export").click();
-    await new Promise((later) => { setTimeout(later, 500); });
-    window.fetch = fetch;
-    return asked.filter(([path]) => path === "/export").map(([, body]) => JSON.parse(body).of.drawn.linkage.a);
-  }), [before.a ?? before.linkage.a]);
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "walking-step, as it stood",
+  );
+  assert.deepEqual(
+    await page.evaluate(async () => {
+      const asked = [];
+      const { fetch } = window;
+      window.fetch = (path, init) => {
+        asked.push([path, init?.body]);
+        return fetch(path, init);
+      };
+      document.querySelector("#export").click();
+      await new Promise((later) => {
+        setTimeout(later, 500);
+      });
+      window.fetch = fetch;
+      return asked.filter(([path]) => path === "/export").map(([, body]) => JSON.parse(body).of.drawn.linkage.a);
+    }),
+    [before.a ?? before.linkage.a],
+  );
   await page.mouse.up();
   await doing(page, "done");
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "walking-step, as it stands");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "walking-step, as it stands",
+  );
   assert.notDeepEqual(await save(), before);
   assert.deepEqual(console_, []);
   await context.close();
@@ -180,21 +205,28 @@ test("a long search is of what is drawn, under its name, with the budget of the 
   const { page, context, end } = await begun();
   await doing(page, "done");
   const asked = [];
-  page.on("request", (request) => request.url().endsWith("/jobs") && request.method() === "POST" && asked.push(request.postDataJSON()));
+  page.on(
+    "request",
+    (request) => request.url().endsWith("/jobs") && request.method() === "POST" && asked.push(request.postDataJSON()),
+  );
   await page.locator("#example-choice").selectOption("1");
   await page.locator("#example").click();
   await doing(page, "done");
   assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke");
   assert.equal(await page.locator("#job-name").inputValue(), "");
   await page.locator("#job-start").click();
-  await page.waitForFunction(() => document.querySelector("#jobs li")?.dataset.state === "done", null, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector("#jobs li")?.dataset.state === "done", null, {
+    timeout: 60_000,
+  });
   assert.equal(asked.length, 1);
   assert.deepEqual([asked[0].ask.name, asked[0].set], ["straight-stroke", undefined]);
   assert.equal(await page.locator("#job-name").getAttribute("placeholder"), "straight-stroke-2");
   // Opened and pinned, it has its own target; the focus stays in its row.
   await page.getByRole("button", { name: "Open straight-stroke" }).focus();
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => document.querySelector("#details-title").textContent === "straight-stroke, candidate");
+  await page.waitForFunction(
+    () => document.querySelector("#details-title").textContent === "straight-stroke, candidate",
+  );
   assert.equal(await page.evaluate(() => document.activeElement.getAttribute("aria-label")), "Open straight-stroke");
   await page.locator("#details-pin").click();
   assert.equal(await button(page, "Unpin pinned 1").count(), 1);
@@ -212,8 +244,13 @@ test("a tab that is not served is told why; a beginning that did not come is ask
   assert.doesNotMatch(await status(other), /Start it again/);
   await other.close();
   // A busy studio gives no beginning: a reload gives it.
-  await page.evaluate(() => { sessionStorage.clear(); localStorage.clear(); });
-  await page.route("**/beginning.json", (route) => route.fulfill({ status: 429, body: "too many requests\n" }), { times: 1 });
+  await page.evaluate(() => {
+    sessionStorage.clear();
+    localStorage.clear();
+  });
+  await page.route("**/beginning.json", (route) => route.fulfill({ status: 429, body: "too many requests\n" }), {
+    times: 1,
+  });
   await page.reload();
   await page.waitForSelector("#strip li");
   assert.equal(await page.locator("#name").inputValue(), "walking-step");

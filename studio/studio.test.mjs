@@ -6,7 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { browser as launched, doing, endAll, opened as openedIn, program, shots, status, studio } from "./harness.mjs";
+import { doing, endAll, browser as launched, opened as openedIn, program, shots, status, studio } from "./harness.mjs";
 
 const work = mkdtempSync(join(tmpdir(), "studio-"));
 let browser;
@@ -26,7 +26,10 @@ const opened = (address, options) => openedIn(browser, address, options);
 /** Draws a closed curve with the pen. */
 async function drawn(page) {
   const box = await page.locator("#board svg").boundingBox();
-  const at = (t) => [box.x + box.width * (0.5 + 0.24 * Math.cos(t)), box.y + box.height * (0.45 + 0.2 * Math.sin(t) + 0.05 * Math.cos(2 * t))];
+  const at = (t) => [
+    box.x + box.width * (0.5 + 0.24 * Math.cos(t)),
+    box.y + box.height * (0.45 + 0.2 * Math.sin(t) + 0.05 * Math.cos(2 * t)),
+  ];
   await page.mouse.move(...at(0));
   await page.mouse.down();
   for (let i = 1; i <= 80; i += 1) await page.mouse.move(...at((i * 2 * Math.PI) / 80));
@@ -57,15 +60,24 @@ test("draw, drag, pin, save, reload, restart", async () => {
   assert.equal(await page.locator("#point-count").textContent(), "60");
   assert.ok(await page.locator("#closed").isChecked());
   const up = Date.now();
-  await page.waitForFunction(() => document.body.dataset.answered === document.body.dataset.asked && document.querySelectorAll("#strip li").length > 0);
+  await page.waitForFunction(
+    () =>
+      document.body.dataset.answered === document.body.dataset.asked &&
+      document.querySelectorAll("#strip li").length > 0,
+  );
   console.log(`first candidate ${Date.now() - up} ms after the pen went up`);
   await doing(page, "done");
   // A point is dragged to and fro: answers follow.
   await page.evaluate(() => {
     window.answers = new Set();
-    new MutationObserver(() => window.answers.add(document.body.dataset.answered)).observe(document.body, { attributes: true });
+    new MutationObserver(() => window.answers.add(document.body.dataset.answered)).observe(document.body, {
+      attributes: true,
+    });
   });
-  const handle = await page.evaluate(() => { const { x, y, width, height } = document.querySelectorAll(".handle")[15].getBoundingClientRect(); return { x, y, width, height }; });
+  const handle = await page.evaluate(() => {
+    const { x, y, width, height } = document.querySelectorAll(".handle")[15].getBoundingClientRect();
+    return { x, y, width, height };
+  });
   const [x, y] = [handle.x + handle.width / 2, handle.y + handle.height / 2];
   await page.mouse.move(x, y);
   await page.mouse.down();
@@ -116,7 +128,9 @@ test("draw, drag, pin, save, reload, restart", async () => {
   assert.equal(await page.getByRole("button", { name: "Unpin pinned 1" }).count(), 1);
   assert.deepEqual(said, []);
   assert.equal(await first.end(), 0);
-  await page.waitForFunction(() => document.querySelector("#status").textContent.includes("does not answer"), null, { timeout: 15_000 });
+  await page.waitForFunction(() => document.querySelector("#status").textContent.includes("does not answer"), null, {
+    timeout: 15_000,
+  });
   const second = await studio("--port", "18472");
   await page.goto(second.address);
   await doing(page, "done");
@@ -159,7 +173,11 @@ test("by keyboard alone: points typed, requirements set, a point moved, a linkag
   await page.getByRole("button", { name: "Take these points" }).click();
   assert.match(await status(page), /line 2/);
   // Everything that can be used has a name.
-  const nameless = await page.evaluate(() => [...document.querySelectorAll("button, input, select, textarea")].filter((one) => !(one.labels?.length || one.textContent.trim() || one.getAttribute("aria-label"))).map((one) => one.id));
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll("button, input, select, textarea")]
+      .filter((one) => !(one.labels?.length || one.textContent.trim() || one.getAttribute("aria-label")))
+      .map((one) => one.id),
+  );
   assert.deepEqual(nameless, []);
   assert.deepEqual(said, []);
   await context.close();
@@ -167,11 +185,18 @@ test("by keyboard alone: points typed, requirements set, a point moved, a linkag
 });
 
 test("a problem file begins, its pivot box is drawn and can be moved", async () => {
-  const { address, end } = await studio("--port", "18474", new URL("../problems/examples/pivot-box.toml", import.meta.url).pathname);
+  const { address, end } = await studio(
+    "--port",
+    "18474",
+    new URL("../problems/examples/pivot-box.toml", import.meta.url).pathname,
+  );
   const { page, said, context } = await opened(address);
   assert.equal(await page.locator("#left").inputValue(), "-20");
   // It is drawn anew while the search goes on.
-  const corner = await page.evaluate(() => { const { x, y } = document.querySelectorAll(".corner")[2].getBoundingClientRect(); return { x, y }; });
+  const corner = await page.evaluate(() => {
+    const { x, y } = document.querySelectorAll(".corner")[2].getBoundingClientRect();
+    return { x, y };
+  });
   await page.mouse.move(corner.x + 6, corner.y + 6);
   await page.mouse.down();
   await page.mouse.move(corner.x + 40, corner.y - 20, { steps: 4 });
@@ -189,13 +214,18 @@ test("a problem file begins, its pivot box is drawn and can be moved", async () 
 test("two sizes, light and dark, without a sideways scroll; ten tabs all progress within 500 MB", async () => {
   const { address, child, end } = await studio("--port", "18475");
   const { page, context } = await opened(address, { reducedMotion: "reduce" });
-  for (const [width, height] of [[1280, 900], [390, 844]]) {
+  for (const [width, height] of [
+    [1280, 900],
+    [390, 844],
+  ]) {
     for (const colorScheme of ["light", "dark"]) {
       await page.setViewportSize({ width, height });
       await page.emulateMedia({ colorScheme });
       await page.getByRole("button", { name: "Show all" }).click();
       await page.waitForTimeout(150);
-      const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const over = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
       assert.ok(over <= 0, `${over} px wider than ${width}`);
       if (shots) await page.screenshot({ path: join(shots, `studio-${width}-${colorScheme}.png`), fullPage: true });
     }
@@ -203,25 +233,54 @@ test("two sizes, light and dark, without a sideways scroll; ten tabs all progres
   await page.setViewportSize({ width: 1280, height: 900 });
   const tabs = [page];
   for (let i = 1; i < 10; i += 1) tabs.push((await opened("http://127.0.0.1:18475/", { context })).page);
-  await Promise.all(tabs.map((tab) => tab.evaluate(() => {
-    const text = document.querySelector("#tolerance");
-    text.value = "0.0001";
-    text.dispatchEvent(new Event("change"));
-  })));
-  await Promise.all(tabs.map((tab) => tab.waitForFunction(() => ["searching", "done"].includes(document.body.dataset.doing) && document.querySelectorAll("#strip li").length > 0, null, { timeout: 60_000 })));
+  await Promise.all(
+    tabs.map((tab) =>
+      tab.evaluate(() => {
+        const text = document.querySelector("#tolerance");
+        text.value = "0.0001";
+        text.dispatchEvent(new Event("change"));
+      }),
+    ),
+  );
+  await Promise.all(
+    tabs.map((tab) =>
+      tab.waitForFunction(
+        () =>
+          ["searching", "done"].includes(document.body.dataset.doing) &&
+          document.querySelectorAll("#strip li").length > 0,
+        null,
+        { timeout: 60_000 },
+      ),
+    ),
+  );
   const memory = Number(readFileSync(`/proc/${child.pid}/status`, "utf8").match(/VmHWM:\s+(\d+)/)[1]) / 1024;
   console.log(`ten tabs: ${memory.toFixed(0)} MB at most`);
   assert.ok(memory < 500);
   // One tab's hand is still answered.
   await tabs[3].bringToFront();
   await drawn(tabs[3]);
-  await tabs[3].waitForFunction(() => document.body.dataset.answered === document.body.dataset.asked && document.querySelectorAll("#strip li").length > 0, null, { timeout: 20_000 });
+  await tabs[3].waitForFunction(
+    () =>
+      document.body.dataset.answered === document.body.dataset.asked &&
+      document.querySelectorAll("#strip li").length > 0,
+    null,
+    { timeout: 20_000 },
+  );
   await context.close();
   // Closed tabs work no more.
-  const time = () => readFileSync(`/proc/${child.pid}/stat`, "utf8").split(") ")[1].split(" ").slice(11, 13).reduce((sum, t) => sum + Number(t), 0);
-  await new Promise((later) => { setTimeout(later, 1500); });
+  const time = () =>
+    readFileSync(`/proc/${child.pid}/stat`, "utf8")
+      .split(") ")[1]
+      .split(" ")
+      .slice(11, 13)
+      .reduce((sum, t) => sum + Number(t), 0);
+  await new Promise((later) => {
+    setTimeout(later, 1500);
+  });
   const [at] = [time()];
-  await new Promise((later) => { setTimeout(later, 1000); });
+  await new Promise((later) => {
+    setTimeout(later, 1000);
+  });
   assert.ok(time() - at < 30, `${time() - at} hundredths of a second of work with no tab open`);
   assert.equal(await end(), 0);
 });

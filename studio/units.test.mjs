@@ -7,7 +7,13 @@ import { build } from "esbuild";
 /** A module of the page. */
 async function part(name) {
   const entry = new URL(`src/${name}.ts`, import.meta.url).pathname;
-  const { outputFiles } = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false, logLevel: "error" });
+  const { outputFiles } = await build({
+    entryPoints: [entry],
+    bundle: true,
+    format: "esm",
+    write: false,
+    logLevel: "error",
+  });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
 }
 
@@ -18,19 +24,30 @@ const { Steps } = await part("memory");
 const { resized } = await part("boxes");
 
 test("a moved point takes none with it of precise ones, and none is rounded that does not move", () => {
-  const far = [[1000.123, 500.4567], [1003.5671, 501.1], [1005.00213, 499.777], [1002.1234567890123, 498]];
+  const far = [
+    [1000.123, 500.4567],
+    [1003.5671, 501.1],
+    [1005.00213, 499.777],
+    [1002.1234567890123, 498],
+  ];
   const now = moved(far, 1, [1003.61234567, 501.2], false);
   assert.deepEqual([now[0], now[2], now[3]], [far[0], far[2], far[3]]);
   assert.deepEqual(now[1], [1003.6123, 501.2]);
   // Of a dense curve the neighbours come along, and the far side stays to the last digit.
-  const circle = Array.from({ length: 60 }, (_, i) => [1000 + Math.cos((i * Math.PI) / 30), 2000 + Math.sin((i * Math.PI) / 30)]);
+  const circle = Array.from({ length: 60 }, (_, i) => [
+    1000 + Math.cos((i * Math.PI) / 30),
+    2000 + Math.sin((i * Math.PI) / 30),
+  ]);
   const pulled = moved(circle, 0, [1001.5, 2000], true);
   assert.deepEqual(pulled.slice(10, 50), circle.slice(10, 50));
   assert.ok(pulled[3][0] > circle[3][0] + 0.1);
 });
 
 test("a small stroke far from the origin keeps its shape", () => {
-  const stroke = Array.from({ length: 100 }, (_, i) => [5000 + Math.cos((i * 2 * Math.PI) / 99), 8000 + Math.sin((i * 2 * Math.PI) / 99)]);
+  const stroke = Array.from({ length: 100 }, (_, i) => [
+    5000 + Math.cos((i * 2 * Math.PI) / 99),
+    8000 + Math.sin((i * 2 * Math.PI) / 99),
+  ]);
   const { points, closed } = ofStroke(stroke, 1);
   assert.ok(closed);
   for (const [x, y] of points) assert.ok(Math.abs(Math.hypot(x - 5000, y - 8000) - 1) < 0.03, `${x} ${y}`);
@@ -38,13 +55,32 @@ test("a small stroke far from the origin keeps its shape", () => {
 
 test("boxes far from the origin are as fine as their size", () => {
   assert.deepEqual(resized([1000, 1000, 1002, 1003], 2, [1002.3456, 1003.777], 0.01), [1000, 1000, 1002.346, 1003.777]);
-  const [left, low, right, high] = pivotsBelow([[1000.2, 50], [1001.6, 51]]);
-  assert.ok(left < 1000.2 && right > 1001.6 && high < 50 && low < high && right - left < 4, `${left} ${low} ${right} ${high}`);
+  const [left, low, right, high] = pivotsBelow([
+    [1000.2, 50],
+    [1001.6, 51],
+  ]);
+  assert.ok(
+    left < 1000.2 && right > 1001.6 && high < 50 && low < high && right - left < 4,
+    `${left} ${low} ${right} ${high}`,
+  );
 });
 
 test("texts of bare numbers: what could be read in two ways is refused with its line and the remedy", () => {
-  for (const text of ["0,0\n10, 4\n20,5", "0 0\n10   4\n20\t5", "x,y\n0,0\n10,4\n20 5 # the last", "x y\n0\t0\r\n10\t4\r\n2e1\t5\r\n"]) {
-    assert.deepEqual(ofText(text), [[0, 0], [10, 4], [20, 5]], text);
+  for (const text of [
+    "0,0\n10, 4\n20,5",
+    "0 0\n10   4\n20\t5",
+    "x,y\n0,0\n10,4\n20 5 # the last",
+    "x y\n0\t0\r\n10\t4\r\n2e1\t5\r\n",
+  ]) {
+    assert.deepEqual(
+      ofText(text),
+      [
+        [0, 0],
+        [10, 4],
+        [20, 5],
+      ],
+      text,
+    );
   }
   for (const [text, says] of [
     ["0,0\n1,5\t2,5", /^line 2: .*decimal point/],
@@ -65,7 +101,11 @@ test("texts of bare numbers: what could be read in two ways is refused with its 
 });
 
 test("a click on the line puts a point between, one beside it does not", () => {
-  const line = [[0, 0], [10, 0], [10, 10]];
+  const line = [
+    [0, 0],
+    [10, 0],
+    [10, 10],
+  ];
   assert.equal(segmentAt(line, [5, 0.4], false, 1), 0);
   assert.equal(segmentAt(line, [10.5, 6], false, 1), 1);
   assert.equal(segmentAt(line, [5, 5], false, 1), null);
@@ -74,7 +114,10 @@ test("a click on the line puts a point between, one beside it does not", () => {
 });
 
 test("a choice is a linkage, not a place in a list", () => {
-  const shown = (x, rms = 1) => ({ rms, linkage: { A: [x, 0], B: [100, 0], a: 20, b: 80, c: 60, d: 40, e: 10, t1: 1, t2: 1 } });
+  const shown = (x, rms = 1) => ({
+    rms,
+    linkage: { A: [x, 0], B: [100, 0], a: 20, b: 80, c: 60, d: 40, e: 10, t1: 1, t2: 1 },
+  });
   const all = [shown(0), shown(40), shown(-50)];
   const choice = { candidate: all[1] };
   // The same one, after another has come before it.
@@ -88,18 +131,45 @@ test("a choice is a linkage, not a place in a list", () => {
   assert.equal(followed(choice, [{ ...all[1], linkage: { ...all[1].linkage, t1: -1 } }]), null);
   // A pin stays itself, however many candidates there are.
   const pin = { shown: shown(40), task: {} };
-  for (const candidates of [[], all, more]) assert.equal(placeOf(followed({ pin }, candidates), candidates, [{}, pin]), candidates.length + 1);
+  for (const candidates of [[], all, more])
+    assert.equal(placeOf(followed({ pin }, candidates), candidates, [{}, pin]), candidates.length + 1);
   assert.deepEqual([placeOf(null, all, [pin]), placeOf(null, [], [pin])], [0, -1]);
 });
 
 test("a path that is drawn anew keeps what is asked of the linkage and nothing of the old points", () => {
   const old = {
-    name: "old", unit: "mm", source: "a paper", points: [[0, 0]], closed: false, types: ["crank-rocker"], seed: 7, tolerance: 0.5, tolerances: [1], weights: [2],
-    timing: { crank_deg: [0], offset: "free" }, raw: { points: [[0, 0]] }, kept: { "design.a": "[1, 2]" }, method: "genetic", transmission_deg_min: 40, pivots_in: [0, 0, 1, 1],
+    name: "old",
+    unit: "mm",
+    source: "a paper",
+    points: [[0, 0]],
+    closed: false,
+    types: ["crank-rocker"],
+    seed: 7,
+    tolerance: 0.5,
+    tolerances: [1],
+    weights: [2],
+    timing: { crank_deg: [0], offset: "free" },
+    raw: { points: [[0, 0]] },
+    kept: { "design.a": "[1, 2]" },
+    method: "genetic",
+    transmission_deg_min: 40,
+    pivots_in: [0, 0, 1, 1],
   };
-  const points = [[0, 0], [1, 1], [2, 0]];
+  const points = [
+    [0, 0],
+    [1, 1],
+    [2, 0],
+  ];
   assert.deepEqual(JSON.parse(JSON.stringify(drawnAnew(old, points, true))), {
-    name: "drawing", unit: "mm", points, closed: true, types: ["crank-rocker"], seed: 7, tolerance: 0.5, transmission_deg_min: 40, pivots_in: [0, 0, 1, 1],
+    name: "drawing",
+    unit: "mm",
+    points,
+    closed: true,
+    types: ["crank-rocker"],
+    seed: 7,
+    tolerance: 0.5,
+    transmission_deg_min: 40,
+    pivots_in: [0, 0, 1, 1],
   });
 });
 

@@ -7,27 +7,75 @@ export interface JobShown {
   state: "running" | "done" | "stopped" | "broken-off" | "elsewhere" | "failed" | "unreadable";
   said: string;
   resumable: boolean;
-  progress?: { phase: string; evaluations: number; budget: number; rate: number; best_rms?: number; accepted: boolean; elapsed_s: number; left_s?: number };
+  progress?: {
+    phase: string;
+    evaluations: number;
+    budget: number;
+    rate: number;
+    best_rms?: number;
+    accepted: boolean;
+    elapsed_s: number;
+    left_s?: number;
+  };
   result?: {
-    points: number; unit?: string; seed: number; method: string; candidates: number; accepted: number; evaluations: number; reproducible: boolean; version: string;
+    points: number;
+    unit?: string;
+    seed: number;
+    method: string;
+    candidates: number;
+    accepted: number;
+    evaluations: number;
+    reproducible: boolean;
+    version: string;
     best?: { rms: number; max: number; type: string; transmission_deg: number; accepted: boolean };
   };
 }
 
-export interface JobList { folder: string; jobs: JobShown[]; more: number }
+export interface JobList {
+  folder: string;
+  jobs: JobShown[];
+  more: number;
+}
 
-export interface Opened { ask?: Task & { version?: number }; why_not?: string; name: string; unit?: string; points: Point[]; closed: boolean; candidates: Shown[]; files: string[] }
+export interface Opened {
+  ask?: Task & { version?: number };
+  why_not?: string;
+  name: string;
+  unit?: string;
+  points: Point[];
+  closed: boolean;
+  candidates: Shown[];
+  files: string[];
+}
 
-export type Source = { job: { name: string; rank: number } } | { drawn: { ask: Task; linkage: Shown["linkage"]; crank_deg: number[]; t1_at: number[] } };
+export type Source =
+  | { job: { name: string; rank: number } }
+  | { drawn: { ask: Task; linkage: Shown["linkage"]; crank_deg: number[]; t1_at: number[] } };
 
 export interface Details {
-  name: string; unit?: string; points: Point[]; closed: boolean; tolerance?: number[]; transmission_deg_min?: number; candidates: number; shown: Shown; summary: string; words: string;
+  name: string;
+  unit?: string;
+  points: Point[];
+  closed: boolean;
+  tolerance?: number[];
+  transmission_deg_min?: number;
+  candidates: number;
+  shown: Shown;
+  summary: string;
+  words: string;
 }
 
 export interface Compared {
   unit: string | null;
   notes: string[];
-  rows: { rank: number; label: string; accepted: boolean; on_front: boolean; type: string; figures: Record<"rms" | "max" | "transmission" | "link_ratio" | "size", number | null> }[];
+  rows: {
+    rank: number;
+    label: string;
+    accepted: boolean;
+    on_front: boolean;
+    type: string;
+    figures: Record<"rms" | "max" | "transmission" | "link_ratio" | "size", number | null>;
+  }[];
 }
 
 /** An answer that is not what was asked for, in the studio's words. */
@@ -36,7 +84,12 @@ export class Refused extends Error {}
 async function answered(path: string, body?: unknown): Promise<Response> {
   let reply: Response;
   try {
-    reply = await fetch(path, body === undefined ? {} : { method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } });
+    reply = await fetch(
+      path,
+      body === undefined
+        ? {}
+        : { method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } },
+    );
   } catch {
     throw new Refused("the studio does not answer");
   }
@@ -54,19 +107,22 @@ export const details = async (of: Source) => (await answered("/details", { of })
 export const exported = async (of: Source, format: string) => (await answered("/export", { of, format })).blob();
 export const compared = async (of: Source[]) => (await answered("/compare", { of })).json() as Promise<Compared>;
 export const comparedAs = async (of: Source[], form: string) => (await answered("/compare", { of, form })).blob();
-export const read = async (text: { kind: string; name: string; text: string; unit?: string; samples?: number }) => (await answered("/read", text)).json() as Promise<Reading>;
+export const read = async (text: { kind: string; name: string; text: string; unit?: string; samples?: number }) =>
+  (await answered("/read", text)).json() as Promise<Reading>;
 /** A linkage as it stands, as a source of details, files and comparisons. */
 export function drawn({ shown: { linkage, crank_deg, t1_at }, task }: Solution): Source {
   return { drawn: { ask: task, linkage, crank_deg, t1_at } };
 }
 export const beginning = async () => (await answered("/beginning.json")).text();
-export const linkageOf = async (name: string, { shown, task }: Solution) => (await answered("/linkage.toml", { name, unit: task.unit, linkage: shown.linkage })).text();
+export const linkageOf = async (name: string, { shown, task }: Solution) =>
+  (await answered("/linkage.toml", { name, unit: task.unit, linkage: shown.linkage })).text();
 export const problemOf = async (task: Task) => (await answered("/problem.toml", { ...task, version: 0 })).text();
 
 /** Why the studio gives this tab no connection, in words. */
 export async function whyClosed(): Promise<string> {
   try {
-    if ((await fetch("/beginning.json")).ok) return "The studio answers, but serves no more tabs at once: close another one, and this one goes on.";
+    if ((await fetch("/beginning.json")).ok)
+      return "The studio answers, but serves no more tabs at once: close another one, and this one goes on.";
   } catch {
     // It has ended.
   }

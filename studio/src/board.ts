@@ -1,10 +1,19 @@
 // The board: the target under the hand, the linkage over it.
 
 import { figure, pathThrough, px, roundLength, setAll, shape } from "../../src/report/html/player/svg.mjs";
-import { type BoxKind, type Corner, between, boxShapes, cornerOf, inWords as cornerInWords, nextCorner, resized } from "./boxes";
+import {
+  type BoxKind,
+  between,
+  boxShapes,
+  type Corner,
+  inWords as cornerInWords,
+  cornerOf,
+  nextCorner,
+  resized,
+} from "./boxes";
 import { Figure, type Moving } from "./figures";
 import type { Box, Point, Task } from "./messages";
-import { type Grip, dragging, watchPointers } from "./pointers";
+import { dragging, type Grip, watchPointers } from "./pointers";
 import { ofStroke, segmentAt } from "./target";
 import { sizeOf, toleranceAt } from "./task";
 import type { Underlay } from "./underlay";
@@ -35,7 +44,13 @@ export interface Hand {
 }
 
 export class Board {
-  readonly svg = shape("svg", { class: "stage board", tabindex: 0, role: "application", "aria-label": "The target. Comma and full stop choose a point, B a corner of a box; the arrow keys move it, Delete removes it; square brackets change the tolerance." });
+  readonly svg = shape("svg", {
+    class: "stage board",
+    tabindex: 0,
+    role: "application",
+    "aria-label":
+      "The target. Comma and full stop choose a point, B a corner of a box; the arrow keys move it, Delete removes it; square brackets change the tolerance.",
+  });
   private back = shape("g");
   private pins = shape("g", { class: "pinned" });
   private mechanism = new Figure();
@@ -58,15 +73,38 @@ export class Board {
   tool: Tool = "draw";
   selected = -1;
 
-  constructor(private place: HTMLElement, private hand: Hand, private say: (text: string) => void, private underlay: Underlay) {
-    this.svg.append(this.underlay.group, this.back, this.boxGroup, this.sketch, this.pins, this.mechanism.group, this.marks, this.stroke, this.scaleBar);
+  constructor(
+    private place: HTMLElement,
+    private hand: Hand,
+    private say: (text: string) => void,
+    private underlay: Underlay,
+  ) {
+    this.svg.append(
+      this.underlay.group,
+      this.back,
+      this.boxGroup,
+      this.sketch,
+      this.pins,
+      this.mechanism.group,
+      this.marks,
+      this.stroke,
+      this.scaleBar,
+    );
     place.append(this.svg);
-    watchPointers(this.svg, (event) => this.take(event), (one, other) => this.pinch(one, other));
-    this.svg.addEventListener("wheel", (event: WheelEvent) => {
-      event.preventDefault();
-      this.touched = true;
-      this.zoom(Math.exp(-event.deltaY / 400), this.at(event));
-    }, { passive: false });
+    watchPointers(
+      this.svg,
+      (event) => this.take(event),
+      (one, other) => this.pinch(one, other),
+    );
+    this.svg.addEventListener(
+      "wheel",
+      (event: WheelEvent) => {
+        event.preventDefault();
+        this.touched = true;
+        this.zoom(Math.exp(-event.deltaY / 400), this.at(event));
+      },
+      { passive: false },
+    );
     this.svg.addEventListener("keydown", (event: KeyboardEvent) => this.key(event));
     new ResizeObserver(() => this.measure()).observe(place);
     this.measure();
@@ -82,21 +120,34 @@ export class Board {
     this.draw();
   }
 
-  toPixel = ([x, y]: Point): Point => [this.width / 2 + (x - this.view.x) * this.view.scale, this.height / 2 - (y - this.view.y) * this.view.scale];
+  toPixel = ([x, y]: Point): Point => [
+    this.width / 2 + (x - this.view.x) * this.view.scale,
+    this.height / 2 - (y - this.view.y) * this.view.scale,
+  ];
 
   private toPlane([x, y]: Point): Point {
-    return [this.view.x + (x - this.width / 2) / this.view.scale, this.view.y - (y - this.height / 2) / this.view.scale];
+    return [
+      this.view.x + (x - this.width / 2) / this.view.scale,
+      this.view.y - (y - this.height / 2) / this.view.scale,
+    ];
   }
 
   private at(event: { clientX: number; clientY: number }): Point {
     const box = this.svg.getBoundingClientRect();
-    return this.toPlane([((event.clientX - box.left) * this.width) / box.width, ((event.clientY - box.top) * this.height) / box.height]);
+    return this.toPlane([
+      ((event.clientX - box.left) * this.width) / box.width,
+      ((event.clientY - box.top) * this.height) / box.height,
+    ]);
   }
 
   zoom(by: number, around: Point = [this.view.x, this.view.y]) {
     const scale = Math.min(Math.max(this.view.scale * by, 1e-7), 1e7);
     const kept = this.view.scale / scale;
-    this.view = { scale, x: around[0] + (this.view.x - around[0]) * kept, y: around[1] + (this.view.y - around[1]) * kept };
+    this.view = {
+      scale,
+      x: around[0] + (this.view.x - around[0]) * kept,
+      y: around[1] + (this.view.y - around[1]) * kept,
+    };
     this.draw();
   }
 
@@ -105,14 +156,18 @@ export class Board {
     const points = this.task?.points ?? [];
     const box = this.moving?.box() ?? [Infinity, Infinity, -Infinity, -Infinity];
     const all: Point[] = [...points, [box[0], box[1]], [box[2], box[3]]];
-    for (const kept of [this.task?.pivots_in, this.task?.footprint_in]) if (kept) all.push([kept[0], kept[1]], [kept[2], kept[3]]);
+    for (const kept of [this.task?.pivots_in, this.task?.footprint_in])
+      if (kept) all.push([kept[0], kept[1]], [kept[2], kept[3]]);
     this.touched = false;
     const finite = all.filter((p) => p.every(Number.isFinite));
     if (finite.length === 0) return;
     const [xs, ys] = [finite.map((p) => p[0]), finite.map((p) => p[1])];
     const [left, right, low, high] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const size = Math.max(right - left, high - low, 1e-6);
-    const scale = Math.min((this.width - 70) / Math.max(right - left, size / 50), (this.height - 80) / Math.max(high - low, size / 50));
+    const scale = Math.min(
+      (this.width - 70) / Math.max(right - left, size / 50),
+      (this.height - 80) / Math.max(high - low, size / 50),
+    );
     this.view = { x: (left + right) / 2, y: (low + high) / 2, scale };
     this.draw();
   }
@@ -120,7 +175,7 @@ export class Board {
   /** Whether the whole linkage is in view. */
   get holdsAll(): boolean {
     const box = this.moving?.box();
-    if (!box || !box.every(Number.isFinite)) return true;
+    if (!box?.every(Number.isFinite)) return true;
     const [[left, top], [right, bottom]] = [this.toPixel([box[0], box[3]]), this.toPixel([box[2], box[1]])];
     return left > 4 && top > 4 && right < this.width - 4 && bottom < this.height - 4;
   }
@@ -148,7 +203,7 @@ export class Board {
   pose(part: number) {
     this.part = part;
     this.mechanism.pose(part);
-    this.ghosts.forEach((ghost) => ghost.pose(part));
+    for (const ghost of this.ghosts) ghost.pose(part);
   }
 
   private draw() {
@@ -159,33 +214,59 @@ export class Board {
     const many = spots.length > 24;
     this.underlay.draw(this.toPixel);
     const radii = spots.map((_, i) => (toleranceAt(task, i) ?? 0) * this.view.scale);
-    const circles = spots.flatMap(([cx, cy], i) => (radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : []));
-    const empty = spots.length === 0 ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, ["Draw a path here"])] : [];
-    this.back.replaceChildren(...empty, ...circles, shape("path", { class: "target-line", d: pathThrough(closedLine) }));
+    const circles = spots.flatMap(([cx, cy], i) =>
+      radii[i] > 1.5 ? [shape("circle", { class: "allowed", cx: px(cx), cy: px(cy), r: px(radii[i]) })] : [],
+    );
+    const empty =
+      spots.length === 0
+        ? [shape("text", { class: "invitation", x: px(this.width / 2), y: px(this.height / 2) }, ["Draw a path here"])]
+        : [];
+    this.back.replaceChildren(
+      ...empty,
+      ...circles,
+      shape("path", { class: "target-line", d: pathThrough(closedLine) }),
+    );
     const marks = spots.flatMap(([x, y], i) => {
       const [cx, cy] = [px(x), px(y)];
       const chosen = i === this.selected;
-      const dot = shape("circle", { class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`, cx, cy, r: chosen ? 6.5 : many ? 3.4 : 5 });
+      const dot = shape("circle", {
+        class: `target-point${i === 0 ? " first" : ""}${chosen ? " chosen" : ""}`,
+        cx,
+        cy,
+        r: chosen ? 6.5 : many ? 3.4 : 5,
+      });
       return [dot, shape("circle", { class: "handle", cx, cy, r: many ? 9 : 16, "data-point": i })];
     });
     // The rim of a circle can be drawn outwards and inwards where it does not lie on the point itself; the chosen one's lies on top.
     const rims = spots.flatMap(([x, y], i) => {
       if (!(i === this.selected || !many) || radii[i] <= 8) return [];
-      return [shape("circle", { class: "rim", cx: px(x + radii[i] * Math.SQRT1_2), cy: px(y - radii[i] * Math.SQRT1_2), r: 5, "data-rim": i })];
+      return [
+        shape("circle", {
+          class: "rim",
+          cx: px(x + radii[i] * Math.SQRT1_2),
+          cy: px(y - radii[i] * Math.SQRT1_2),
+          r: 5,
+          "data-rim": i,
+        }),
+      ];
     });
     const top = rims.findIndex((rim) => rim.getAttribute("data-rim") === String(this.selected));
     if (top >= 0) rims.push(...rims.splice(top, 1));
     this.marks.replaceChildren(...marks, ...rims);
     while (this.ghosts.length < this.pinned.length) this.ghosts.push(new Figure(0.8));
     this.pins.replaceChildren(...this.pinned.map((_, i) => this.ghosts[i].group));
-    this.pinned.forEach((moving, i) => this.ghosts[i].show(moving, this.toPixel));
+    this.pinned.forEach((moving, i) => {
+      this.ghosts[i].show(moving, this.toPixel);
+    });
     this.mechanism.show(this.moving, this.toPixel);
     this.drawBox();
     const length = roundLength((0.2 * this.width) / this.view.scale);
     const y = this.height - 14;
     this.scaleBar.replaceChildren(
       shape("path", { class: "scale", d: `M14 ${y - 4}v4h${px(length * this.view.scale)}v-4` }),
-      shape("text", { class: "scale-text", x: px(22 + length * this.view.scale), y }, [`${Number(length.toPrecision(3))}${task.unit ? ` ${task.unit}` : ""}`]),
+      shape("text", { class: "scale-text", x: px(22 + length * this.view.scale), y }, [
+        `${Number(length.toPrecision(3))}${task.unit ? ` ${task.unit}` : ""}`,
+      ]),
     );
     // Another view of one that stands still.
     this.pose(this.part);
@@ -217,7 +298,12 @@ export class Board {
 
   /** A grip that changes something from the first real movement on; what it had changed can be given up. */
   private changing(start: PointerEvent, step: Grip["step"]): Grip {
-    return dragging(start, () => this.hand.grasp(), step, () => this.hand.letGo());
+    return dragging(
+      start,
+      () => this.hand.grasp(),
+      step,
+      () => this.hand.letGo(),
+    );
   }
 
   private pan(start: PointerEvent): Grip {
@@ -251,10 +337,15 @@ export class Board {
     const from = this.at(start);
     this.select(index);
     const held = this.task?.points[index] ?? from;
-    return dragging(start, begin, (event, last) => {
-      const now = this.at(event);
-      this.hand.drag(index, [held[0] + now[0] - from[0], held[1] + now[1] - from[1]], last);
-    }, () => this.hand.letGo());
+    return dragging(
+      start,
+      begin,
+      (event, last) => {
+        const now = this.at(event);
+        this.hand.drag(index, [held[0] + now[0] - from[0], held[1] + now[1] - from[1]], last);
+      },
+      () => this.hand.letGo(),
+    );
   }
 
   /** A point is added where the path is clicked, or behind its last point; it can be carried on at once. */
@@ -282,7 +373,12 @@ export class Board {
       setAll(this.sketch, { visibility: box && !last ? "visible" : "hidden" });
       if (box) {
         const [left, top] = this.toPixel([box[0], box[3]]);
-        setAll(this.sketch, { x: px(left), y: px(top), width: px((box[2] - box[0]) * this.view.scale), height: px((box[3] - box[1]) * this.view.scale) });
+        setAll(this.sketch, {
+          x: px(left),
+          y: px(top),
+          width: px((box[2] - box[0]) * this.view.scale),
+          height: px((box[3] - box[1]) * this.view.scale),
+        });
       }
       if (!last) return;
       if (box) {
@@ -365,7 +461,11 @@ export class Board {
       if (!box) return;
       const [x, y] = cornerOf(box, this.corner.corner);
       this.hand.grasp();
-      this.hand.box(this.corner.kind, resized(box, this.corner.corner, [x + way[0] * step, y + way[1] * step], 12 / this.view.scale), true);
+      this.hand.box(
+        this.corner.kind,
+        resized(box, this.corner.corner, [x + way[0] * step, y + way[1] * step], 12 / this.view.scale),
+        true,
+      );
       this.tellCorner();
     } else if (way && this.selected >= 0) {
       const [x, y] = task.points[this.selected];
@@ -395,4 +495,3 @@ export class Board {
     if (p) this.say(`Point ${this.selected} at ${figure(p[0], 4)}, ${figure(p[1], 4)}`);
   }
 }
-

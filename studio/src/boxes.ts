@@ -9,7 +9,12 @@ export const KINDS: BoxKind[] = ["pivots_in", "footprint_in"];
 
 const SAYS: Record<BoxKind, string> = { pivots_in: "fixed pivots in here", footprint_in: "everything in here" };
 /** Which numbers of a box each corner holds, in the order in which keys go through them. */
-const CORNERS: [number, number][] = [[0, 1], [2, 1], [2, 3], [0, 3]];
+const CORNERS: [number, number][] = [
+  [0, 1],
+  [2, 1],
+  [2, 3],
+  [0, 3],
+];
 const NAMES = ["lower left", "lower right", "upper right", "upper left"];
 
 export interface Corner {
@@ -57,12 +62,25 @@ export function boxShapes(task: Task, toPixel: (p: Point) => Point, chosen: Corn
     const [left, top] = toPixel([box[0], box[3]]);
     const [right, bottom] = toPixel([box[2], box[1]]);
     return [
-      shape("rect", { class: `pivot-box ${kind}`, x: px(left), y: px(top), width: px(right - left), height: px(bottom - top) }),
+      shape("rect", {
+        class: `pivot-box ${kind}`,
+        x: px(left),
+        y: px(top),
+        width: px(right - left),
+        height: px(bottom - top),
+      }),
       shape("text", { class: "number", x: px(left + 6), y: px(top + 15) }, [SAYS[kind]]),
       ...NAMES.map((_, corner) => {
         const [x, y] = toPixel(cornerOf(box, corner));
         const here = chosen?.kind === kind && chosen.corner === corner;
-        return shape("rect", { class: `corner${here ? " chosen" : ""}`, x: px(x - 6), y: px(y - 6), width: 12, height: 12, "data-corner": `${kind}:${corner}` });
+        return shape("rect", {
+          class: `corner${here ? " chosen" : ""}`,
+          x: px(x - 6),
+          y: px(y - 6),
+          width: 12,
+          height: 12,
+          "data-corner": `${kind}:${corner}`,
+        });
       }),
     ];
   });

@@ -9,7 +9,10 @@ export class Connection {
   private lost = 0;
   private answer: string | null = null;
 
-  constructor(private hear: (answer: Answer) => void, private state: (open: boolean, tries: number) => void) {
+  constructor(
+    private hear: (answer: Answer) => void,
+    private state: (open: boolean, tries: number) => void,
+  ) {
     this.open();
   }
 

@@ -30,7 +30,9 @@ export class Desk {
   private share: Share;
 
   private said = element("p", { id: "desk-said", role: "status", "aria-live": "polite" }) as HTMLParagraphElement;
-  private close = element("button", { type: "button", class: "drop", "aria-label": "Close this message", hidden: "" }, ["×"]) as HTMLButtonElement;
+  private close = element("button", { type: "button", class: "drop", "aria-label": "Close this message", hidden: "" }, [
+    "×",
+  ]) as HTMLButtonElement;
   private timer = 0;
 
   constructor(place: HTMLElement, sharePlace: HTMLElement, page: Omit<Host, "say">) {
@@ -48,7 +50,8 @@ export class Desk {
     clearTimeout(this.timer);
     this.said.textContent = text;
     this.close.hidden = text === "";
-    if (text !== "" && !wrong) this.timer = setTimeout(() => this.say(""), STAYS + A_LETTER * text.length) as unknown as number;
+    if (text !== "" && !wrong)
+      this.timer = setTimeout(() => this.say(""), STAYS + A_LETTER * text.length) as unknown as number;
   }
 
   /** Takes what the address holds, if it holds a problem. */

@@ -1,7 +1,7 @@
 // Everything about one linkage: the report's player, its charts and its words, and files.
 
 import { CycleChart } from "../../src/report/html/player/chart.mjs";
-import { Cycle } from "../../src/report/html/player/cycle.mjs";
+import type { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { Player } from "../../src/report/html/player/player.mjs";
 import { element, figure, shape } from "../../src/report/html/player/svg.mjs";
 import * as api from "./api";
@@ -10,13 +10,27 @@ import { changing } from "./focus";
 import type { Task } from "./messages";
 
 const FORMATS: [string, string, string][] = [
-  ["dxf", "dxf", "DXF: skeleton, curve, target"], ["dxf-plates", "dxf", "DXF: plates to cut"], ["svg", "svg", "SVG in millimetres"],
-  ["svg-plates", "svg", "SVG: plates to cut"], ["stl", "stl", "STL: plates to print"], ["scad", "scad", "OpenSCAD"],
-  ["csv", "csv", "CSV: the whole cycle"], ["points", "csv", "CSV: along the points"], ["toml", "toml", "Linkage file (TOML)"],
-  ["json", "json", "Linkage (JSON)"], ["cut-list", "txt", "Cut list"], ["sheet", "svg", "Drawing (SVG)"], ["html", "html", "Report (HTML)"],
+  ["dxf", "dxf", "DXF: skeleton, curve, target"],
+  ["dxf-plates", "dxf", "DXF: plates to cut"],
+  ["svg", "svg", "SVG in millimetres"],
+  ["svg-plates", "svg", "SVG: plates to cut"],
+  ["stl", "stl", "STL: plates to print"],
+  ["scad", "scad", "OpenSCAD"],
+  ["csv", "csv", "CSV: the whole cycle"],
+  ["points", "csv", "CSV: along the points"],
+  ["toml", "toml", "Linkage file (TOML)"],
+  ["json", "json", "Linkage (JSON)"],
+  ["cut-list", "txt", "Cut list"],
+  ["sheet", "svg", "Drawing (SVG)"],
+  ["html", "html", "Report (HTML)"],
 ];
 
-interface Sample { q: number; joints: { C: number[]; D: number[] }; coupler?: number; follower?: number }
+interface Sample {
+  q: number;
+  joints: { C: number[]; D: number[] };
+  coupler?: number;
+  follower?: number;
+}
 
 const degrees = (from: number[], to: number[]) => (Math.atan2(to[1] - from[1], to[0] - from[0]) * 180) / Math.PI;
 const near = (angle: number, other: number) => angle + 360 * Math.round((other - angle) / 360);
@@ -27,11 +41,11 @@ class AnglesPlayer extends Player {
 
   makeCharts(place: HTMLElement, unit: string | null) {
     super.makeCharts(place, unit);
-    const read = (s: any) => {
+    const read = (s: Sample) => {
       this.place(s);
       return `${figure(s.follower, 4)}°, ${figure(s.coupler, 4)}°`;
     };
-    const line = (kind: string, of: (s: any) => number) => ({ name: kind, kind, of });
+    const line = (kind: string, of: (s: Sample) => number | undefined) => ({ name: kind, kind, of });
     this.angles = new CycleChart(place, {
       title: "Angles of the links",
       height: 150,
@@ -39,11 +53,29 @@ class AnglesPlayer extends Player {
         this.pause();
         this.moveTo(q);
       },
-      lines: [line("main", (s) => s.follower), line("along-x", (s) => s.coupler), line("along-y", (s) => (this.cycle as Cycle).crankDeg(s.q))],
+      lines: [
+        line("main", (s) => s.follower),
+        line("along-x", (s) => s.coupler),
+        line("along-y", (s) => (this.cycle as Cycle).crankDeg(s.q)),
+      ],
       read,
     } as never);
-    const key = (kind: string, text: string) => element("span", { class: "key" }, [shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [shape("path", { class: `line ${kind}`, d: "M0 4h18" })]), text]);
-    place.append(element("p", { class: "chart-note" }, [element("span", { class: "keys" }, [key("main", "follower"), key("along-x", "coupler"), key("along-y", "input")])]));
+    const key = (kind: string, text: string) =>
+      element("span", { class: "key" }, [
+        shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [
+          shape("path", { class: `line ${kind}`, d: "M0 4h18" }),
+        ]),
+        text,
+      ]);
+    place.append(
+      element("p", { class: "chart-note" }, [
+        element("span", { class: "keys" }, [
+          key("main", "follower"),
+          key("along-x", "coupler"),
+          key("along-y", "input"),
+        ]),
+      ]),
+    );
   }
 
   show(mechanism: unknown) {
@@ -59,7 +91,7 @@ class AnglesPlayer extends Player {
 
   /** The angles at a sample, without a jump from the one before. */
   private turn(sample: Sample, before: Sample | null) {
-    const { B } = ((this.cycle as Cycle).mechanism as any).linkage;
+    const { B } = (this.cycle as Cycle).mechanism.linkage;
     const [coupler, follower] = [degrees(sample.joints.C, sample.joints.D), degrees(B, sample.joints.D)];
     sample.coupler = before ? near(coupler, before.coupler as number) : coupler;
     sample.follower = before ? near(follower, before.follower as number) : follower;
@@ -74,9 +106,14 @@ class AnglesPlayer extends Player {
 
   /** The angles of a sample, as they lie on the curves of the chart; false where there are none. */
   private place(sample: Sample): boolean {
-    const around = (this.samples as unknown as (Sample | null)[]).filter((s) => s && s.coupler !== undefined) as Sample[];
+    const around = (this.samples as unknown as (Sample | null)[]).filter(
+      (s) => s && s.coupler !== undefined,
+    ) as Sample[];
     if (around.length === 0) return false;
-    this.turn(sample, around.reduce((best, s) => (Math.abs(s.q - sample.q) < Math.abs(best.q - sample.q) ? s : best)));
+    this.turn(
+      sample,
+      around.reduce((best, s) => (Math.abs(s.q - sample.q) < Math.abs(best.q - sample.q) ? s : best)),
+    );
     return true;
   }
 }
@@ -86,8 +123,14 @@ export class DetailsPanel {
   private title = element("h3", { id: "details-title" });
   private candidates = element("select", { id: "details-candidate", "aria-label": "Candidate" }) as HTMLSelectElement;
   private keep = element("button", { type: "button", id: "details-pin" }, ["Pin it"]) as HTMLButtonElement;
-  private take = element("button", { type: "button", id: "details-take", hidden: "" }, ["Draw its target"]) as HTMLButtonElement;
-  private format = element("select", { id: "format", "aria-label": "Format" }, FORMATS.map(([name, , words]) => element("option", { value: name }, [words]))) as HTMLSelectElement;
+  private take = element("button", { type: "button", id: "details-take", hidden: "" }, [
+    "Draw its target",
+  ]) as HTMLButtonElement;
+  private format = element(
+    "select",
+    { id: "format", "aria-label": "Format" },
+    FORMATS.map(([name, , words]) => element("option", { value: name }, [words])),
+  ) as HTMLSelectElement;
   private save = element("button", { type: "button", id: "export" }, ["Save"]) as HTMLButtonElement;
   private stage = element("div", { class: "details-stage" });
   private charts = element("div", { class: "details-charts" });
@@ -104,10 +147,20 @@ export class DetailsPanel {
   private loading = "";
   private timer = 0;
 
-  constructor(place: HTMLElement, private host: Host) {
+  constructor(
+    place: HTMLElement,
+    private host: Host,
+  ) {
     const head = element("div", { class: "row" }, [this.title, this.candidates, this.keep, this.take]);
     const files = element("div", { class: "row" }, [element("label", {}, ["As a file: ", this.format]), this.save]);
-    this.panel.append(element("summary", {}, [element("h2", {}, ["Everything about this linkage"])]), this.nothing, head, files, element("div", { class: "details-columns" }, [this.stage, this.charts]), this.words);
+    this.panel.append(
+      element("summary", {}, [element("h2", {}, ["Everything about this linkage"])]),
+      this.nothing,
+      head,
+      files,
+      element("div", { class: "details-columns" }, [this.stage, this.charts]),
+      this.words,
+    );
     place.append(this.panel);
     this.panel.addEventListener("toggle", () => {
       if (this.panel.open) this.changed(true);
@@ -181,7 +234,13 @@ export class DetailsPanel {
     const now = this.wanted();
     const same = now !== null && keyOf(now.source) === this.shownOf;
     const points = this.of?.task?.points;
-    changing(this.panel, () => { this.take.hidden = !points || JSON.stringify(points) === JSON.stringify(this.host.task().points); }, this.save);
+    changing(
+      this.panel,
+      () => {
+        this.take.hidden = !points || JSON.stringify(points) === JSON.stringify(this.host.task().points);
+      },
+      this.save,
+    );
     this.title.textContent = `${this.details.name}, ${this.of && "job" in this.of.source ? "candidate" : same ? "as it stands" : "as it stood"}`;
   }
 
@@ -191,15 +250,26 @@ export class DetailsPanel {
     this.tell();
     this.keep.disabled = this.of?.task == null;
     this.candidates.hidden = this.job === null;
-    this.candidates.replaceChildren(...Array.from({ length: details.candidates }, (_, i) => element("option", { value: i + 1 }, [`${i + 1} of ${details.candidates}`])));
+    this.candidates.replaceChildren(
+      ...Array.from({ length: details.candidates }, (_, i) =>
+        element("option", { value: i + 1 }, [`${i + 1} of ${details.candidates}`]),
+      ),
+    );
     this.candidates.value = String(this.job?.rank ?? 1);
     this.player?.pause();
     this.stage.replaceChildren();
     this.charts.replaceChildren();
     const { points, closed, tolerance } = details;
-    this.player = new AnglesPlayer(this.stage, this.charts, { unit: details.unit ?? null, target: { points, closed, tolerance }, transmissionMin: details.transmission_deg_min ?? null } as never);
+    this.player = new AnglesPlayer(this.stage, this.charts, {
+      unit: details.unit ?? null,
+      target: { points, closed, tolerance },
+      transmissionMin: details.transmission_deg_min ?? null,
+    } as never);
     this.player.show({ key: "", name: "", ...shown });
-    this.words.replaceChildren(...marked(details.summary, "header > p, header > ul"), ...marked(details.words, "article > :not(h2)"));
+    this.words.replaceChildren(
+      ...marked(details.summary, "header > p, header > ul"),
+      ...marked(details.words, "article > :not(h2)"),
+    );
     this.panel.dataset.shown = this.shownOf;
   }
 

@@ -13,7 +13,10 @@ export class Moving {
   private made: Cycle | null = null;
   private joints: Joints[] | null = null;
 
-  constructor(readonly shown: Shown, private points: Point[]) {}
+  constructor(
+    readonly shown: Shown,
+    private points: Point[],
+  ) {}
 
   get cycle(): Cycle {
     const mechanism = { key: "", name: "", ...this.shown };
@@ -28,13 +31,13 @@ export class Moving {
   }
 
   get curve(): (Point | null)[] {
-    return this.circuit.map((joints) => joints && joints.P);
+    return this.circuit.map((joints) => joints?.P ?? null);
   }
 
   /** q at a part (0 to 1) of the motion: round and round, or to and fro over what the points use. */
   at(part: number): number {
     const { cycle } = this;
-    if (cycle.cyclic) return ((((cycle.sense * part * 360 + cycle.start) % 360) + 360) % 360);
+    if (cycle.cyclic) return (((cycle.sense * part * 360 + cycle.start) % 360) + 360) % 360;
     const used = cycle.used;
     const [low, high] = used && used[1] - used[0] > 0.5 ? used : cycle.range;
     return low + (high - low) * (0.5 - 0.5 * Math.cos(2 * Math.PI * part));
@@ -91,7 +94,9 @@ export class Figure {
   private toward: Toward = (p) => p;
 
   constructor(scale = 1) {
-    this.pins.forEach((pin, i) => setAll(pin, { r: (i < 2 ? 5.4 : 4.4) * scale }));
+    this.pins.forEach((pin, i) => {
+      setAll(pin, { r: (i < 2 ? 5.4 : 4.4) * scale });
+    });
     setAll(this.point, { r: 5 * scale });
     this.group.append(this.ground, this.curve, this.coupler, this.edges, this.bars, ...this.pins, this.point);
   }
@@ -116,7 +121,9 @@ export class Figure {
     setAll(this.coupler, { d: `${pathThrough([c, d, p])}Z` });
     setAll(this.edges, { d: bars });
     setAll(this.bars, { d: bars });
-    [a, b, c, d].forEach(([x, y], i) => setAll(this.pins[i], { cx: px(x), cy: px(y) }));
+    [a, b, c, d].forEach(([x, y], i) => {
+      setAll(this.pins[i], { cx: px(x), cy: px(y) });
+    });
     setAll(this.point, { cx: px(p[0]), cy: px(p[1]) });
   }
 }

@@ -22,12 +22,19 @@ export function kindOf(text: string, name = ""): Kind | null {
 }
 
 /** The task of a text, or what is wrong with it. */
-export async function taskOfText(text: string, name: string, task: Task, samples?: number): Promise<{ task: Task; said: string } | string> {
+export async function taskOfText(
+  text: string,
+  name: string,
+  task: Task,
+  samples?: number,
+): Promise<{ task: Task; said: string } | string> {
   if (text.length > MOST) return `this is too long: ${MOST} characters at most are read`;
   const kind = kindOf(text, name);
   if (!kind) {
     const points = ofText(text);
-    return typeof points === "string" ? points : { task: withPoints(task, points, task.closed), said: `${points.length} points` };
+    return typeof points === "string"
+      ? points
+      : { task: withPoints(task, points, task.closed), said: `${points.length} points` };
   }
   let reading: Reading;
   try {
@@ -40,7 +47,13 @@ export async function taskOfText(text: string, name: string, task: Task, samples
   const said = [`${ask.points.length} points`, ...warnings].join(". ");
   if (whole) return { task: taskOf(ask), said: `The problem ${ask.name}: ${said}` };
   const { tolerances, weights, timing, unit } = ask;
-  const next: Task = { ...withPoints({ ...task, timing: undefined }, ask.points as Point[], kind === "svg" ? ask.closed : task.closed), weights, timing, name: ask.name, source: undefined };
+  const next: Task = {
+    ...withPoints({ ...task, timing: undefined }, ask.points as Point[], kind === "svg" ? ask.closed : task.closed),
+    weights,
+    timing,
+    name: ask.name,
+    source: undefined,
+  };
   if (tolerances) Object.assign(next, { tolerances, tolerance: undefined });
   if (timing) next.method = undefined;
   if (unit) next.unit = unit;
@@ -48,10 +61,16 @@ export async function taskOfText(text: string, name: string, task: Task, samples
 }
 
 /** Whether what is typed or pasted there is a text of its own. */
-export const takesText = (target: EventTarget | null) => (target as Element | null)?.closest?.("textarea, input:not([type=checkbox], [type=range], [type=file])") != null;
+export const takesText = (target: EventTarget | null) =>
+  (target as Element | null)?.closest?.("textarea, input:not([type=checkbox], [type=range], [type=file])") != null;
 
 /** Watches for files and texts that come from outside; pictures and texts go different ways. */
-export function watchFiles(board: HTMLElement, chooser: HTMLInputElement, text: (text: string, name: string) => void, picture: (file: Blob) => void) {
+export function watchFiles(
+  board: HTMLElement,
+  chooser: HTMLInputElement,
+  text: (text: string, name: string) => void,
+  picture: (file: Blob) => void,
+) {
   const take = async (file: File) => {
     if (/^image\/(?!svg)/.test(file.type)) picture(file);
     else text(file.size > MOST ? " ".repeat(MOST + 1) : await file.text(), file.name);

@@ -2,7 +2,8 @@
 
 const CONTROLS = "button:not(:disabled), input:not(:disabled), select:not(:disabled), [tabindex='0']";
 
-const controls = (place: HTMLElement) => [...place.querySelectorAll<HTMLElement>(CONTROLS)].filter((one) => one.getClientRects().length > 0);
+const controls = (place: HTMLElement) =>
+  [...place.querySelectorAll<HTMLElement>(CONTROLS)].filter((one) => one.getClientRects().length > 0);
 
 /** Changes a part of the page. If that takes the focused control away, the one in its place is focused, or `instead`. */
 export function changing(place: HTMLElement, change: () => void, instead: HTMLElement | SVGElement) {

@@ -2,8 +2,8 @@
 
 import { element, figure, minus } from "../../src/report/html/player/svg.mjs";
 import { changing } from "./focus";
-import { EXACT } from "./task";
 import type { Relaxation, Task, Value } from "./messages";
+import { EXACT } from "./task";
 
 export const NAMES: Record<string, [string, string]> = {
   "require.type": ["driven by", ""],
@@ -29,7 +29,9 @@ const words = (value: Value): string => {
   if (typeof value === "number") return plain(value);
   if (typeof value === "string") return value;
   if (value.length === 0) return "any";
-  return value.map((one) => (Array.isArray(one) ? `${one.map(plain).join(" to ")}` : typeof one === "number" ? plain(one) : one)).join(", ");
+  return value
+    .map((one) => (Array.isArray(one) ? `${one.map(plain).join(" to ")}` : typeof one === "number" ? plain(one) : one))
+    .join(", ");
 };
 
 /** A change in plain words: `least transmission angle 18° instead of 45°`. */
@@ -51,7 +53,10 @@ export function changed(task: Task, key: string, to: Value): Task {
 export class Helps {
   private told = "";
 
-  constructor(private list: HTMLElement, private take: (make: (task: Task) => Task, said: string) => void) {}
+  constructor(
+    private list: HTMLElement,
+    private take: (make: (task: Task) => Task, said: string) => void,
+  ) {}
 
   show(relaxations: Relaxation[], unit: string | undefined) {
     const key = JSON.stringify([relaxations, unit]);
@@ -60,26 +65,44 @@ export class Helps {
     const items = relaxations.map(({ set, rms }) => {
       const what = set.map((change) => inWords(change.key, change.from, change.to, unit)).join(" and ");
       const button = element("button", { type: "button" }, [what]);
-      button.addEventListener("click", () => this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what));
-      return element("li", {}, [button, element("span", {}, [rms < ROUNDING ? "goes exactly through the points" : `gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`])]);
+      button.addEventListener("click", () =>
+        this.take((task) => set.reduce((next, change) => changed(next, change.key, change.to), task), what),
+      );
+      return element("li", {}, [
+        button,
+        element("span", {}, [
+          rms < ROUNDING ? "goes exactly through the points" : `gives rms ${figure(rms, 3)}${unit ? ` ${unit}` : ""}`,
+        ]),
+      ]);
     });
-    changing(this.list, () => {
-      this.list.hidden = items.length === 0;
-      this.list.replaceChildren(...items);
-    }, document.querySelector<SVGElement>("#board svg") ?? this.list);
+    changing(
+      this.list,
+      () => {
+        this.list.hidden = items.length === 0;
+        this.list.replaceChildren(...items);
+      },
+      document.querySelector<SVGElement>("#board svg") ?? this.list,
+    );
   }
 }
 
 /** `best sum of squares 0.00903, 3 published answers; until the target or a requirement changes` */
 function knownInWords({ best_known_sum_sq: best, published, exact }: NonNullable<Task["expect"]>["answer"]): string {
   const n = published?.length ?? 0;
-  const known = [best === undefined ? "" : `best sum of squares ${figure(best, 3)}`, n > 0 ? `${n} published ${n === 1 ? "answer" : "answers"}` : "", exact ? "how many linkages there are" : ""];
+  const known = [
+    best === undefined ? "" : `best sum of squares ${figure(best, 3)}`,
+    n > 0 ? `${n} published ${n === 1 ? "answer" : "answers"}` : "",
+    exact ? "how many linkages there are" : "",
+  ];
   return `${known.filter((one) => one).join(", ") || "nothing"}; until the target or a requirement changes`;
 }
 
 /** What is kept of a problem file though the page has no control for it. */
 export class Kept {
-  constructor(private place: HTMLElement, private change: (task: (task: Task) => Task) => void) {}
+  constructor(
+    private place: HTMLElement,
+    private change: (task: (task: Task) => Task) => void,
+  ) {}
 
   show(task: Task) {
     const all = Object.entries(task.kept ?? {});
@@ -94,16 +117,22 @@ export class Kept {
       const item = element("li", {}, [element("code", {}, [`${name} = ${value}`])]);
       if (task.kept?.[name] === undefined) return item;
       const drop = element("button", { type: "button", class: "drop", "aria-label": `Let go ${name}` }, ["×"]);
-      drop.addEventListener("click", () => this.change((now) => {
-        const { [name]: _, ...kept } = now.kept ?? {};
-        return { ...now, kept };
-      }));
+      drop.addEventListener("click", () =>
+        this.change((now) => {
+          const { [name]: _, ...kept } = now.kept ?? {};
+          return { ...now, kept };
+        }),
+      );
       item.append(drop);
       return item;
     });
-    changing(this.place, () => {
-      this.place.hidden = all.length === 0;
-      list.replaceChildren(...items);
-    }, document.querySelector<SVGElement>("#board svg") ?? this.place);
+    changing(
+      this.place,
+      () => {
+        this.place.hidden = all.length === 0;
+        list.replaceChildren(...items);
+      },
+      document.querySelector<SVGElement>("#board svg") ?? this.place,
+    );
   }
 }

@@ -12,7 +12,13 @@ const SOON = 700;
 const LATER = 10_000;
 
 const STATES: Record<api.JobShown["state"], string> = {
-  running: "searching", done: "done", stopped: "stopped", "broken-off": "broken off", elsewhere: "in use elsewhere", failed: "failed", unreadable: "unreadable",
+  running: "searching",
+  done: "done",
+  stopped: "stopped",
+  "broken-off": "broken off",
+  elsewhere: "in use elsewhere",
+  failed: "failed",
+  unreadable: "unreadable",
 };
 
 /** A time as one says it. */
@@ -34,7 +40,9 @@ class Row {
 
   constructor(name: string, act: (what: "open" | "stop" | "resume", name: string) => void) {
     const button = (what: "open" | "stop" | "resume", words: string) => {
-      const made = element("button", { type: "button", "aria-label": `${words} ${name}` }, [words]) as HTMLButtonElement;
+      const made = element("button", { type: "button", "aria-label": `${words} ${name}` }, [
+        words,
+      ]) as HTMLButtonElement;
       made.addEventListener("click", () => made.getAttribute("aria-disabled") !== "true" && act(what, name));
       return made;
     };
@@ -42,7 +50,17 @@ class Row {
     this.name.textContent = name;
     this.chosen.setAttribute("aria-label", `Compare ${name}`);
     this.bar.setAttribute("aria-label", `Part of the budget of ${name}`);
-    this.node.append(element("div", { class: "row" }, [this.chosen, this.name, this.state, this.figures, ...Object.values(this.buttons)]), this.bar, this.said);
+    this.node.append(
+      element("div", { class: "row" }, [
+        this.chosen,
+        this.name,
+        this.state,
+        this.figures,
+        ...Object.values(this.buttons),
+      ]),
+      this.bar,
+      this.said,
+    );
   }
 
   /** What the list says of it, in short; of one that failed why. */
@@ -56,11 +74,16 @@ class Row {
     this.state.textContent = STATES[job.state];
     const unit = result?.unit ? ` ${result.unit}` : "";
     const best = result?.best;
-    let figures = best ? `rms ${figure(best.rms, 3)}${unit}, ${best.type}, μ ${figure(best.transmission_deg, 3)}°${best.accepted ? "" : ", not accepted"}` : "";
+    let figures = best
+      ? `rms ${figure(best.rms, 3)}${unit}, ${best.type}, μ ${figure(best.transmission_deg, 3)}°${best.accepted ? "" : ", not accepted"}`
+      : "";
     if (result && !best) figures = "nothing found";
     if (progress) {
       const left = progress.left_s === undefined ? "" : `, at most ${time(progress.left_s)} left`;
-      const found = progress.best_rms === undefined ? "nothing yet" : `best rms ${figure(progress.best_rms, 3)}${progress.accepted ? "" : " (not acceptable yet)"}`;
+      const found =
+        progress.best_rms === undefined
+          ? "nothing yet"
+          : `best rms ${figure(progress.best_rms, 3)}${progress.accepted ? "" : " (not acceptable yet)"}`;
       figures = `${found}; ${figure(progress.rate / 1000, 3)} thousand tries a second${left}`;
       this.bar.value = Math.min(progress.evaluations / Math.max(progress.budget, 1), 1);
     }
@@ -83,24 +106,50 @@ export class JobsPanel {
   private list = element("ul", { id: "jobs", "aria-label": "Saved searches" });
   private none = element("p", { class: "quiet" });
   private name = element("input", { id: "job-name", maxlength: 64, autocomplete: "off" }) as HTMLInputElement;
-  private budget = element("input", { id: "job-budget", type: "number", min: 1000, step: 1000, placeholder: "as usual" }) as HTMLInputElement;
+  private budget = element("input", {
+    id: "job-budget",
+    type: "number",
+    min: 1000,
+    step: 1000,
+    placeholder: "as usual",
+  }) as HTMLInputElement;
   private replace = element("input", { id: "job-replace", type: "checkbox" }) as HTMLInputElement;
   private comparison = element("div", { id: "comparison" });
   private heading = element("h2", {}, ["Saved searches"]) as HTMLElement;
   private rows = new Map<string, Row>();
   private timer = 0;
 
-  constructor(place: HTMLElement, private host: Host, private details: (name: string, task: Task | null) => void) {
+  constructor(
+    place: HTMLElement,
+    private host: Host,
+    private details: (name: string, task: Task | null) => void,
+  ) {
     const begin = element("button", { type: "button", id: "job-start" }, ["Search long"]);
     const compare = element("button", { type: "button", id: "job-compare" }, ["Compare"]);
     const page = element("button", { type: "button", id: "job-compare-page" }, ["Save the comparison"]);
     const form = element("div", { class: "row job-form" }, [
-      element("label", {}, ["Name ", this.name]), element("label", {}, ["tries at most ", this.budget]), element("label", { class: "check" }, [this.replace, "replace an earlier one"]), begin,
+      element("label", {}, ["Name ", this.name]),
+      element("label", {}, ["tries at most ", this.budget]),
+      element("label", { class: "check" }, [this.replace, "replace an earlier one"]),
+      begin,
     ]);
-    place.append(element("section", { class: "desk-card", "aria-label": "Saved searches" }, [
-      this.heading, element("p", { class: "quiet" }, ["A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed."]),
-      form, this.none, this.list, element("div", { class: "row" }, [compare, page, element("span", { class: "quiet" }, ["the ticked ones, the pinned ones and the one on the board"])]), this.comparison,
-    ]));
+    place.append(
+      element("section", { class: "desk-card", "aria-label": "Saved searches" }, [
+        this.heading,
+        element("p", { class: "quiet" }, [
+          "A long search of what is drawn now; its result is saved in a folder, as linkwright synth saves it, and goes on when this page is closed.",
+        ]),
+        form,
+        this.none,
+        this.list,
+        element("div", { class: "row" }, [
+          compare,
+          page,
+          element("span", { class: "quiet" }, ["the ticked ones, the pinned ones and the one on the board"]),
+        ]),
+        this.comparison,
+      ]),
+    );
     begin.addEventListener("click", () => void this.start());
     compare.addEventListener("click", () => void this.compare());
     page.addEventListener("click", () => void this.compareAsPage());
@@ -117,11 +166,17 @@ export class JobsPanel {
       const { folder, jobs, more } = await api.jobs();
       running = jobs.some((job) => job.state === "running");
       this.show(jobs);
-      this.none.textContent = jobs.length === 0 ? `None yet in the folder ${folder}.` : more > 0 ? `${more} more are in the folder ${folder}.` : `In the folder ${folder}.`;
+      this.none.textContent =
+        jobs.length === 0
+          ? `None yet in the folder ${folder}.`
+          : more > 0
+            ? `${more} more are in the folder ${folder}.`
+            : `In the folder ${folder}.`;
     } catch (error) {
       this.none.textContent = `They cannot be listed: ${api.wordsOf(error)}.`;
     }
-    if (!document.hidden) this.timer = setTimeout(() => void this.refresh(), running ? SOON : LATER) as unknown as number;
+    if (!document.hidden)
+      this.timer = setTimeout(() => void this.refresh(), running ? SOON : LATER) as unknown as number;
   }
 
   private show(jobs: api.JobShown[]) {
@@ -197,11 +252,15 @@ export class JobsPanel {
 
   /** What is compared; of what is drawn the names are noted. */
   private compared(named: Map<string, string>): api.Source[] {
-    const of = [...this.rows].filter(([, row]) => row.chosen.checked).map(([name]): api.Source => ({ job: { name, rank: 1 } }));
+    const of = [...this.rows]
+      .filter(([, row]) => row.chosen.checked)
+      .map(([name]): api.Source => ({ job: { name, rank: 1 } }));
     const [pinned, chosen] = [this.host.pinned(), this.host.chosen()];
     const drawn = [...pinned, ...(chosen && !pinned.includes(chosen) ? [chosen] : [])];
     // The studio calls them by their numbers in this list.
-    drawn.forEach((one, i) => named.set(`drawing ${of.length + i + 1}`, pinned.includes(one) ? `pinned ${i + 1}` : "on the board"));
+    drawn.forEach((one, i) => {
+      named.set(`drawing ${of.length + i + 1}`, pinned.includes(one) ? `pinned ${i + 1}` : "on the board");
+    });
     return [...of, ...drawn.map(api.drawn)];
   }
 
@@ -210,16 +269,46 @@ export class JobsPanel {
       const named = new Map<string, string>();
       const { rows, unit, notes } = await api.compared(this.compared(named));
       const own = (text: string) => text.replace(/(drawing \d+)(:\d+)?/g, (whole, name) => named.get(name) ?? whole);
-      const cell = (value: number | null, of = "") => element("td", { class: "n" }, [value === null ? "–" : `${figure(value, 4)}${of}`]);
-      const head = ["linkage", `rms${unit ? ` ${unit}` : ""}`, "largest", "transmission", "ratio", "size", "type", "accepted"];
+      const cell = (value: number | null, of = "") =>
+        element("td", { class: "n" }, [value === null ? "–" : `${figure(value, 4)}${of}`]);
+      const head = [
+        "linkage",
+        `rms${unit ? ` ${unit}` : ""}`,
+        "largest",
+        "transmission",
+        "ratio",
+        "size",
+        "type",
+        "accepted",
+      ];
       this.comparison.replaceChildren(
-        element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" }, [element("table", {}, [
-          element("thead", {}, [element("tr", {}, head.map((text) => element("th", { scope: "col" }, [text])))]),
-          element("tbody", {}, rows.map((row) => element("tr", {}, [
-            element("th", { scope: "row" }, [`${row.rank}. ${own(row.label).replace(/^.*[/\\]/, "")}`]), cell(row.figures.rms), cell(row.figures.max), cell(row.figures.transmission, "°"),
-            cell(row.figures.link_ratio), cell(row.figures.size), element("td", {}, [row.type]), element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
-          ]))),
-        ])]),
+        element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Comparison" }, [
+          element("table", {}, [
+            element("thead", {}, [
+              element(
+                "tr",
+                {},
+                head.map((text) => element("th", { scope: "col" }, [text])),
+              ),
+            ]),
+            element(
+              "tbody",
+              {},
+              rows.map((row) =>
+                element("tr", {}, [
+                  element("th", { scope: "row" }, [`${row.rank}. ${own(row.label).replace(/^.*[/\\]/, "")}`]),
+                  cell(row.figures.rms),
+                  cell(row.figures.max),
+                  cell(row.figures.transmission, "°"),
+                  cell(row.figures.link_ratio),
+                  cell(row.figures.size),
+                  element("td", {}, [row.type]),
+                  element("td", { class: row.accepted ? "good" : "bad" }, [row.accepted ? "yes" : "no"]),
+                ]),
+              ),
+            ),
+          ]),
+        ]),
         ...notes.map((note) => element("p", { class: "quiet" }, [own(note)])),
       );
     } catch (error) {

@@ -7,22 +7,33 @@ import { type Choice, followed, placeOf } from "./choice";
 import { Connection } from "./connection";
 import { Desk } from "./desk";
 import { EXAMPLES } from "./examples";
-import { Moving, movingOf } from "./figures";
-import { taskOfText, takesText, watchFiles } from "./files";
+import { type Moving, movingOf } from "./figures";
+import { takesText, taskOfText, watchFiles } from "./files";
 import { changing } from "./focus";
 import { Guide } from "./guide";
 import { Helps, Kept } from "./helps";
-import { Steps, remember, remembered } from "./memory";
+import { remember, remembered, Steps } from "./memory";
 import type { Answer, Point, Solution, Task } from "./messages";
 import { Nine } from "./nine";
 import { Pace } from "./pace";
 import { PhotographPanel } from "./photograph";
 import { fillRequirements, listenToRequirements } from "./requirements";
 import { Stays } from "./stays";
-import { Strip, inWords, isExact } from "./strip";
+import { inWords, isExact, Strip } from "./strip";
 import { Table } from "./table";
 import { moved } from "./target";
-import { drawnAnew, pathAlone, settled, taskOf, withAdded, withMoved, withPoints, withRemoved, withToleranceAt, withoutStale } from "./task";
+import {
+  drawnAnew,
+  pathAlone,
+  settled,
+  taskOf,
+  withAdded,
+  withMoved,
+  withoutStale,
+  withPoints,
+  withRemoved,
+  withToleranceAt,
+} from "./task";
 import { type Placed, Underlay } from "./underlay";
 import { Voice } from "./voice";
 
@@ -69,8 +80,18 @@ class Page {
   private voice = new Voice();
   private guide = new Guide();
   private underlay = new Underlay(() => this.showUnderlay());
-  private photograph = new PhotographPanel(this.underlay, () => this.board, (tool) => this.use(tool), (text) => this.say(text), () => this.note());
-  private table = new Table(byId("table"), (task) => this.replace(task), (text) => this.say(text));
+  private photograph = new PhotographPanel(
+    this.underlay,
+    () => this.board,
+    (tool) => this.use(tool),
+    (text) => this.say(text),
+    () => this.note(),
+  );
+  private table = new Table(
+    byId("table"),
+    (task) => this.replace(task),
+    (text) => this.say(text),
+  );
   private nine = new Nine(byId("nine"), () => {
     this.choice = followed(this.choice, this.candidates());
     this.draw();
@@ -86,30 +107,39 @@ class Page {
   private kept = new Kept(byId("kept"), (make) => this.replace(make(this.task)));
 
   constructor() {
-    this.board = new Board(byId("board"), {
-      drawn: (points, closed) => {
-        this.fitNext = true;
-        this.pace.penUp();
-        this.guide.done("draw");
-        this.replace(drawnAnew(this.task, points, closed), { fresh: true });
-        this.stays.show(this.task);
+    this.board = new Board(
+      byId("board"),
+      {
+        drawn: (points, closed) => {
+          this.fitNext = true;
+          this.pace.penUp();
+          this.guide.done("draw");
+          this.replace(drawnAnew(this.task, points, closed), { fresh: true });
+          this.stays.show(this.task);
+        },
+        grasp: () => this.note(),
+        letGo: () => {
+          const before = this.steps.giveUp();
+          if (before) this.restore(before);
+        },
+        drag: (index, to, last) => this.drag(index, to, last),
+        add: (at, after) => this.replace(withAdded(this.task, after, at)),
+        remove: (index) => this.replace(withRemoved(this.task, index)),
+        box: (kind, box, last) => {
+          this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
+          if (last && this.board.tool === kind) this.use("draw");
+        },
+        tolerance: (index, radius, last) => this.put(withToleranceAt(this.task, index, radius), { moving: !last }),
+        marked: () => this.photograph.marked(),
       },
-      grasp: () => this.note(),
-      letGo: () => {
-        const before = this.steps.giveUp();
-        if (before) this.restore(before);
-      },
-      drag: (index, to, last) => this.drag(index, to, last),
-      add: (at, after) => this.replace(withAdded(this.task, after, at)),
-      remove: (index) => this.replace(withRemoved(this.task, index)),
-      box: (kind, box, last) => {
-        this.put({ ...this.task, [kind]: box ?? undefined }, { moving: !last });
-        if (last && this.board.tool === kind) this.use("draw");
-      },
-      tolerance: (index, radius, last) => this.put(withToleranceAt(this.task, index, radius), { moving: !last }),
-      marked: () => this.photograph.marked(),
-    }, (text) => this.say(text), this.underlay);
-    this.strip = new Strip(byId("strip"), (i) => this.choose(i), (i) => this.pin(i));
+      (text) => this.say(text),
+      this.underlay,
+    );
+    this.strip = new Strip(
+      byId("strip"),
+      (i) => this.choose(i),
+      (i) => this.pin(i),
+    );
     this.desk = new Desk(byId("desk"), byId("share"), {
       task: () => this.task,
       chosen: () => this.chosen(),
@@ -141,10 +171,14 @@ class Page {
     this.board.show(this.task, null, []);
     this.board.fit();
     this.showUnderlay();
-    this.connection = new Connection((answer) => this.hear(answer), (open, tries) => {
-      document.body.dataset.connected = String(open);
-      if (!open && tries > 1) void api.whyClosed().then((why) => document.body.dataset.connected === "false" && this.say(why));
-    });
+    this.connection = new Connection(
+      (answer) => this.hear(answer),
+      (open, tries) => {
+        document.body.dataset.connected = String(open);
+        if (!open && tries > 1)
+          void api.whyClosed().then((why) => document.body.dataset.connected === "false" && this.say(why));
+      },
+    );
     this.put(this.task, {});
     void this.desk.begin();
     let last = performance.now();
@@ -179,8 +213,12 @@ class Page {
 
   private use(tool: Tool) {
     this.board.tool = tool;
-    if (tool === "points" && this.task.points.length > 0) this.desk.say("A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.");
-    for (const button of document.querySelectorAll("[id^=tool-]")) button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
+    if (tool === "points" && this.task.points.length > 0)
+      this.desk.say(
+        "A click on the path puts a point there, a click beside it one behind the last. Clear begins anew.",
+      );
+    for (const button of document.querySelectorAll("[id^=tool-]"))
+      button.setAttribute("aria-pressed", String(button.id === `tool-${tool}`));
   }
 
   private showUnderlay() {
@@ -200,7 +238,10 @@ class Page {
   /** Takes a task: shown, remembered, sent. */
   private put(edited: Task, how: { moving?: boolean; fresh?: boolean }) {
     const task = withoutStale(this.task, edited);
-    if (edited.expect && !task.expect) this.desk.say("The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.");
+    if (edited.expect && !task.expect)
+      this.desk.say(
+        "The figures published for this problem hold for it as it was opened: they are let go. Undo brings them back.",
+      );
     this.task = task;
     this.version += 1;
     const short = task.points.length < 3;
@@ -228,7 +269,12 @@ class Page {
     if (short) this.say("A path has at least three points: draw on the board, or click points.");
     // Too few points are sent all the same: they end the search. Until a new target is answered it is said to be new.
     const fresh = this.heard < this.since;
-    this.connection?.send({ ...task, version: this.version, ...(how.moving ? { moving: true } : {}), ...(fresh ? { fresh } : {}) });
+    this.connection?.send({
+      ...task,
+      version: this.version,
+      ...(how.moving ? { moving: true } : {}),
+      ...(fresh ? { fresh } : {}),
+    });
   }
 
   /** Brings the controls to what the task says, and remembers it. */
@@ -250,7 +296,8 @@ class Page {
     this.pace.answered(answer, this.version);
     this.nine.hear(answer);
     const choice = followed(this.choice, this.candidates());
-    if (this.choice && !choice && answer.candidates.length > 0) this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
+    if (this.choice && !choice && answer.candidates.length > 0)
+      this.desk.say("The linkage that was chosen is not among these any more: the best one is shown.");
     this.choice = choice;
     document.body.dataset.doing = answer.doing;
     document.body.dataset.answered = String(answer.version);
@@ -263,7 +310,10 @@ class Page {
     }
     const best = answer.candidates[0];
     const unit = this.task.unit ? ` ${this.task.unit}` : "";
-    const near = best && (best.ability || isExact(best)) ? "exactly through the points" : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
+    const near =
+      best && (best.ability || isExact(best))
+        ? "exactly through the points"
+        : `rms ${figure(best?.rms ?? 0, 3)}${unit}`;
     const head = best ? `Best: ${near}, ${inWords(best)}. ` : "";
     this.desk.changed(answer.doing === "done");
     this.voice.answered(answer, head + answer.said);
@@ -293,7 +343,12 @@ class Page {
     const found = all.length - this.pinned.length;
     this.moving = all.map(({ shown, task }) => movingOf(shown, task.points));
     this.drawBoard();
-    this.strip.show(this.moving, all.map(({ task }) => task), found, this.place());
+    this.strip.show(
+      this.moving,
+      all.map(({ task }) => task),
+      found,
+      this.place(),
+    );
     byId("nothing").hidden = all.length > 0;
     this.helps.show(this.answer?.relaxations ?? [], this.task.unit);
     this.showSteps();
@@ -305,7 +360,11 @@ class Page {
   private drawBoard() {
     const shown = this.moving[this.place()] ?? null;
     const pins = this.moving.slice(this.moving.length - this.pinned.length);
-    this.board.show(this.task, shown, pins.filter((one) => one !== shown));
+    this.board.show(
+      this.task,
+      shown,
+      pins.filter((one) => one !== shown),
+    );
     this.board.pose(this.part);
   }
 
@@ -323,7 +382,8 @@ class Page {
 
   /** Keeps a linkage to compare others with. */
   private keepShown(one: Solution) {
-    if (this.pinned.length >= MOST_PINNED) return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
+    if (this.pinned.length >= MOST_PINNED)
+      return this.desk.say(`${MOST_PINNED} are pinned already: unpin one of them first.`);
     this.pinned = [...this.pinned, one];
     this.keep();
     this.draw();
@@ -400,8 +460,17 @@ class Page {
       this.fitNext = true;
       return this.replace(EXAMPLES[Number(choice.value)][1], { fresh: true });
     });
-    listenToRequirements(() => this.task, (task) => this.replace(task), () => this.board.fit());
-    watchFiles(byId("board"), input("file"), (text, name) => void this.takeText(text, name), (file) => void this.photograph.take(file));
+    listenToRequirements(
+      () => this.task,
+      (task) => this.replace(task),
+      () => this.board.fit(),
+    );
+    watchFiles(
+      byId("board"),
+      input("file"),
+      (text, name) => void this.takeText(text, name),
+      (file) => void this.photograph.take(file),
+    );
     click("fit", () => this.board.fit());
     click("nearer", () => this.board.zoom(1.25));
     click("farther", () => this.board.zoom(0.8));
@@ -412,7 +481,13 @@ class Page {
     this.showPlaying();
     click("hide-hints", () => {
       this.hints = false;
-      changing(byId("hints"), () => { byId("hints").hidden = true; }, this.board.svg);
+      changing(
+        byId("hints"),
+        () => {
+          byId("hints").hidden = true;
+        },
+        this.board.svg,
+      );
       this.keep();
     });
     click("problem-file", () => void this.save(this.task.name, api.problemOf(this.task)));
@@ -422,11 +497,14 @@ class Page {
       const name = `${chosen.task.name}-${place < found ? place + 1 : `pinned-${place - found + 1}`}`.slice(-64);
       void this.save(name, api.linkageOf(name, chosen));
     });
-    input("closed").addEventListener("change", () => this.replace(settled({ ...this.task, closed: input("closed").checked })));
+    input("closed").addEventListener("change", () =>
+      this.replace(settled({ ...this.task, closed: input("closed").checked })),
+    );
     const number = (id: string, key: "tolerance" | "transmission_deg_min" | "link_ratio_max") => {
       input(id).addEventListener("change", () => {
         const { value, valueAsNumber } = input(id);
-        if (value === "" || Number.isFinite(valueAsNumber)) this.change({ [key]: value === "" ? undefined : valueAsNumber });
+        if (value === "" || Number.isFinite(valueAsNumber))
+          this.change({ [key]: value === "" ? undefined : valueAsNumber });
       });
     };
     number("tolerance", "tolerance");

@@ -6,7 +6,8 @@ import type { Answer, Counted, Shown } from "./messages";
 const LEVELS = ["two circuits", "one circuit", "in order", "free of defects"] as const;
 
 /** What a linkage through nine points can do, from 0 to 3. */
-const levelOf = (shown: Shown) => Math.max(LEVELS.indexOf((shown.ability ?? "two circuits") as (typeof LEVELS)[number]), 0);
+const levelOf = (shown: Shown) =>
+  Math.max(LEVELS.indexOf((shown.ability ?? "two circuits") as (typeof LEVELS)[number]), 0);
 
 export class Nine {
   private least = 0;
@@ -15,7 +16,10 @@ export class Nine {
   private choices = element("div", { class: "row", role: "group", "aria-label": "Which of them are shown" });
   private buttons: HTMLButtonElement[];
 
-  constructor(private place: HTMLElement, changed: () => void) {
+  constructor(
+    private place: HTMLElement,
+    changed: () => void,
+  ) {
     this.buttons = LEVELS.map((name, level) => {
       const button = element("button", { type: "button" }, [name]) as HTMLButtonElement;
       button.addEventListener("click", () => {
@@ -44,7 +48,12 @@ export class Nine {
     const { counted } = this;
     this.place.hidden = !counted;
     if (!counted) return;
-    const says: [string, number][] = [["all real", counted.real], ["on one circuit", counted.one_circuit], ["in order", counted.in_order], ["free of defects", counted.free_of_defects]];
+    const says: [string, number][] = [
+      ["all real", counted.real],
+      ["on one circuit", counted.one_circuit],
+      ["in order", counted.in_order],
+      ["free of defects", counted.free_of_defects],
+    ];
     this.buttons.forEach((button, level) => {
       const [what, count] = says[level];
       const text = `${count} ${what}`;

@@ -20,12 +20,14 @@ export class Pace {
     const following = answer.doing === "following";
     if (first < 0 && !following) return;
     // After the frame that shows it.
-    requestAnimationFrame(() => setTimeout(() => {
-      const now = performance.now();
-      if (first >= 0) performance.measure("first candidate", { start: first, end: now });
-      if (!following) return;
-      if (this.last >= 0 && now - this.last < APART) performance.measure("re-fit", { start: this.last, end: now });
-      this.last = now;
-    }));
+    requestAnimationFrame(() =>
+      setTimeout(() => {
+        const now = performance.now();
+        if (first >= 0) performance.measure("first candidate", { start: first, end: now });
+        if (!following) return;
+        if (this.last >= 0 && now - this.last < APART) performance.measure("re-fit", { start: this.last, end: now });
+        this.last = now;
+      }),
+    );
   }
 }

@@ -9,7 +9,13 @@ const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) 
 const input = (id: string) => byId<HTMLInputElement>(id);
 
 export class PhotographPanel {
-  constructor(private underlay: Underlay, private board: () => Board, private use: (tool: Tool) => void, private say: (text: string) => void, private note: () => void) {
+  constructor(
+    private underlay: Underlay,
+    private board: () => Board,
+    private use: (tool: Tool) => void,
+    private say: (text: string) => void,
+    private note: () => void,
+  ) {
     input("photo").addEventListener("change", () => {
       const file = input("photo").files?.[0];
       input("photo").value = "";
@@ -27,7 +33,9 @@ export class PhotographPanel {
       begun = true;
       underlay.place({ opacity: input("photo-opacity").valueAsNumber });
     });
-    input("photo-opacity").addEventListener("change", () => { begun = false; });
+    input("photo-opacity").addEventListener("change", () => {
+      begun = false;
+    });
     byId("set-length").addEventListener("click", () => this.setLength());
     input("known-length").addEventListener("keydown", (event) => {
       if (event.key === "Enter") this.setLength();

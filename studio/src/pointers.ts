@@ -29,7 +29,11 @@ export function dragging(start: PointerEvent, begin: () => void, step: Grip["ste
 }
 
 /** Watches the pointers: `take` says what a pointer that goes down holds, `pinch` what two fingers do. */
-export function watchPointers(place: SVGElement, take: (event: PointerEvent) => Grip | null, pinch: (one: PointerEvent, other: PointerEvent) => Pinch) {
+export function watchPointers(
+  place: SVGElement,
+  take: (event: PointerEvent) => Grip | null,
+  pinch: (one: PointerEvent, other: PointerEvent) => Pinch,
+) {
   /** The fingers that are followed, where they were last. */
   let fingers: PointerEvent[] = [];
   let grip: Grip | null = null;

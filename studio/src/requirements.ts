@@ -2,7 +2,17 @@
 
 import { KINDS } from "./boxes";
 import type { Box, Task } from "./messages";
-import { EXACT, canBeExact, isExact, pivotsBelow, settled, spaceAround, withTiming, withTolerances, withWeights } from "./task";
+import {
+  canBeExact,
+  EXACT,
+  isExact,
+  pivotsBelow,
+  settled,
+  spaceAround,
+  withTiming,
+  withTolerances,
+  withWeights,
+} from "./task";
 
 const byId = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const input = (id: string) => byId<HTMLInputElement>(id);
@@ -14,24 +24,32 @@ const BOXES = [
   { key: KINDS[1], box: "space", numbers: "space-numbers", prefix: "space-", around: spaceAround },
 ] as const;
 /** Checked: required, which is the default. */
-const CHECKS = [["order", "required"], ["circuit", "one"], ["branch", "one"], ["closing", "one-way"]] as const;
+const CHECKS = [
+  ["order", "required"],
+  ["circuit", "one"],
+  ["branch", "one"],
+  ["closing", "one-way"],
+] as const;
 
 /** Listens to the controls; every change makes another task of the one that stands. */
 export function listenToRequirements(now: () => Task, change: (task: Task) => void, shown: () => void) {
-  const on = (id: string, act: () => Task | null) => byId(id).addEventListener("change", () => {
-    const task = act();
-    if (task) change(task);
-  });
+  const on = (id: string, act: () => Task | null) =>
+    byId(id).addEventListener("change", () => {
+      const task = act();
+      if (task) change(task);
+    });
   for (const { key, box, prefix, around } of BOXES) {
     byId(box).addEventListener("change", () => {
       change({ ...now(), [key]: input(box).checked ? around(now().points) : undefined });
       if (input(box).checked) shown();
     });
-    SIDES.forEach((side, i) => on(prefix + side, () => {
-      const next = [...(now()[key] ?? around(now().points))] as Box;
-      next[i] = input(prefix + side).valueAsNumber;
-      return next.every(Number.isFinite) ? { ...now(), [key]: next } : null;
-    }));
+    SIDES.forEach((side, i) => {
+      on(prefix + side, () => {
+        const next = [...(now()[key] ?? around(now().points))] as Box;
+        next[i] = input(prefix + side).valueAsNumber;
+        return next.every(Number.isFinite) ? { ...now(), [key]: next } : null;
+      });
+    });
   }
   for (const [id, usual] of CHECKS) on(id, () => ({ ...now(), [id]: input(id).checked ? usual : "any" }));
   on("over", () => ({ ...now(), transmission_over: (select("over").value || undefined) as Task["transmission_over"] }));
@@ -53,7 +71,9 @@ export function fillRequirements(task: Task) {
   for (const { key, box, numbers, prefix } of BOXES) {
     input(box).checked = task[key] !== undefined;
     byId(numbers).hidden = task[key] === undefined;
-    SIDES.forEach((side, i) => set(prefix + side, task[key]?.[i]));
+    SIDES.forEach((side, i) => {
+      set(prefix + side, task[key]?.[i]);
+    });
   }
   for (const [id, usual] of CHECKS) input(id).checked = (task[id] ?? usual) === usual;
   select("over").value = task.transmission_over ?? "";

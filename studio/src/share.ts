@@ -12,7 +12,10 @@ const MOST_LETTERS = 16_000;
 const MOST_BYTES = 200_000;
 
 async function through(bytes: Uint8Array, stream: GenericTransformStream): Promise<Uint8Array> {
-  const reader = new Blob([bytes as BlobPart]).stream().pipeThrough(stream as unknown as TransformStream<Uint8Array, Uint8Array>).getReader();
+  const reader = new Blob([bytes as BlobPart])
+    .stream()
+    .pipeThrough(stream as unknown as TransformStream<Uint8Array, Uint8Array>)
+    .getReader();
   const parts: Uint8Array[] = [];
   let size = 0;
   for (;;) {
@@ -48,28 +51,50 @@ export async function unpacked(letters: string): Promise<string> {
   if (letters.length > MOST_LETTERS) throw new api.Refused("the link is too long");
   if (!/^[\w-]+$/.test(letters)) throw new api.Refused("the link is no link of the studio");
   try {
-    const bytes = Uint8Array.from(atob(letters.replaceAll("-", "+").replaceAll("_", "/")), (letter) => letter.charCodeAt(0));
-    return new TextDecoder("utf-8", { fatal: true }).decode(await through(bytes, new DecompressionStream("deflate-raw")));
+    const bytes = Uint8Array.from(atob(letters.replaceAll("-", "+").replaceAll("_", "/")), (letter) =>
+      letter.charCodeAt(0),
+    );
+    return new TextDecoder("utf-8", { fatal: true }).decode(
+      await through(bytes, new DecompressionStream("deflate-raw")),
+    );
   } catch (error) {
     throw error instanceof api.Refused ? error : new api.Refused("the link is broken: a part of it is missing");
   }
 }
 
 export class Share {
-  private field = element("input", { id: "link", type: "url", "aria-label": "A link to a problem", placeholder: "paste a link", autocomplete: "off", spellcheck: "false" }) as HTMLInputElement;
+  private field = element("input", {
+    id: "link",
+    type: "url",
+    "aria-label": "A link to a problem",
+    placeholder: "paste a link",
+    autocomplete: "off",
+    spellcheck: "false",
+  }) as HTMLInputElement;
 
-  constructor(place: HTMLElement, private host: Host) {
+  constructor(
+    place: HTMLElement,
+    private host: Host,
+  ) {
     const copy = element("button", { type: "button", id: "copy-link" }, ["Copy a link"]);
     const take = element("button", { type: "button", id: "take-link" }, ["Take the link"]);
-    const file = element("input", { type: "file", id: "open-problem", accept: ".toml,application/toml" }) as HTMLInputElement;
-    place.append(element("div", { class: "row share" }, [copy, this.field, take]), element("label", {}, ["Open one that was saved ", file]));
+    const file = element("input", {
+      type: "file",
+      id: "open-problem",
+      accept: ".toml,application/toml",
+    }) as HTMLInputElement;
+    place.append(
+      element("div", { class: "row share" }, [copy, this.field, take]),
+      element("label", {}, ["Open one that was saved ", file]),
+    );
     copy.addEventListener("click", () => void this.copy());
     take.addEventListener("click", () => void this.take(this.field.value));
     file.addEventListener("change", async () => {
       const [chosen] = file.files ?? [];
       file.value = "";
       if (!chosen) return;
-      if (chosen.size > MOST_BYTES) return this.host.say(`${chosen.name} is larger than a problem of the studio may be.`);
+      if (chosen.size > MOST_BYTES)
+        return this.host.say(`${chosen.name} is larger than a problem of the studio may be.`);
       return this.read(await chosen.text(), chosen.name);
     });
     addEventListener("hashchange", () => void this.fromAddress());
@@ -86,12 +111,15 @@ export class Share {
   private async copy() {
     try {
       const letters = await packed(await api.problemOf(this.host.task()));
-      if (letters.length > MOST_LETTERS) return this.host.say("This problem is too long for a link: save the problem file instead.");
+      if (letters.length > MOST_LETTERS)
+        return this.host.say("This problem is too long for a link: save the problem file instead.");
       const link = `${location.origin}/${MARK}${letters}`;
       this.field.value = link;
       try {
         await navigator.clipboard.writeText(link);
-        return this.host.say("The link is copied. It holds the problem: who runs linkwright studio can paste it there.");
+        return this.host.say(
+          "The link is copied. It holds the problem: who runs linkwright studio can paste it there.",
+        );
       } catch {
         this.field.select();
         return this.host.say("The link stands in the field: copy it from there.");

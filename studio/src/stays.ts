@@ -22,7 +22,10 @@ export class Stays {
   private words = element("span");
   private drop = element("button", { type: "button" }, ["Ask nothing but the path"]);
 
-  constructor(private place: HTMLElement, drop: () => void) {
+  constructor(
+    private place: HTMLElement,
+    drop: () => void,
+  ) {
     place.append(this.words, this.drop);
     this.drop.addEventListener("click", drop);
   }
@@ -30,7 +33,13 @@ export class Stays {
   /** Tells what a new drawing keeps; null: there is no new drawing any more. */
   show(task: Task | null) {
     const names = task ? asked(task) : [];
-    changing(this.place, () => { this.place.hidden = names.length === 0; }, document.querySelector<SVGElement>("#board svg") ?? this.place);
+    changing(
+      this.place,
+      () => {
+        this.place.hidden = names.length === 0;
+      },
+      document.querySelector<SVGElement>("#board svg") ?? this.place,
+    );
     this.words.textContent = `Still asked as before: ${names.join(", ")}. `;
   }
 }

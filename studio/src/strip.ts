@@ -1,7 +1,7 @@
 // The strip of candidates: small pictures that move, with their figures.
 
 import { element, figure, setAll, shape } from "../../src/report/html/player/svg.mjs";
-import { Figure, Moving } from "./figures";
+import { Figure, type Moving } from "./figures";
 import { changing, setChildren } from "./focus";
 import type { Point, Shown, Task } from "./messages";
 
@@ -22,9 +22,11 @@ const WORDS: Record<string, string> = {
   circuit: "two circuits",
 };
 
-const word = (key: string) => WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, "place of $1").replace(/^design\./, "bounds of ");
+const word = (key: string) =>
+  WORDS[key] ?? key.replace(/^design\.(A|B)(x|y)$/, "place of $1").replace(/^design\./, "bounds of ");
 
-export const inWords = (shown: Shown) => (shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`);
+export const inWords = (shown: Shown) =>
+  shown.accepted ? "meets everything" : `not met: ${[...new Set(shown.unmet.map(word))].join(", ") || "a defect"}`;
 
 /** Whether what it misses by is rounding: an error of 1e-14 tells nobody anything. */
 export function isExact({ ability, max, linkage: { a, b, c, d, e } }: Shown): boolean {
@@ -53,7 +55,12 @@ class Card {
   private title = element("strong");
   private figures = element("span", { class: "figures" });
   private verdict = element("span", { class: "verdict" });
-  readonly pick = element("button", { type: "button", class: "pick" }, [this.svg, this.title, this.figures, this.verdict]);
+  readonly pick = element("button", { type: "button", class: "pick" }, [
+    this.svg,
+    this.title,
+    this.figures,
+    this.verdict,
+  ]);
   readonly pin = element("button", { type: "button", class: "pin-button" });
   readonly node = element("li", {}, [this.pick, this.pin]);
 
@@ -68,7 +75,11 @@ class Card {
     Object.assign(this, { moving, task });
     if (this.seen || all) this.draw(part);
     const { unit } = task;
-    const texts = [name, `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`, inWords(shown)];
+    const texts = [
+      name,
+      `${nearness(shown, unit)}; ${shown.type}, ${shown.transmission_deg < 0.05 ? 0 : figure(shown.transmission_deg, 3)}°`,
+      inWords(shown),
+    ];
     const key = JSON.stringify([texts, shown.accepted, chosen, pinned]);
     if (key === this.key) return;
     this.key = key;
@@ -90,9 +101,17 @@ class Card {
     const box = moving.box();
     const [w, h] = [box[2] - box[0] || 1, box[3] - box[1] || 1];
     const scale = Math.min((W - 16) / w, (H - 16) / h);
-    const toward = ([x, y]: Point): Point => [W / 2 + (x - (box[0] + box[2]) / 2) * scale, H / 2 - (y - (box[1] + box[3]) / 2) * scale];
+    const toward = ([x, y]: Point): Point => [
+      W / 2 + (x - (box[0] + box[2]) / 2) * scale,
+      H / 2 - (y - (box[1] + box[3]) / 2) * scale,
+    ];
     const line = points.map(toward);
-    setAll(this.target, { d: line.length === 0 ? "" : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}` });
+    setAll(this.target, {
+      d:
+        line.length === 0
+          ? ""
+          : `M${line.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L")}${closed ? "Z" : ""}`,
+    });
     this.picture.show(moving, toward);
     this.pose(part);
   }
@@ -109,23 +128,35 @@ export class Strip {
   private found = 0;
   private part = 0;
   /** Only what is in sight moves. */
-  private sight = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      const card = this.cards.flat().find((one) => one.node === entry.target);
-      if (!card) continue;
-      card.seen = entry.isIntersecting;
-      if (card.seen) {
-        card.draw(this.part);
-        card.pose(this.part);
+  private sight = new IntersectionObserver(
+    (entries) => {
+      for (const entry of entries) {
+        const card = this.cards.flat().find((one) => one.node === entry.target);
+        if (!card) continue;
+        card.seen = entry.isIntersecting;
+        if (card.seen) {
+          card.draw(this.part);
+          card.pose(this.part);
+        }
       }
-    }
-  }, { rootMargin: "200px" });
+    },
+    { rootMargin: "200px" },
+  );
 
-  constructor(private list: HTMLElement, private pick: (index: number) => void, private pin: (index: number) => void) {}
+  constructor(
+    private list: HTMLElement,
+    private pick: (index: number) => void,
+    private pin: (index: number) => void,
+  ) {}
 
   private card(kind: 0 | 1, i: number): Card {
     const place = () => (kind === 0 ? i : this.found + i);
-    const card = this.cards[kind][i] ?? new Card(() => this.pick(place()), () => this.pin(place()));
+    const card =
+      this.cards[kind][i] ??
+      new Card(
+        () => this.pick(place()),
+        () => this.pin(place()),
+      );
     if (!this.cards[kind][i]) this.sight.observe(card.node);
     this.cards[kind][i] = card;
     return card;
@@ -142,7 +173,15 @@ export class Strip {
     });
     if (this.shown.length !== before.length || this.shown.some((card, i) => card !== before[i])) {
       const heading = this.list.parentElement?.querySelector("h2") ?? this.list;
-      changing(this.list, () => setChildren(this.list, this.shown.map((card) => card.node)), heading);
+      changing(
+        this.list,
+        () =>
+          setChildren(
+            this.list,
+            this.shown.map((card) => card.node),
+          ),
+        heading,
+      );
     }
     this.list.classList.toggle("many", all.length > MANY);
   }

@@ -28,11 +28,16 @@ function columnsOf(task: Task): Column[] {
 
 function valueAt(task: Task, column: Column, row: number): number {
   switch (column) {
-    case "x": return task.points[row][0];
-    case "y": return task.points[row][1];
-    case "crank_deg": return task.timing?.crank_deg[row] ?? 0;
-    case "tolerance": return task.tolerances?.[row] ?? 0;
-    case "weight": return task.weights?.[row] ?? 1;
+    case "x":
+      return task.points[row][0];
+    case "y":
+      return task.points[row][1];
+    case "crank_deg":
+      return task.timing?.crank_deg[row] ?? 0;
+    case "tolerance":
+      return task.tolerances?.[row] ?? 0;
+    case "weight":
+      return task.weights?.[row] ?? 1;
   }
 }
 
@@ -46,9 +51,12 @@ export function withCell(task: Task, column: Column, row: number, value: number)
       const points = task.points.map((p, i): Point => (i === row ? (axis === 0 ? [value, p[1]] : [p[0], value]) : p));
       return withMoved(task, points);
     }
-    case "crank_deg": return { ...task, timing: task.timing && { ...task.timing, crank_deg: put(task.timing.crank_deg) as number[] } };
-    case "tolerance": return { ...task, tolerances: put(task.tolerances) };
-    case "weight": return { ...task, weights: put(task.weights) };
+    case "crank_deg":
+      return { ...task, timing: task.timing && { ...task.timing, crank_deg: put(task.timing.crank_deg) as number[] } };
+    case "tolerance":
+      return { ...task, tolerances: put(task.tolerances) };
+    case "weight":
+      return { ...task, weights: put(task.weights) };
   }
 }
 
@@ -65,7 +73,11 @@ export class Table {
   private pages = element("span", { class: "pages" });
   private label = element("span");
 
-  constructor(private place: HTMLElement, private edit: (task: Task) => void, private say: (text: string) => void) {
+  constructor(
+    private place: HTMLElement,
+    private edit: (task: Task) => void,
+    private say: (text: string) => void,
+  ) {
     const table = element("table", { class: "points", "aria-label": "Points" }, [this.head, this.body]);
     this.pages.append(this.earlier, this.label, this.later);
     place.append(table, element("div", { class: "row" }, [this.add, this.pages]));
@@ -85,7 +97,11 @@ export class Table {
     if (!task) return;
     const n = task.points.length;
     const [before, last] = [task.points[n - 2], task.points[n - 1]];
-    const at: Point = !last ? [0, 0] : !before ? [last[0] + 10, last[1]] : [Number((2 * last[0] - before[0]).toPrecision(6)), Number((2 * last[1] - before[1]).toPrecision(6))];
+    const at: Point = !last
+      ? [0, 0]
+      : !before
+        ? [last[0] + 10, last[1]]
+        : [Number((2 * last[0] - before[0]).toPrecision(6)), Number((2 * last[1] - before[1]).toPrecision(6))];
     this.edit(withAdded(task, n - 1, at));
     this.from = Math.floor(n / PAGE) * PAGE;
     if (this.task) this.show(this.task);
@@ -103,39 +119,68 @@ export class Table {
     const shape = `${columns.join()} ${this.from} ${rows}`;
     if (shape !== this.shape) changing(this.body, () => this.build(columns, rows), this.add);
     this.shape = shape;
-    this.inputs.forEach((cells, i) => cells.forEach((input, j) => {
-      if (document.activeElement !== input) input.value = String(Number(valueAt(task, columns[j], this.from + i).toPrecision(9)));
-    }));
-    changing(this.pages, () => {
-      this.pages.hidden = n <= PAGE;
-      this.earlier.disabled = this.from === 0;
-      this.later.disabled = this.from + PAGE >= n;
-    }, this.add);
+    this.inputs.forEach((cells, i) => {
+      cells.forEach((input, j) => {
+        if (document.activeElement !== input)
+          input.value = String(Number(valueAt(task, columns[j], this.from + i).toPrecision(9)));
+      });
+    });
+    changing(
+      this.pages,
+      () => {
+        this.pages.hidden = n <= PAGE;
+        this.earlier.disabled = this.from === 0;
+        this.later.disabled = this.from + PAGE >= n;
+      },
+      this.add,
+    );
     this.label.textContent = `${this.from}–${this.from + rows - 1} of ${n}`;
   }
 
   private build(columns: Column[], rows: number) {
     const heads = columns.map((column) => element("th", { scope: "col", title: HEADS[column][1] }, [HEADS[column][0]]));
-    this.head.replaceChildren(element("tr", {}, [element("th", { scope: "col", title: "Points count from 0, as in the reports" }, ["#"]), ...heads, element("th")]));
+    this.head.replaceChildren(
+      element("tr", {}, [
+        element("th", { scope: "col", title: "Points count from 0, as in the reports" }, ["#"]),
+        ...heads,
+        element("th"),
+      ]),
+    );
     this.inputs = [];
-    this.body.replaceChildren(...Array.from({ length: rows }, (_, i) => {
-      const row = this.from + i;
-      const cells = columns.map((column) => {
-        const input = element("input", { type: "number", step: "any", "aria-label": `Point ${row}, ${HEADS[column][1]}` }) as HTMLInputElement;
-        input.addEventListener("change", () => this.take(column, row, input));
-        input.addEventListener("keydown", (event: KeyboardEvent) => this.go(event, i, columns.indexOf(column)));
-        return input;
-      });
-      this.inputs.push(cells);
-      const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row}` }, ["×"]);
-      drop.addEventListener("click", () => this.task && this.edit(withRemoved(this.task, row)));
-      return element("tr", {}, [element("th", { scope: "row" }, [String(row)]), ...cells.map((cell) => element("td", {}, [cell])), element("td", {}, [drop])]);
-    }));
+    this.body.replaceChildren(
+      ...Array.from({ length: rows }, (_, i) => {
+        const row = this.from + i;
+        const cells = columns.map((column) => {
+          const input = element("input", {
+            type: "number",
+            step: "any",
+            "aria-label": `Point ${row}, ${HEADS[column][1]}`,
+          }) as HTMLInputElement;
+          input.addEventListener("change", () => this.take(column, row, input));
+          input.addEventListener("keydown", (event: KeyboardEvent) => this.go(event, i, columns.indexOf(column)));
+          return input;
+        });
+        this.inputs.push(cells);
+        const drop = element("button", { type: "button", class: "drop", "aria-label": `Remove point ${row}` }, ["×"]);
+        drop.addEventListener("click", () => this.task && this.edit(withRemoved(this.task, row)));
+        return element("tr", {}, [
+          element("th", { scope: "row" }, [String(row)]),
+          ...cells.map((cell) => element("td", {}, [cell])),
+          element("td", {}, [drop]),
+        ]);
+      }),
+    );
   }
 
   private take(column: Column, row: number, input: HTMLInputElement) {
     const value = input.valueAsNumber;
-    const wrong = !Number.isFinite(value) ? "is no number" : column === "weight" && value <= 0 ? "must be above 0" : column === "tolerance" && value < 0 ? "must be 0 or more" : null;
+    const wrong = !Number.isFinite(value)
+      ? "is no number"
+      : column === "weight" && value <= 0
+        ? "must be above 0"
+        : column === "tolerance" && value < 0
+          ? "must be 0 or more"
+          : null;
     if (!this.task) return;
     if (wrong) {
       this.say(`Point ${row}: the ${HEADS[column][1]} ${wrong}.`);

@@ -95,8 +95,10 @@ export function segmentAt(points: Point[], at: Point, closed: boolean, near: num
 function wrongWith(line: string, cells: string[]): string {
   const shown = line.slice(0, 40);
   if (/;/.test(line)) return `\`${shown}\` has a semicolon: write 1.5, 2.5 with decimal points and a comma between`;
-  if (/\d,\d/.test(line) && (cells.length > 2 || cells.some((cell) => cell.includes(",")))) return `\`${shown}\`: if these are decimal commas write a decimal point, 1.5`;
-  if (cells.length > 2) return `\`${shown}\` has ${cells.length} cells: a header such as x,y,crank_deg must say what they are`;
+  if (/\d,\d/.test(line) && (cells.length > 2 || cells.some((cell) => cell.includes(","))))
+    return `\`${shown}\`: if these are decimal commas write a decimal point, 1.5`;
+  if (cells.length > 2)
+    return `\`${shown}\` has ${cells.length} cells: a header such as x,y,crank_deg must say what they are`;
   return `\`${shown}\` is not two numbers`;
 }
 
@@ -112,7 +114,8 @@ export function ofText(text: string): Point[] | string {
     const cells = line.split(/\t/.test(line) ? /\s*\t\s*/ : /,/.test(line) ? /\s*,\s*/ : /\s+/);
     const numbers = cells.map((cell) => (cell === "" ? NaN : Number(cell)));
     if (numbers.length === 2 && numbers.every(Number.isFinite)) points.push([numbers[0], numbers[1]]);
-    else if (points.length > 0 || !cells.every((cell) => /^[a-z_]+$/i.test(cell))) return `line ${i + 1}: ${wrongWith(line, cells)}`;
+    else if (points.length > 0 || !cells.every((cell) => /^[a-z_]+$/i.test(cell)))
+      return `line ${i + 1}: ${wrongWith(line, cells)}`;
   }
   return points;
 }

@@ -20,7 +20,8 @@ export function settled(task: Task): Task {
   const { raw: _, ...rest } = task;
   const n = rest.points.length;
   const next: Task = { ...rest };
-  if (next.timing && next.timing.crank_deg.length !== n) next.timing = { ...next.timing, crank_deg: evenAngles(n, next.closed) };
+  if (next.timing && next.timing.crank_deg.length !== n)
+    next.timing = { ...next.timing, crank_deg: evenAngles(n, next.closed) };
   if (next.tolerances && next.tolerances.length !== n) {
     next.tolerance = n > 0 ? Math.max(...next.tolerances) : next.tolerance;
     next.tolerances = undefined;
@@ -34,18 +35,38 @@ export function settled(task: Task): Task {
 export const withPoints = (task: Task, points: Point[], closed: boolean): Task => settled({ ...task, points, closed });
 
 /** What is asked of the linkage, of a path that is drawn anew: what belonged to the points of another is gone. */
-export const drawnAnew = (task: Task, points: Point[], closed: boolean): Task =>
-  ({ ...task, points, closed, name: "drawing", source: undefined, timing: undefined, tolerances: undefined, weights: undefined, raw: undefined, kept: undefined, method: undefined });
+export const drawnAnew = (task: Task, points: Point[], closed: boolean): Task => ({
+  ...task,
+  points,
+  closed,
+  name: "drawing",
+  source: undefined,
+  timing: undefined,
+  tolerances: undefined,
+  weights: undefined,
+  raw: undefined,
+  kept: undefined,
+  method: undefined,
+});
 
 /** The path alone. */
-export const pathAlone = ({ name, unit, source, points, closed, seed }: Task): Task => ({ name, unit, source, points, closed, types: [], seed });
+export const pathAlone = ({ name, unit, source, points, closed, seed }: Task): Task => ({
+  name,
+  unit,
+  source,
+  points,
+  closed,
+  types: [],
+  seed,
+});
 
 /** Points that have moved, as many as before. */
 export const withMoved = (task: Task, points: Point[]): Task => settled({ ...task, points });
 
 /** One point more, after the point `index`: what stands beside it is its neighbour's. */
 export function withAdded(task: Task, index: number, at: Point): Task {
-  const insert = <T>(list: T[] | undefined, value: T) => list && [...list.slice(0, index + 1), value, ...list.slice(index + 1)];
+  const insert = <T>(list: T[] | undefined, value: T) =>
+    list && [...list.slice(0, index + 1), value, ...list.slice(index + 1)];
   const angles = task.timing?.crank_deg;
   const [before, after] = [angles?.[index] ?? 0, angles?.[index + 1]];
   const step = angles && index > 0 ? before - angles[index - 1] : 30;
@@ -60,7 +81,7 @@ export function withAdded(task: Task, index: number, at: Point): Task {
 }
 
 export function withRemoved(task: Task, index: number): Task {
-  const drop = <T>(list: T[] | undefined) => list && list.filter((_, i) => i !== index);
+  const drop = <T>(list: T[] | undefined) => list?.filter((_, i) => i !== index);
   return settled({
     ...task,
     points: drop(task.points) as Point[],
@@ -82,13 +103,22 @@ export function usualTolerance(task: Task): number {
 }
 
 export function withTolerances(task: Task, each: boolean): Task {
-  if (!each) return { ...task, tolerance: task.tolerances ? Math.max(...task.tolerances) : task.tolerance, tolerances: undefined };
+  if (!each)
+    return {
+      ...task,
+      tolerance: task.tolerances ? Math.max(...task.tolerances) : task.tolerance,
+      tolerances: undefined,
+    };
   return { ...task, tolerances: task.points.map(() => task.tolerance ?? usualTolerance(task)), tolerance: undefined };
 }
 
-export const withWeights = (task: Task, each: boolean): Task => ({ ...task, weights: each ? task.points.map(() => 1) : undefined });
+export const withWeights = (task: Task, each: boolean): Task => ({
+  ...task,
+  weights: each ? task.points.map(() => 1) : undefined,
+});
 
-export const toleranceAt = (task: Task, index: number): number | undefined => task.tolerances?.[index] ?? task.tolerance;
+export const toleranceAt = (task: Task, index: number): number | undefined =>
+  task.tolerances?.[index] ?? task.tolerance;
 
 /** The tolerance at a point, or of all where they have one. */
 export function withToleranceAt(task: Task, index: number, radius: number): Task {
@@ -115,7 +145,8 @@ export function roundTo(value: number, size: number, digits: number): number {
   return Number((Math.round(value / unit) * unit).toPrecision(15));
 }
 
-const rounded = (box: Box) => box.map((value) => roundTo(value, Math.hypot(box[2] - box[0], box[3] - box[1]), 3)) as Box;
+const rounded = (box: Box) =>
+  box.map((value) => roundTo(value, Math.hypot(box[2] - box[0], box[3] - box[1]), 3)) as Box;
 
 /** A box below the target, as wide as it. */
 export function pivotsBelow(points: Point[]): Box {
@@ -138,7 +169,14 @@ export function spaceAround(points: Point[]): Box {
 /** What the best answer depends on, and nothing else. */
 function asked(task: Task): string {
   const { name: _n, source: _s, unit: _u, seed: _d, expect: _e, method: _m, raw: _r, kept, ...rest } = task;
-  return JSON.stringify([Object.entries(rest).filter(([, value]) => value !== undefined).sort(), Object.entries(kept ?? {}).filter(([key]) => key.startsWith("design.")).sort()]);
+  return JSON.stringify([
+    Object.entries(rest)
+      .filter(([, value]) => value !== undefined)
+      .sort(),
+    Object.entries(kept ?? {})
+      .filter(([key]) => key.startsWith("design."))
+      .sort(),
+  ]);
 }
 
 /** An edited task: what was known of the answer of the one before goes where it is no longer the same problem. */

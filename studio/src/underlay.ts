@@ -34,7 +34,12 @@ export class Underlay {
   constructor(private changed: () => void) {
     this.group.append(this.image, this.ruler);
     const photo = kept<Photograph>(KEY);
-    if (photo && /^data:image\/(jpeg|png);base64,/.test(photo.data) && [photo.x, photo.y, photo.scale, photo.opacity, photo.width, photo.height].every(Number.isFinite)) this.photo = photo;
+    if (
+      photo &&
+      /^data:image\/(jpeg|png);base64,/.test(photo.data) &&
+      [photo.x, photo.y, photo.scale, photo.opacity, photo.width, photo.height].every(Number.isFinite)
+    )
+      this.photo = photo;
   }
 
   get there() {
@@ -62,13 +67,27 @@ export class Underlay {
     }
     const shrink = Math.min(1, LARGEST / Math.max(bitmap.width, bitmap.height));
     const canvas = document.createElement("canvas");
-    [canvas.width, canvas.height] = [Math.max(1, Math.round(bitmap.width * shrink)), Math.max(1, Math.round(bitmap.height * shrink))];
+    [canvas.width, canvas.height] = [
+      Math.max(1, Math.round(bitmap.width * shrink)),
+      Math.max(1, Math.round(bitmap.height * shrink)),
+    ];
     canvas.getContext("2d")?.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
     bitmap.close();
     const { width, height } = canvas;
-    const data = canvas.toDataURL(file.type === "image/png" && width * height < 400_000 ? "image/png" : "image/jpeg", 0.82);
+    const data = canvas.toDataURL(
+      file.type === "image/png" && width * height < 400_000 ? "image/png" : "image/jpeg",
+      0.82,
+    );
     const scale = Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height);
-    this.photo = { data, width, height, scale, x: (box[0] + box[2] - width * scale) / 2, y: (box[1] + box[3] - height * scale) / 2, opacity: 0.6 };
+    this.photo = {
+      data,
+      width,
+      height,
+      scale,
+      x: (box[0] + box[2] - width * scale) / 2,
+      y: (box[1] + box[3] - height * scale) / 2,
+      opacity: 0.6,
+    };
     this.ends = [];
     this.keep();
     return null;

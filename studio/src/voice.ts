@@ -32,7 +32,9 @@ export class Voice {
     } else if (answer.version !== this.version) {
       clearTimeout(this.timer);
       this.version = answer.version;
-      this.timer = setTimeout(() => { this.search.textContent = "The search goes on."; }, LONG);
+      this.timer = setTimeout(() => {
+        this.search.textContent = "The search goes on.";
+      }, LONG);
     }
   }
 }

@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { Cycle } from "../../src/report/html/player/cycle.mjs";
 import { draggedTo, inputAt, placeOf, rangeOf, within, wrappedDeg } from "../../src/report/html/player/drive.mjs";
 import { kernelOf, motionAt, positionAt, transmissionAngle } from "../../src/report/html/player/kinematics.mjs";
-import { angleTicks, figure, roundLength, tickTexts, ticks } from "../../src/report/html/player/svg.mjs";
+import { angleTicks, figure, roundLength, ticks, tickTexts } from "../../src/report/html/player/svg.mjs";
 
 const golden = JSON.parse(readFileSync(new URL("golden.json", import.meta.url), "utf8"));
 const TOLERANCE = 1e-12;
@@ -52,7 +52,10 @@ test("a whole motion reaches its points where the kernel does, at the places tha
   for (const { mechanism, target, reached } of golden.motions) {
     const cycle = new Cycle(mechanism, target);
     kinds.add(cycle.drive.kind);
-    const size = Math.max(...reached.flat().map(Math.abs), ...["a", "b", "c", "d"].map((key) => mechanism.linkage[key]));
+    const size = Math.max(
+      ...reached.flat().map(Math.abs),
+      ...["a", "b", "c", "d"].map((key) => mechanism.linkage[key]),
+    );
     reached.forEach((P, i) => {
       const point = cycle.points[i];
       near(point.reached, P, size, `point ${i}`);
@@ -107,7 +110,12 @@ test("a crank that is dragged over a toggle comes out on the other branch", () =
   assert.ok(Math.abs((inputAt(drive, q).angle * 180) / Math.PI - 60) < 1e-9);
   // And where the hand goes back, back on the same one.
   let back = placeOf(drive, 60, 1);
-  for (const [crank, sense] of [[63, 1], [60, -1], [50, -1]]) back = draggedTo(drive, back, crank, sense);
+  for (const [crank, sense] of [
+    [63, 1],
+    [60, -1],
+    [50, -1],
+  ])
+    back = draggedTo(drive, back, crank, sense);
   assert.equal(inputAt(drive, back).t1, 1);
 });
 

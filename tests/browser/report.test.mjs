@@ -17,7 +17,15 @@ let browser;
 before(async () => {
   browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
   });
 });
 after(() => browser?.close());
@@ -34,24 +42,29 @@ async function opened(name, options = {}) {
     dialog.dismiss();
   });
   page.on("request", (request) => {
-    if (!request.url().startsWith("file:") || !request.url().includes(`/${name}.html`)) said.push(`request: ${request.url()}`);
+    if (!request.url().startsWith("file:") || !request.url().includes(`/${name}.html`))
+      said.push(`request: ${request.url()}`);
   });
   await page.goto(pathToFileURL(join(pages, `${name}.html`)).href);
   return { page, said, done: () => context.close() };
 }
 
 const slider = (page) => page.locator("input.scrub");
-const valueOf = async (page) => Number(await slider(page).inputValue());
+const placeOf = async (page) => Number(await slider(page).inputValue());
 
 test("every page opens without a message, a request, a dialog or a sideways scroll", async () => {
-  const names = readdirSync(pages).filter((file) => file.endsWith(".html")).map((file) => file.slice(0, -5));
+  const names = readdirSync(pages)
+    .filter((file) => file.endsWith(".html"))
+    .map((file) => file.slice(0, -5));
   assert.ok(names.length >= 8, `pages in ${pages}: ${names}`);
   for (const name of names) {
     for (const width of [1280, 390]) {
       const { page, said, done } = await opened(name, { viewport: { width, height: 844 } });
       await page.waitForTimeout(100);
       assert.deepEqual(said, [], name);
-      const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+      const over = await page.evaluate(
+        () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+      );
       assert.ok(over <= 0, `${name} is ${over} px wider than ${width}`);
       await done();
     }
@@ -61,23 +74,23 @@ test("every page opens without a message, a request, a dialog or a sideways scro
 test("it plays and pauses, by the button and by the space bar, and everything moves together", async () => {
   const { page, said, done } = await opened("five");
   const bars = page.locator("path.bar").first();
-  const [q, d] = [await valueOf(page), await bars.getAttribute("d")];
+  const [q, d] = [await placeOf(page), await bars.getAttribute("d")];
   const cursor = page.locator("path.cursor").first();
   const cursorAt = await cursor.getAttribute("d");
   await page.getByRole("button", { name: "Play" }).click();
   await page.waitForTimeout(400);
   await page.getByRole("button", { name: "Pause" }).click();
-  const moved = await valueOf(page);
+  const moved = await placeOf(page);
   assert.notEqual(moved, q);
   assert.notEqual(await bars.getAttribute("d"), d);
   assert.notEqual(await cursor.getAttribute("d"), cursorAt);
   await page.waitForTimeout(150);
-  assert.equal(await valueOf(page), moved, "it stands when paused");
+  assert.equal(await placeOf(page), moved, "it stands when paused");
   await page.locator("h1").click();
   await page.keyboard.press("Space");
   await page.waitForTimeout(300);
   await page.keyboard.press("Space");
-  assert.notEqual(await valueOf(page), moved);
+  assert.notEqual(await placeOf(page), moved);
   assert.deepEqual(said, []);
   await done();
 });
@@ -86,11 +99,11 @@ test("speed changes how far it goes", async () => {
   const { page, done } = await opened("five");
   const gone = async (speed) => {
     await page.getByLabel("Speed").selectOption(speed);
-    const from = await valueOf(page);
+    const from = await placeOf(page);
     await page.getByRole("button", { name: "Play" }).click();
     await page.waitForTimeout(500);
     await page.getByRole("button", { name: "Pause" }).click();
-    return (((await valueOf(page)) - from) + 720) % 360;
+    return ((await placeOf(page)) - from + 720) % 360;
   };
   const [slow, fast] = [await gone("0.1"), await gone("2")];
   assert.ok(fast > 4 * slow, `${fast} beside ${slow}`);
@@ -118,14 +131,14 @@ test("the slider scrubs, the chart is picked, the crank is dragged by hand and b
   await page.mouse.move(ax - 60, ay - 60, { steps: 4 });
   await page.mouse.move(ax - 80, ay, { steps: 4 });
   await page.mouse.up();
-  assert.ok(Math.abs((await valueOf(page)) - 180) < 1.5, String(await valueOf(page)));
+  assert.ok(Math.abs((await placeOf(page)) - 180) < 1.5, String(await placeOf(page)));
   await grip.focus();
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("PageUp");
-  assert.ok(Math.abs((await valueOf(page)) - 191) < 2);
+  assert.ok(Math.abs((await placeOf(page)) - 191) < 2);
   const chart = await page.locator("svg.chart[role=img]").nth(1).boundingBox();
   await page.mouse.click(chart.x + 0.75 * chart.width, chart.y + 40);
-  const picked = await valueOf(page);
+  const picked = await placeOf(page);
   assert.ok(picked > 230 && picked < 290, String(picked));
   await page.getByRole("button", { name: "Next point" }).click();
   assert.match(await page.locator("output.pose").textContent(), /nearest point \d+/);
@@ -168,8 +181,11 @@ test("the table sorts by every figure, both ways", async () => {
   assert.ok(count >= 12);
   for (let column = 0; column < count; column += 1) {
     const values = () =>
-      table.locator("tbody tr").evaluateAll((rows, i) => rows.map((row) => row.cells[i].dataset.v ?? row.cells[i].textContent), column);
-    const sorted = (list) => [...list].sort((x, y) => (Number.isNaN(Number(x)) ? x.localeCompare(y) : Number(x) - Number(y)));
+      table
+        .locator("tbody tr")
+        .evaluateAll((rows, i) => rows.map((row) => row.cells[i].dataset.v ?? row.cells[i].textContent), column);
+    const sorted = (list) =>
+      [...list].sort((x, y) => (Number.isNaN(Number(x)) ? x.localeCompare(y) : Number(x) - Number(y)));
     await heads.nth(column).click();
     const rising = await values();
     assert.deepEqual(rising, sorted(rising), `column ${column}`);
@@ -186,12 +202,18 @@ test("dimensions are copied with all their digits", async () => {
   await page.locator("article:visible").getByRole("button", { name: "Copy as a linkage file" }).first().click();
   await page.locator("article:visible .said").first().getByText("Copied").waitFor();
   const text = await page.evaluate(() => navigator.clipboard.readText());
-  assert.match(text, /^format = 1\nname = "eighteen-point-1"\nunit = "m"\n\n\[linkage\]\nA = \[0\.5483085928380659, 0\.7165120992749661\]/);
+  assert.match(
+    text,
+    /^format = 1\nname = "eighteen-point-1"\nunit = "m"\n\n\[linkage\]\nA = \[0\.5483085928380659, 0\.7165120992749661\]/,
+  );
   await done();
 });
 
 test("a motion that passes its toggles plays through both branches, a rocking one to and fro", async () => {
-  for (const [name, title] of [["through", "Place on the motion"], ["rock", "Crank angle"]]) {
+  for (const [name, title] of [
+    ["through", "Place on the motion"],
+    ["rock", "Crank angle"],
+  ]) {
     const { page, said, done } = await opened(name);
     assert.equal(await page.locator(".scrub-label span").first().textContent(), title);
     const [low, high] = await slider(page).evaluate((input) => [Number(input.min), Number(input.max)]);
@@ -226,7 +248,10 @@ test("the security policy stops a script that got in all the same", async () => 
   const folder = mkdtempSync(join(tmpdir(), "linkwright-policy-"));
   const place = join(folder, "bad.html");
   const page = readFileSync(join(pages, "five.html"), "utf8");
-  writeFileSync(place, page.replace("<h1>", "<script>alert(1)</script><img src=x onerror=alert(2)><h1 onclick=alert(3)>"));
+  writeFileSync(
+    place,
+    page.replace("<h1>", "<script>alert(1)</script><img src=x onerror=alert(2)><h1 onclick=alert(3)>"),
+  );
   const context = await browser.newContext();
   const tab = await context.newPage();
   const dialogs = [];
@@ -262,7 +287,7 @@ test("where motion is to be reduced it steps from point to point", async () => {
   const seen = new Set();
   for (let i = 0; i < 12; i += 1) {
     await page.waitForTimeout(60);
-    seen.add(await valueOf(page));
+    seen.add(await placeOf(page));
   }
   await page.getByRole("button", { name: "Pause" }).click();
   assert.ok(seen.size >= 2 && seen.size <= 6, [...seen].join(" "));
@@ -274,17 +299,31 @@ test("controls have names, figures have text alternatives, everything is reached
   const nameless = await page.evaluate(() =>
     [...document.querySelectorAll("button, input, select, [role=slider], [role=img], [role=region], svg[role]")]
       .filter((node) => node.checkVisibility())
-      .filter((node) => !(node.getAttribute("aria-label") || node.textContent.trim() || node.labels?.length || node.querySelector("title")))
+      .filter(
+        (node) =>
+          !(
+            node.getAttribute("aria-label") ||
+            node.textContent.trim() ||
+            node.labels?.length ||
+            node.querySelector("title")
+          ),
+      )
       .map((node) => node.outerHTML.slice(0, 120)),
   );
   assert.deepEqual(nameless, []);
-  assert.match(await page.locator("svg.chart[role=img]").nth(1).getAttribute("aria-label"), /Transmission angle: from [\d.]+ at a crank angle of/);
+  assert.match(
+    await page.locator("svg.chart[role=img]").nth(1).getAttribute("aria-label"),
+    /Transmission angle: from [\d.]+ at a crank angle of/,
+  );
   const reached = new Set();
   for (let i = 0; i < 60; i += 1) {
     await page.keyboard.press("Tab");
-    reached.add(await page.evaluate(() => document.activeElement.className?.baseVal ?? document.activeElement.className));
+    reached.add(
+      await page.evaluate(() => document.activeElement.className?.baseVal ?? document.activeElement.className),
+    );
   }
-  for (const name of ["grip", "sign play", "scrub", "sort", "choose", "copy"]) assert.ok(reached.has(name), `${name} in ${[...reached]}`);
+  for (const name of ["grip", "sign play", "scrub", "sort", "choose", "copy"])
+    assert.ok(reached.has(name), `${name} in ${[...reached]}`);
   await done();
 });
 
@@ -294,7 +333,10 @@ test("ink keeps its contrast in light and dark", async () => {
     const ratios = await page.evaluate(() => {
       const linear = (c) => (c <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
       const luminance = (colour) => {
-        const [r, g, b] = colour.match(/[\d.]+/g).slice(0, 3).map((c) => linear(Number(c) / 255));
+        const [r, g, b] = colour
+          .match(/[\d.]+/g)
+          .slice(0, 3)
+          .map((c) => linear(Number(c) / 255));
         return 0.2126 * r + 0.7152 * g + 0.0722 * b;
       };
       const probe = document.createElement("span");
@@ -305,7 +347,10 @@ test("ink keeps its contrast in light and dark", async () => {
         return luminance(getComputedStyle(probe).color);
       };
       const ratio = (x, y) => (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05);
-      return ["--ink", "--muted", "--accent", "--good", "--bad", "--target-text"].map((name) => [name, ratio(of(name), of("--paper"))]);
+      return ["--ink", "--muted", "--accent", "--good", "--bad", "--target-text"].map((name) => [
+        name,
+        ratio(of(name), of("--paper")),
+      ]);
     });
     for (const [name, ratio] of ratios) assert.ok(ratio >= 4.5, `${name} in ${colorScheme}: ${ratio}`);
     await done();
@@ -315,7 +360,8 @@ test("ink keeps its contrast in light and dark", async () => {
 test("it prints as a sheet without controls, and screenshots are taken where they are asked for", async () => {
   const { page, done } = await opened("five");
   await page.emulateMedia({ media: "print" });
-  for (const gone of [".transport", ".choices", ".copying"]) assert.equal(await page.locator(`${gone}:visible`).count(), 0, gone);
+  for (const gone of [".transport", ".choices", ".copying"])
+    assert.equal(await page.locator(`${gone}:visible`).count(), 0, gone);
   assert.ok(await page.locator("svg.stage").first().isVisible());
   const sheet = await page.pdf({ format: "A4" });
   const count = sheet.toString("latin1").match(/\/Type\s*\/Page\b/g).length;

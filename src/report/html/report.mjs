@@ -42,8 +42,10 @@ function begin() {
     current = shown;
     for (const article of articles) article.classList.toggle("chosen", article.dataset.key === shown);
     if (radios.has(owner)) radios.get(owner).checked = true;
-    for (const row of all("tr[data-key]")) row.classList.toggle("chosen", row.dataset.key === key || row.dataset.key === owner);
-    for (const button of all("button[data-choose]")) button.setAttribute("aria-pressed", String(button.dataset.choose === key));
+    for (const row of all("tr[data-key]"))
+      row.classList.toggle("chosen", row.dataset.key === key || row.dataset.key === owner);
+    for (const button of all("button[data-choose]"))
+      button.setAttribute("aria-pressed", String(button.dataset.choose === key));
     played.textContent = key === owner && radios.has(key) ? "" : `Shown now: ${mechanism.name}`;
     showPoints(player.cycle);
   }
@@ -66,7 +68,13 @@ function chooseFromTables(choose) {
     const { key } = row.dataset;
     if (!byKey.has(key)) continue;
     const cell = row.querySelector("th, td");
-    const button = element("button", { type: "button", class: "choose", "data-choose": key, "aria-pressed": "false", "aria-label": `Show ${byKey.get(key).name}` });
+    const button = element("button", {
+      type: "button",
+      class: "choose",
+      "data-choose": key,
+      "aria-pressed": "false",
+      "aria-label": `Show ${byKey.get(key).name}`,
+    });
     button.append(...cell.childNodes);
     cell.append(button);
     row.classList.add("choosable");
@@ -116,7 +124,9 @@ function copyButton(text, name) {
   const said = element("span", { class: "said", role: "status" });
   button.addEventListener("click", async () => {
     said.textContent = (await copied(text())) ? "Copied" : "Select the text and copy it by hand";
-    setTimeout(() => { said.textContent = ""; }, 2500);
+    setTimeout(() => {
+      said.textContent = "";
+    }, 2500);
   });
   return element("div", { class: "copying" }, [button, said]);
 }

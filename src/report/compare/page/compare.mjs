@@ -4,13 +4,18 @@ const all = (selector, within = document) => [...within.querySelectorAll(selecto
 const curvesOf = (row) => all(`.curve[data-row="${row}"]`);
 
 for (const box of all("input[data-row]")) {
-  const show = () => curvesOf(box.dataset.row).forEach((curve) => curve.classList.toggle("off", !box.checked));
+  const show = () => {
+    for (const curve of curvesOf(box.dataset.row)) curve.classList.toggle("off", !box.checked);
+  };
   box.addEventListener("change", show);
   // A page that is loaded again keeps its boxes as they were.
   show();
 }
 
-for (const [id, checked] of [["all", true], ["none", false]]) {
+for (const [id, checked] of [
+  ["all", true],
+  ["none", false],
+]) {
   document.getElementById(id)?.addEventListener("click", () => {
     for (const box of all("input[data-row]")) {
       box.checked = checked;
@@ -23,7 +28,7 @@ function light(row) {
   for (const drawing of all(".drawing")) {
     drawing.classList.toggle("some", row !== null && all(`.curve[data-row="${row}"]:not(.off)`, drawing).length > 0);
   }
-  all(".curve, tbody tr").forEach((lit) => lit.classList.toggle("on", row !== null && lit.dataset.row === row));
+  for (const lit of all(".curve, tbody tr")) lit.classList.toggle("on", row !== null && lit.dataset.row === row);
 }
 
 for (const spot of all("label[data-row], tbody tr[data-row], .curve[data-row]")) {
@@ -55,7 +60,7 @@ for (const table of all("table")) {
     }
     head.querySelector("button").addEventListener("click", () => {
       const sign = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
-      heads.forEach((other) => other.removeAttribute("aria-sort"));
+      for (const other of heads) other.removeAttribute("aria-sort");
       head.setAttribute("aria-sort", sign > 0 ? "ascending" : "descending");
       const rows = [...table.tBodies[0].rows];
       rows.sort((one, other) => compareCells(one.cells[column], other.cells[column], sign));

@@ -1,6 +1,6 @@
 // Charts over the motion and along the points, with a cursor that the animation moves.
 
-import { angleTicks, element, figure, pathThrough, px, setAll, shape, tickTexts, ticks } from "./svg.mjs";
+import { angleTicks, element, figure, pathThrough, px, setAll, shape, ticks, tickTexts } from "./svg.mjs";
 
 /** Pixels left of, right of, above and below the area of a chart. */
 const LEFT = 56;
@@ -10,6 +10,9 @@ const BOTTOM = 24;
 
 /** What every chart has: a title with a reading beside it, a frame, and a width that follows its place. */
 class Chart {
+  /** Charts so far: the ids of their clips. */
+  static count = 0;
+
   /** @param {HTMLElement} place @param {{title: string, height: number}} options */
   constructor(place, { title, height }) {
     this.height = height;
@@ -18,7 +21,10 @@ class Chart {
     this.name = title;
     this.title = element("span", {}, [title, this.note]);
     this.svg = shape("svg", { class: "chart", role: "img" });
-    this.figure = element("figure", { class: "chart-box" }, [element("figcaption", {}, [this.title, this.reading]), this.svg]);
+    this.figure = element("figure", { class: "chart-box" }, [
+      element("figcaption", {}, [this.title, this.reading]),
+      this.svg,
+    ]);
     place.append(this.figure);
     if (typeof ResizeObserver !== "undefined") {
       new ResizeObserver(() => {
@@ -42,8 +48,12 @@ class Chart {
   frame(low, high, lines) {
     const texts = tickTexts(lines);
     const y = (value) => this.y(value, low, high);
-    const parts = lines.map((value) => shape("path", { class: value === 0 ? "axis" : "grid", d: `M${LEFT} ${px(y(value))}H${px(this.width - RIGHT)}` }));
-    const numbers = lines.map((value, i) => shape("text", { class: "tick", x: LEFT - 8, y: px(y(value) + 4), "text-anchor": "end" }, [texts[i]]));
+    const parts = lines.map((value) =>
+      shape("path", { class: value === 0 ? "axis" : "grid", d: `M${LEFT} ${px(y(value))}H${px(this.width - RIGHT)}` }),
+    );
+    const numbers = lines.map((value, i) =>
+      shape("text", { class: "tick", x: LEFT - 8, y: px(y(value) + 4), "text-anchor": "end" }, [texts[i]]),
+    );
     return [...parts, ...numbers];
   }
 
@@ -53,8 +63,16 @@ class Chart {
 
   bottomTicks(values, texts, x) {
     const base = this.height - BOTTOM;
-    const lines = shape("path", { class: "axis", d: `M${LEFT} ${base}H${px(this.width - RIGHT)}${values.map((v) => `M${px(x(v))} ${base}v4`).join("")}` });
-    return [lines, ...values.map((v, i) => shape("text", { class: "tick", x: px(x(v)), y: base + 17, "text-anchor": "middle" }, [texts[i]]))];
+    const lines = shape("path", {
+      class: "axis",
+      d: `M${LEFT} ${base}H${px(this.width - RIGHT)}${values.map((v) => `M${px(x(v))} ${base}v4`).join("")}`,
+    });
+    return [
+      lines,
+      ...values.map((v, i) =>
+        shape("text", { class: "tick", x: px(x(v)), y: base + 17, "text-anchor": "middle" }, [texts[i]]),
+      ),
+    ];
   }
 }
 
@@ -112,7 +130,8 @@ export class CycleChart extends Chart {
     const by = (list, part) => [...list].sort((x, y) => x - y)[Math.round((list.length - 1) * part)];
     const toggles = this.cycle.drive.kind === "rock" || this.cycle.drive.kind === "through";
     const base = used.length > 8 ? used : values;
-    let [low, high] = toggles && base === values ? [by(values, 0.08), by(values, 0.92)] : [Math.min(...base), Math.max(...base)];
+    let [low, high] =
+      toggles && base === values ? [by(values, 0.08), by(values, 0.92)] : [Math.min(...base), Math.max(...base)];
     if (this.cycle.drive.kind === "through") [low, high] = [by(values, 0.08), by(values, 0.92)];
     low = Math.min(low, 0);
     const margin = 0.06 * (high - low || 1);
@@ -130,7 +149,8 @@ export class CycleChart extends Chart {
     const parts = [];
     const top = TOP;
     const tall = this.height - TOP - BOTTOM;
-    const band = (a, b) => b > a && parts.push(shape("rect", { class: "used", x: px(x(a)), y: top, width: px(x(b) - x(a)), height: tall }));
+    const band = (a, b) =>
+      b > a && parts.push(shape("rect", { class: "used", x: px(x(a)), y: top, width: px(x(b) - x(a)), height: tall }));
     if (cycle.used && cycle.used[1] - cycle.used[0] < to - from - 1) {
       band(Math.max(cycle.used[0], from), Math.min(cycle.used[1], to));
       if (cycle.cyclic) band(from, Math.min(cycle.used[1] - 360, to));
@@ -138,9 +158,17 @@ export class CycleChart extends Chart {
     const lines = this.options.high !== undefined ? angleTicks(low, high, 5) : ticks(low, high, 4);
     parts.push(...this.frame(low, high, lines));
     const angles = angleTicks(from, to, (this.width - LEFT - RIGHT) / 44);
-    parts.push(...this.bottomTicks(angles, tickTexts(angles).map((text) => (cycle.drive.kind === "through" ? text : `${text}°`)), x));
+    parts.push(
+      ...this.bottomTicks(
+        angles,
+        tickTexts(angles).map((text) => (cycle.drive.kind === "through" ? text : `${text}°`)),
+        x,
+      ),
+    );
     for (const level of this.levels) {
-      parts.push(shape("path", { class: "level", d: `M${LEFT} ${px(this.y(level, low, high))}H${px(this.width - RIGHT)}` }));
+      parts.push(
+        shape("path", { class: "level", d: `M${LEFT} ${px(this.y(level, low, high))}H${px(this.width - RIGHT)}` }),
+      );
     }
     const clipped = (value) => Math.min(Math.max(value, low - (high - low)), high + (high - low));
     for (const line of this.options.lines) {
@@ -150,8 +178,11 @@ export class CycleChart extends Chart {
       });
       parts.push(shape("path", { class: `line ${line.kind}`, d: pathThrough(points) }));
     }
-    const name = `clip${Chart.count = (Chart.count ?? 0) + 1}`;
-    const clip = shape("clipPath", { id: name }, [shape("rect", { x: LEFT, y: TOP - 2, width: px(this.width - LEFT - RIGHT), height: tall + 4 })]);
+    Chart.count += 1;
+    const name = `clip${Chart.count}`;
+    const clip = shape("clipPath", { id: name }, [
+      shape("rect", { x: LEFT, y: TOP - 2, width: px(this.width - LEFT - RIGHT), height: tall + 4 }),
+    ]);
     const drawn = parts.filter((part) => part.classList.contains("line"));
     const rest = parts.filter((part) => !part.classList.contains("line"));
     this.cursor = shape("path", { class: "cursor" });
@@ -170,7 +201,8 @@ export class CycleChart extends Chart {
     if (list.length === 0) return `${this.name}: nothing to show`;
     const least = list.reduce((best, sample) => (of(sample) < of(best) ? sample : best));
     const most = list.reduce((best, sample) => (of(sample) > of(best) ? sample : best));
-    const where = (sample) => `${figure(of(sample), 3)} at a crank angle of ${figure(this.cycle.crankDeg(sample.q), 3)} degrees`;
+    const where = (sample) =>
+      `${figure(of(sample), 3)} at a crank angle of ${figure(this.cycle.crankDeg(sample.q), 3)} degrees`;
     return `${this.name}: from ${where(least)} to ${where(most)}`;
   }
 
@@ -199,10 +231,13 @@ export class ErrorChart extends Chart {
       if (!this.cycle || this.cycle.points.length === 0) return;
       const box = this.svg.getBoundingClientRect();
       const at = ((event.clientX - box.left) * this.width) / box.width;
-      const nearest = this.cycle.points.reduce((best, point, i) => {
-        const apart = Math.abs(this.xOf(i) - at);
-        return apart < best.apart ? { apart, point } : best;
-      }, { apart: Infinity, point: null });
+      const nearest = this.cycle.points.reduce(
+        (best, point, i) => {
+          const apart = Math.abs(this.xOf(i) - at);
+          return apart < best.apart ? { apart, point } : best;
+        },
+        { apart: Infinity, point: null },
+      );
       if (nearest.point) options.onPick(nearest.point);
     });
   }
@@ -226,8 +261,16 @@ export class ErrorChart extends Chart {
     const parts = this.frame(0, high, ticks(0, high, 4));
     const step = [1, 2, 5, 10, 20, 50, 100, 200, 500].find((s) => points.length / s <= room / 28) ?? 1000;
     const shown = points.map((_, i) => i).filter((i) => i % step === 0);
-    parts.push(...this.bottomTicks(shown, shown.map((i) => String(points[i].number)), this.xOf));
-    const limit = points.map((point, i) => (point.tolerance === null || point.tolerance > high ? null : [this.xOf(i), y(point.tolerance)]));
+    parts.push(
+      ...this.bottomTicks(
+        shown,
+        shown.map((i) => String(points[i].number)),
+        this.xOf,
+      ),
+    );
+    const limit = points.map((point, i) =>
+      point.tolerance === null || point.tolerance > high ? null : [this.xOf(i), y(point.tolerance)],
+    );
     this.note.textContent = limit.some(Boolean) ? "dashed: tolerance" : "";
     if (limit.some(Boolean)) parts.push(shape("path", { class: "level", d: pathThrough(limit) }));
     points.forEach((point, i) => {
@@ -235,14 +278,17 @@ export class ErrorChart extends Chart {
       const kind = point === worst ? "stem worst" : points.length > 120 ? "stem thin" : "stem";
       const x = px(this.xOf(i));
       parts.push(shape("path", { class: kind, d: `M${x} ${px(base)}V${px(y(point.error))}` }));
-      if (points.length <= 120) parts.push(shape("circle", { class: kind, cx: x, cy: px(y(point.error)), r: point === worst ? 4 : 2.8 }));
+      if (points.length <= 120)
+        parts.push(shape("circle", { class: kind, cx: x, cy: px(y(point.error)), r: point === worst ? 4 : 2.8 }));
     });
     this.ring = shape("circle", { class: "cursor-ring", r: 6.5 });
     this.svg.replaceChildren(...parts, this.ring);
     const unit = this.options.unit ? ` ${this.options.unit}` : "";
-    this.describe(worst
-      ? `Error at the ${points.length} points: the largest is ${figure(worst.error, 4)}${unit} at point ${worst.number}`
-      : "Error at the points: nothing to show");
+    this.describe(
+      worst
+        ? `Error at the ${points.length} points: the largest is ${figure(worst.error, 4)}${unit} at point ${worst.number}`
+        : "Error at the points: nothing to show",
+    );
     if (this.q !== undefined) this.at(this.q);
   }
 

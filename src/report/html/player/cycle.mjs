@@ -1,7 +1,7 @@
 // A mechanism made ready to be shown: its kernel, where its points lie on the motion, its curves over the motion.
 
-import { kernelOf, motionAt, positionAt, transmissionAngle } from "./kinematics.mjs";
 import { inputAt, isCyclic, placeOf, rangeOf, usedOf } from "./drive.mjs";
+import { kernelOf, motionAt, positionAt, transmissionAngle } from "./kinematics.mjs";
 
 /** @typedef {{key: string, name: string, linkage: import("./kinematics.mjs").Linkage, drive: import("./drive.mjs").Drive, crank_deg: number[], t1_at?: number[], worst?: number}} Mechanism */
 /** @typedef {{number: number, target: [number, number], reached: [number, number] | null, error: number, crankDeg: number, place: number | null, tolerance: number | null}} PathPoint */
@@ -38,7 +38,11 @@ export class Cycle {
         tolerance: target.tolerance?.[i] ?? null,
       };
     });
-    this.used = usedOf(this.drive, mechanism.crank_deg, this.points.map((point) => point.place));
+    this.used = usedOf(
+      this.drive,
+      mechanism.crank_deg,
+      this.points.map((point) => point.place),
+    );
     this.start = this.points.find((point) => point.place !== null)?.place ?? (this.range[0] + this.range[1]) / 2;
     /** Which way the crank turns along the points: 1 or -1. */
     this.sense = senseOf(mechanism.crank_deg);
@@ -89,7 +93,11 @@ export class Cycle {
   curveNear(box, parts) {
     const [w, h] = [box[2] - box[0], box[3] - box[1]];
     const holds = (joints) =>
-      joints && joints.P[0] > box[0] - w && joints.P[0] < box[2] + w && joints.P[1] > box[1] - h && joints.P[1] < box[3] + h;
+      joints &&
+      joints.P[0] > box[0] - w &&
+      joints.P[0] < box[2] + w &&
+      joints.P[1] > box[1] - h &&
+      joints.P[1] < box[3] + h;
     const curve = [];
     for (let i = 0; i < CURVE_SAMPLES; i += 1) {
       if (!holds(this.onCircuit(i)) && !holds(this.onCircuit(i + 1))) {

@@ -23,10 +23,10 @@ const TOGGLE_ROUNDING = 64 * Number.EPSILON;
  */
 export function kernelOf(linkage) {
   const { A, B, a, b, c, d, e, t2 } = linkage;
-  const along = (b + (d - e) * (d + e) / b) / 2;
+  const along = (b + ((d - e) * (d + e)) / b) / 2;
   let areaSq = b + d + e;
   for (const lack of [b + d - e, d + e - b, e + b - d]) areaSq *= Math.max(lack, 0);
-  const across = t2 * Math.sqrt(areaSq) / (2 * b);
+  const across = (t2 * Math.sqrt(areaSq)) / (2 * b);
   return { A, B, a, b, c, couplerSq: b * b, halfDifference: 0.5 * (b * b - c * c), z: [along / b, across / b] };
 }
 
@@ -84,7 +84,7 @@ export function motionAt(k, joints, omega, alpha) {
   const sine = (wx * -ry + wy * rx) / bc;
   const s = Math.sqrt((k.B[0] - C[0]) ** 2 + (k.B[1] - C[1]) ** 2);
   const fromOrigin = Math.sqrt(k.A[0] ** 2 + k.A[1] ** 2) + Math.sqrt(k.B[0] ** 2 + k.B[1] ** 2) + k.a;
-  const rounding = TOGGLE_ROUNDING * (k.b * k.b + k.c * k.c + s * fromOrigin) / bc;
+  const rounding = (TOGGLE_ROUNDING * (k.b * k.b + k.c * k.c + s * fromOrigin)) / bc;
   if (Math.abs(sine) <= TOGGLE_SINE || sine * sine <= rounding) return null;
   const inverse = 1 / (bc * sine);
   // <w, X> = p and <r, X> = q.

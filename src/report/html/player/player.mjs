@@ -1,9 +1,9 @@
 // The player: drawing, transport and charts of one mechanism at a time. It knows nothing of the page around it.
 
-import { Cycle } from "./cycle.mjs";
 import { CycleChart, ErrorChart } from "./chart.mjs";
-import { Marks, Stage } from "./stage.mjs";
+import { Cycle } from "./cycle.mjs";
 import { draggedTo, within, wrappedDeg } from "./drive.mjs";
+import { Marks, Stage } from "./stage.mjs";
 import { element, figure, setAll, shape } from "./svg.mjs";
 
 /** Seconds of a turn at speed 1. */
@@ -59,9 +59,15 @@ export class Player {
     play.button.addEventListener("click", () => this.toggle());
     back.button.addEventListener("click", () => this.stepPoint(-1));
     on.button.addEventListener("click", () => this.stepPoint(1));
-    this.speedChoice = element("select", { "aria-label": "Speed" }, SPEEDS.map((s) => element("option", { value: s }, [`${s} ×`])));
+    this.speedChoice = element(
+      "select",
+      { "aria-label": "Speed" },
+      SPEEDS.map((s) => element("option", { value: s }, [`${s} ×`])),
+    );
     this.speedChoice.value = "1";
-    this.speedChoice.addEventListener("change", () => { this.speed = Number(this.speedChoice.value); });
+    this.speedChoice.addEventListener("change", () => {
+      this.speed = Number(this.speedChoice.value);
+    });
     this.lookChoice = element("button", { type: "button", "aria-pressed": "false" }, ["Enlarge the target"]);
     this.lookChoice.addEventListener("click", () => {
       const target = this.stage.look !== "target";
@@ -132,14 +138,27 @@ export class Player {
     });
     this.velocity = rates("Velocity of P", "v", 1, "s");
     this.acceleration = rates("Acceleration of P", "a", 2, "s²");
-    const speed = element("input", { type: "number", min: "-10000", max: "10000", step: "any", value: "60", inputmode: "decimal" });
+    const speed = element("input", {
+      type: "number",
+      min: "-10000",
+      max: "10000",
+      step: "any",
+      value: "60",
+      inputmode: "decimal",
+    });
     speed.addEventListener("input", () => {
       const rpm = Number(speed.value);
       if (speed.value === "" || !Number.isFinite(rpm) || Math.abs(rpm) > 1e6) return;
       this.rpm = rpm;
       this.drawRates();
     });
-    const key = (kind, text) => element("span", { class: "key" }, [shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [shape("path", { class: `line ${kind}`, d: "M0 4h18" })]), text]);
+    const key = (kind, text) =>
+      element("span", { class: "key" }, [
+        shape("svg", { class: "chart", width: 18, height: 8, "aria-hidden": "true" }, [
+          shape("path", { class: `line ${kind}`, d: "M0 4h18" }),
+        ]),
+        text,
+      ]);
     place.append(
       element("p", { class: "chart-note" }, [
         element("label", {}, ["With the crank at ", speed, " turns a minute. "]),

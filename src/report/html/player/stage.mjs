@@ -47,7 +47,10 @@ function awayFrom(joint, neighbours) {
 /** What the marks are. */
 function legend() {
   const key = (part, text) =>
-    element("span", {}, [shape("svg", { class: "stage", width: 22, height: 12, viewBox: "0 0 22 12", "aria-hidden": "true" }, [part]), text]);
+    element("span", {}, [
+      shape("svg", { class: "stage", width: 22, height: 12, viewBox: "0 0 22 12", "aria-hidden": "true" }, [part]),
+      text,
+    ]);
   return element("div", { class: "legend" }, [
     key(shape("circle", { class: "target-point", cx: 11, cy: 6, r: 4.4 }), "desired"),
     key(shape("circle", { class: "target-point first", cx: 11, cy: 6, r: 5 }), "the first"),
@@ -76,8 +79,12 @@ class Labels {
       const reach = i < 12 ? far : 1.8 * far;
       const [dx, dy] = [Math.cos(wished + turn), Math.sin(wished + turn)];
       const at = [point[0] + dx * (reach + width / 2), point[1] + dy * (reach + 6)];
-      const covers = this.taken.some((other) => Math.abs(other[0] - at[0]) < other[2] + width / 2 + 1 && Math.abs(other[1] - at[1]) < 11);
-      const hidden = this.ink.filter((spot) => Math.abs(spot[0] - at[0]) < width / 2 + 1 && Math.abs(spot[1] - at[1]) < 7).length;
+      const covers = this.taken.some(
+        (other) => Math.abs(other[0] - at[0]) < other[2] + width / 2 + 1 && Math.abs(other[1] - at[1]) < 11,
+      );
+      const hidden = this.ink.filter(
+        (spot) => Math.abs(spot[0] - at[0]) < width / 2 + 1 && Math.abs(spot[1] - at[1]) < 7,
+      ).length;
       const cost = hidden + 0.9 * Math.abs(turn) + (i < 12 ? 0 : 1) + (covers ? 100 : 0);
       if (!best || cost < best.cost) best = { cost, at, covers };
     }
@@ -134,7 +141,9 @@ export class Stage {
         "aria-valuemax": 360,
       }),
     };
-    this.letters = Object.fromEntries(["A", "B", "C", "D", "P"].map((name) => [name, shape("text", { class: "letter" }, [name])]));
+    this.letters = Object.fromEntries(
+      ["A", "B", "C", "D", "P"].map((name) => [name, shape("text", { class: "letter" }, [name])]),
+    );
     this.moving.append(...Object.values(this.parts), ...Object.values(this.letters));
   }
 
@@ -167,7 +176,10 @@ export class Stage {
   /** The point of the plane under a pointer. */
   fromEvent(event) {
     const box = this.svg.getBoundingClientRect();
-    const [x, y] = [((event.clientX - box.left) * this.width) / box.width, ((event.clientY - box.top) * this.height) / box.height];
+    const [x, y] = [
+      ((event.clientX - box.left) * this.width) / box.width,
+      ((event.clientY - box.top) * this.height) / box.height,
+    ];
     return this.toPlane([x, y]);
   }
 
@@ -210,7 +222,9 @@ export class Stage {
     const padding = Math.min(PADDING, 0.09 * width);
     const footer = 30;
     const wanted = ((width - 2 * padding) * h) / w + 2 * padding + footer;
-    const height = Math.round(Math.min(Math.max(wanted, 0.5 * width, 260), Math.max((width < 500 ? 1.1 : 0.84) * width, 300), 600));
+    const height = Math.round(
+      Math.min(Math.max(wanted, 0.5 * width, 260), Math.max((width < 500 ? 1.1 : 0.84) * width, 300), 600),
+    );
     const scale = Math.min((width - 2 * padding) / w, (height - 2 * padding - footer) / h);
     const centre = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
     const middle = [width / 2, (height - footer) / 2];
@@ -262,7 +276,8 @@ export class Stage {
     points.forEach((point, i) => {
       if (!point.reached) return;
       const reached = this.toPixel(point.reached);
-      if (Math.hypot(reached[0] - spots[i][0], reached[1] - spots[i][1]) > radius) whiskers += pathThrough([spots[i], reached]);
+      if (Math.hypot(reached[0] - spots[i][0], reached[1] - spots[i][1]) > radius)
+        whiskers += pathThrough([spots[i], reached]);
     });
     if (whiskers) parts.push(shape("path", { class: "whisker", d: whiskers }));
     const worst = this.cycle.worstPoint();
@@ -270,7 +285,9 @@ export class Stage {
       const [cx, cy] = spots[i].map(px);
       if (point === worst) parts.push(shape("circle", { class: "worst-halo", cx, cy, r: radius + 6 }));
       const name = point.number === 0 ? "target-point first" : "target-point";
-      parts.push(shape("circle", { class: many ? "target-dot" : name, cx, cy, r: point.number === 0 ? radius + 1 : radius }));
+      parts.push(
+        shape("circle", { class: many ? "target-dot" : name, cx, cy, r: point.number === 0 ? radius + 1 : radius }),
+      );
       if (point.reached && !many) {
         const [rx, ry] = this.toPixel(point.reached).map(px);
         parts.push(shape("circle", { class: "reached", cx: rx, cy: ry, r: 1.9 }));
@@ -283,7 +300,10 @@ export class Stage {
   /** Numbers outside of the target: all where they are few, else round ones, and the worst point's. */
   numbers(spots, radius, worst) {
     const { points } = this.cycle;
-    const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find((s) => points.length <= NUMBERED * s) ?? 100000;
+    const step =
+      [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find(
+        (s) => points.length <= NUMBERED * s,
+      ) ?? 100000;
     const middle = [0, 1].map((axis) => spots.reduce((sum, spot) => sum + spot[axis], 0) / (spots.length || 1));
     const curve = this.circuit.flatMap((joints, i) => (joints && i % 3 === 0 ? [this.toPixel(joints.P)] : []));
     const labels = new Labels([...curve, ...spots]);
@@ -293,10 +313,21 @@ export class Stage {
       const text = isWorst ? `${point.number} worst` : String(point.number);
       const wished = Math.atan2(spots[i][1] - middle[1], spots[i][0] - middle[0]);
       const at = labels.place(spots[i], radius + (isWorst ? 8 : 3), 6.6 * text.length, wished, isWorst);
-      if (at) parts.push(shape("text", { class: isWorst ? "number worst" : "number", x: px(at[0]), y: px(at[1] + 4), "text-anchor": "middle" }, [text]));
+      if (at)
+        parts.push(
+          shape(
+            "text",
+            { class: isWorst ? "number worst" : "number", x: px(at[0]), y: px(at[1] + 4), "text-anchor": "middle" },
+            [text],
+          ),
+        );
     };
-    points.forEach((point, i) => point === worst && place(point, i));
-    points.forEach((point, i) => point !== worst && point.number % step === 0 && place(point, i));
+    points.forEach((point, i) => {
+      if (point === worst) place(point, i);
+    });
+    points.forEach((point, i) => {
+      if (point !== worst && point.number % step === 0) place(point, i);
+    });
     return parts;
   }
 
@@ -328,14 +359,20 @@ export class Stage {
     for (const [name, [cx, cy]] of Object.entries(seats)) setAll(parts[name], { cx: px(cx), cy: px(cy) });
     const near = this.cycle.nearestPoint(q);
     setAll(parts.trace, { d: near ? pathThrough([this.toPixel(near.target), p]) : "" });
-    parts.trace.classList.toggle("absent", !near || Math.hypot(near.target[0] - joints.P[0], near.target[1] - joints.P[1]) * this.scale > 40);
+    parts.trace.classList.toggle(
+      "absent",
+      !near || Math.hypot(near.target[0] - joints.P[0], near.target[1] - joints.P[1]) * this.scale > 40,
+    );
     const around = { A: [a, [c, b]], B: [b, [d, a]], C: [c, [a, d, p]], D: [d, [b, c, p]], P: [p, [c, d]] };
     for (const [name, [joint, others]] of Object.entries(around)) {
       const [x, y] = awayFrom(joint, others);
       setAll(letters[name], { x: px(joint[0] + 17 * x), y: px(joint[1] + 17 * y + 5) });
     }
     const crank = this.cycle.crankDeg(q);
-    setAll(parts.grip, { "aria-valuenow": figure(crank, 5).replace("−", "-"), "aria-valuetext": `${figure(crank, 4)} degrees` });
+    setAll(parts.grip, {
+      "aria-valuenow": figure(crank, 5).replace("−", "-"),
+      "aria-valuetext": `${figure(crank, 4)} degrees`,
+    });
   }
 }
 
@@ -343,7 +380,12 @@ export class Stage {
 export class Marks {
   /** @param {HTMLElement} place */
   constructor(place) {
-    this.svg = shape("svg", { class: "marks", "aria-hidden": "true", viewBox: "0 0 1000 14", preserveAspectRatio: "none" });
+    this.svg = shape("svg", {
+      class: "marks",
+      "aria-hidden": "true",
+      viewBox: "0 0 1000 14",
+      preserveAspectRatio: "none",
+    });
     place.append(this.svg);
     this.labels = element("div", { class: "marks-labels", "aria-hidden": "true" });
     place.append(this.labels);
@@ -354,7 +396,8 @@ export class Marks {
     const [low, high] = cycle.range;
     const x = (q) => px((1000 * (q - low)) / (high - low));
     const parts = [];
-    const band = (from, to) => parts.push(shape("rect", { class: "used", x: x(from), y: 0, width: Math.max(0, x(to) - x(from)), height: 14 }));
+    const band = (from, to) =>
+      parts.push(shape("rect", { class: "used", x: x(from), y: 0, width: Math.max(0, x(to) - x(from)), height: 14 }));
     if (cycle.used) {
       const [from, to] = cycle.used;
       band(Math.max(from, low), Math.min(to, high));

@@ -87,7 +87,8 @@ export function angleTicks(low, high, count) {
 export function tickTexts(values) {
   const step = values.length > 1 ? Math.abs(values[1] - values[0]) : Math.abs(values[0]) || 1;
   const largest = Math.max(...values.map(Math.abs), step);
-  if (largest >= 1e6 || largest < 1e-4) return values.map((v) => (v === 0 ? "0" : minus(Number(v.toPrecision(3)).toExponential())));
+  if (largest >= 1e6 || largest < 1e-4)
+    return values.map((v) => (v === 0 ? "0" : minus(Number(v.toPrecision(3)).toExponential())));
   const decimals = Math.max(0, Math.min(10, -Math.floor(Math.log10(step) + 1e-9)));
   return values.map((v) => minus((Math.abs(v) < step * 1e-6 ? 0 : v).toFixed(decimals)));
 }
