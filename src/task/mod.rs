@@ -6,6 +6,7 @@
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
 //! | [`problem`] | the mathematical problem: design space, residuals with derivatives, requirements, fitness |
+//! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 
@@ -13,8 +14,10 @@ pub mod defect;
 pub mod forms;
 mod path;
 pub mod problem;
+pub mod requirement;
 pub mod resampling;
 pub mod spec;
+pub(crate) mod values;
 
 pub use defect::Defect;
 pub use path::{AngleOffset, PathOptions, PathTask, Return, SMALLEST_SIZE, TaskError, Timing};

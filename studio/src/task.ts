@@ -138,7 +138,7 @@ export function spaceAround(points: Point[]): Box {
 /** What the best answer depends on, and nothing else. */
 function asked(task: Task): string {
   const { name: _n, source: _s, unit: _u, seed: _d, expect: _e, method: _m, raw: _r, kept, ...rest } = task;
-  return JSON.stringify([Object.entries(rest).filter(([, value]) => value !== undefined).sort(), Object.entries(kept ?? {}).filter(([key]) => key.startsWith("design.")).sort()]);
+  return JSON.stringify([Object.entries(rest).filter(([, value]) => value !== undefined).sort(), Object.entries(kept ?? {}).filter(([key]) => !key.startsWith("solve.")).sort()]);
 }
 
 /** An edited task: what was known of the answer of the one before goes where it is no longer the same problem. */
