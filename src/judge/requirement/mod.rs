@@ -6,6 +6,7 @@ mod boxes;
 mod closing;
 mod defects;
 mod direction;
+mod extent_max;
 mod link_ratio;
 mod linkage_type;
 mod tolerance;
@@ -67,6 +68,7 @@ impl Judged<'_> {
             RequirementKind::LinkRatio => link_ratio::judged(self),
             RequirementKind::PivotsIn => boxes::pivots(self),
             RequirementKind::FootprintIn => boxes::footprint(self),
+            RequirementKind::ExtentMax => extent_max::judged(self),
             RequirementKind::Direction => direction::judged(self),
             RequirementKind::Order => defects::order(self),
             RequirementKind::Branch => defects::branch(self),

@@ -9,6 +9,7 @@ mod branch;
 mod circuit;
 mod closing;
 mod direction;
+mod extent_max;
 mod footprint_in;
 mod limit;
 mod link_ratio;
@@ -42,6 +43,8 @@ pub enum RequirementKind {
     PivotsIn,
     /// The key `require.footprint_in`.
     FootprintIn,
+    /// The key `require.extent_max`.
+    ExtentMax,
     /// The key `require.direction`.
     Direction,
     /// The key `require.order`.
@@ -57,18 +60,19 @@ pub enum RequirementKind {
 }
 
 use RequirementKind::{
-    Branch, Circuit, Closing, Direction, FootprintIn, LinkRatio, Order, PivotsIn, Tolerance, Transmission,
-    Type,
+    Branch, Circuit, Closing, Direction, ExtentMax, FootprintIn, LinkRatio, Order, PivotsIn, Tolerance,
+    Transmission, Type,
 };
 
 impl RequirementKind {
     /// Every kind, in the order of a record; the bounds of the design come before the tolerance there.
-    pub const ALL: [RequirementKind; 11] = [
+    pub const ALL: [RequirementKind; 12] = [
         Type,
         Transmission,
         LinkRatio,
         PivotsIn,
         FootprintIn,
+        ExtentMax,
         Direction,
         Order,
         Branch,
@@ -78,10 +82,11 @@ impl RequirementKind {
     ];
 
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 11] = [
+    pub const IN_CONFLICTS: [RequirementKind; 12] = [
         Transmission,
         PivotsIn,
         FootprintIn,
+        ExtentMax,
         LinkRatio,
         Tolerance,
         Type,
@@ -100,6 +105,7 @@ impl RequirementKind {
             LinkRatio => &link_ratio::LinkRatio,
             PivotsIn => &pivots_in::PivotsIn,
             FootprintIn => &footprint_in::FootprintIn,
+            ExtentMax => &extent_max::ExtentMax,
             Direction => &direction::Direction,
             Order => &order::Order,
             Branch => &branch::Branch,
@@ -232,6 +238,16 @@ impl Refusal {
     fn because(message: String, help: &'static str) -> Result<(), Refusal> {
         Err(Refusal { message, help })
     }
+
+    fn unless_positive(key: &str, length: Option<f64>) -> Result<(), Refusal> {
+        match length {
+            Some(length) if length <= 0.0 => Refusal::because(
+                format!("{key} = {length}: a length must be positive"),
+                "write a length above 0, or remove the key for no limit",
+            ),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// What an acceptable linkage satisfies.
@@ -252,6 +268,8 @@ pub(crate) struct RawRequire {
     pub pivots_in: Option<Corners>,
     /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
     pub footprint_in: Option<Corners>,
+    /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
+    pub extent_max: Option<Number>,
     /// Whether the points must be passed in order.
     #[serde(default)]
     pub order: OrderPolicy,
@@ -289,6 +307,9 @@ pub struct RequireSpec {
     /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub footprint_in: Option<[f64; 4]>,
+    /// The greatest diagonal of the box of every joint and P over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extent_max: Option<f64>,
     /// Whether the points must be passed in order.
     pub order: OrderPolicy,
     /// Which way the crank turns.
@@ -323,6 +344,7 @@ impl Default for RequireSpec {
             link_ratio_max: DEFAULT_LINK_RATIO,
             pivots_in: None,
             footprint_in: None,
+            extent_max: None,
             order: OrderPolicy::default(),
             direction: DirectionPolicy::default(),
             circuit: OnePolicy::default(),
@@ -346,6 +368,7 @@ impl From<RawRequire> for RequireSpec {
             link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
             pivots_in: corners(raw.pivots_in),
             footprint_in: corners(raw.footprint_in),
+            extent_max: number(raw.extent_max),
             order: raw.order,
             direction: raw.direction,
             circuit: raw.circuit,

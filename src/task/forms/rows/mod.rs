@@ -7,6 +7,7 @@
 //!   the diagonal |CB|, cos mu = (b^2 + c^2 - s^2)/(2 b c);
 //! - boxes: the distance to each side of the extreme joint, whose derivative is that of the joint at its
 //!   extreme position (Danskin 1967);
+//! - extent: the limit less the diagonal of the box of all joints, by its sides;
 //! - derived bounds of the design space.
 //!
 //! Every g is aimed at with a small margin, so that a requirement that the search counts as met is met for the referee
@@ -14,6 +15,7 @@
 
 mod boxes;
 mod derived;
+mod extent_max;
 mod footprint_in;
 mod link_ratio;
 mod linkage_type;
@@ -190,12 +192,15 @@ impl Requirements {
         pivots_in::rows(&at, each);
         transmission::rows(&at, each);
         footprint_in::rows(&at, each);
+        extent_max::rows(&at, each);
     }
 
     /// Returns whether a row depends on the motion, and not on the shape alone.
     pub fn depend_on_motion(&self) -> bool {
         let used = self.require.transmission_over != Some(TransmissionOver::Cycle);
-        self.require.footprint_in.is_some() || (self.require.transmission_deg_min.is_some() && used)
+        self.require.footprint_in.is_some()
+            || self.require.extent_max.is_some()
+            || (self.require.transmission_deg_min.is_some() && used)
     }
 
     /// Returns the total violation of the rows, in sizes of the target; 0 if all are met.
