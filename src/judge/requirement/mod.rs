@@ -9,6 +9,7 @@ mod direction;
 mod extent_max;
 mod link_ratio;
 mod linkage_type;
+mod longest_max;
 mod tolerance;
 mod transmission;
 
@@ -69,6 +70,7 @@ impl Judged<'_> {
             RequirementKind::PivotsIn => boxes::pivots(self),
             RequirementKind::FootprintIn => boxes::footprint(self),
             RequirementKind::ExtentMax => extent_max::judged(self),
+            RequirementKind::LongestMax => longest_max::judged(self),
             RequirementKind::Direction => direction::judged(self),
             RequirementKind::Order => defects::order(self),
             RequirementKind::Branch => defects::branch(self),

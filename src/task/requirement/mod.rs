@@ -14,6 +14,7 @@ mod footprint_in;
 mod limit;
 mod link_ratio;
 mod linkage_type;
+mod longest_max;
 mod order;
 mod pivots_in;
 mod tolerance;
@@ -45,6 +46,8 @@ pub enum RequirementKind {
     FootprintIn,
     /// The key `require.extent_max`.
     ExtentMax,
+    /// The key `require.longest_max`.
+    LongestMax,
     /// The key `require.direction`.
     Direction,
     /// The key `require.order`.
@@ -60,19 +63,20 @@ pub enum RequirementKind {
 }
 
 use RequirementKind::{
-    Branch, Circuit, Closing, Direction, ExtentMax, FootprintIn, LinkRatio, Order, PivotsIn, Tolerance,
-    Transmission, Type,
+    Branch, Circuit, Closing, Direction, ExtentMax, FootprintIn, LinkRatio, LongestMax, Order, PivotsIn,
+    Tolerance, Transmission, Type,
 };
 
 impl RequirementKind {
     /// Every kind, in the order of a record; the bounds of the design come before the tolerance there.
-    pub const ALL: [RequirementKind; 12] = [
+    pub const ALL: [RequirementKind; 13] = [
         Type,
         Transmission,
         LinkRatio,
         PivotsIn,
         FootprintIn,
         ExtentMax,
+        LongestMax,
         Direction,
         Order,
         Branch,
@@ -82,11 +86,12 @@ impl RequirementKind {
     ];
 
     /// Every kind, in the order in which conflicts name them and relaxations try them.
-    pub const IN_CONFLICTS: [RequirementKind; 12] = [
+    pub const IN_CONFLICTS: [RequirementKind; 13] = [
         Transmission,
         PivotsIn,
         FootprintIn,
         ExtentMax,
+        LongestMax,
         LinkRatio,
         Tolerance,
         Type,
@@ -106,6 +111,7 @@ impl RequirementKind {
             PivotsIn => &pivots_in::PivotsIn,
             FootprintIn => &footprint_in::FootprintIn,
             ExtentMax => &extent_max::ExtentMax,
+            LongestMax => &longest_max::LongestMax,
             Direction => &direction::Direction,
             Order => &order::Order,
             Branch => &branch::Branch,
@@ -270,6 +276,8 @@ pub(crate) struct RawRequire {
     pub footprint_in: Option<Corners>,
     /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
     pub extent_max: Option<Number>,
+    /// The greatest length of the longest of ground, a, b, c, d and e; where silent, any.
+    pub longest_max: Option<Number>,
     /// Whether the points must be passed in order.
     #[serde(default)]
     pub order: OrderPolicy,
@@ -310,6 +318,9 @@ pub struct RequireSpec {
     /// The greatest diagonal of the box of every joint and P over the motion used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extent_max: Option<f64>,
+    /// The greatest length of the longest of ground, a, b, c, d and e.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_max: Option<f64>,
     /// Whether the points must be passed in order.
     pub order: OrderPolicy,
     /// Which way the crank turns.
@@ -345,6 +356,7 @@ impl Default for RequireSpec {
             pivots_in: None,
             footprint_in: None,
             extent_max: None,
+            longest_max: None,
             order: OrderPolicy::default(),
             direction: DirectionPolicy::default(),
             circuit: OnePolicy::default(),
@@ -369,6 +381,7 @@ impl From<RawRequire> for RequireSpec {
             pivots_in: corners(raw.pivots_in),
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
+            longest_max: number(raw.longest_max),
             order: raw.order,
             direction: raw.direction,
             circuit: raw.circuit,

@@ -8,6 +8,7 @@
 //! - boxes: the distance to each side of the extreme joint, whose derivative is that of the joint at its
 //!   extreme position (Danskin 1967);
 //! - extent: the limit less the diagonal of the box of all joints, by its sides;
+//! - longest link: L - l for each of ground, a, b, c, d and e;
 //! - derived bounds of the design space.
 //!
 //! Every g is aimed at with a small margin, so that a requirement that the search counts as met is met for the referee
@@ -19,6 +20,7 @@ mod extent_max;
 mod footprint_in;
 mod link_ratio;
 mod linkage_type;
+mod longest_max;
 mod pivots_in;
 mod swept;
 mod transmission;
@@ -193,6 +195,7 @@ impl Requirements {
         transmission::rows(&at, each);
         footprint_in::rows(&at, each);
         extent_max::rows(&at, each);
+        longest_max::rows(&at, each);
     }
 
     /// Returns whether a row depends on the motion, and not on the shape alone.
