@@ -431,7 +431,7 @@ mod tests {
             closed = true\ntiming = { crank_deg = [0, 90, 180, 270.5], offset = \"ground\" }\n[design]\nA = [[0, 1], 2]\n\
             a = 1\nb = [1, 2]\nground_angle_deg = [10, 20]\n[require]\ntype = [\"crank-rocker\"]\norder = \"any\"\n\
             circuit = \"any\"\nbranch = \"any\"\nfootprint_in = [-9, -9, 9, 9]\ntransmission_over = \"used\"\n\
-            transmission_deg_min = 30\n[solve]\nmethod = \"genetic\"\nobjective = \"max-deviation\"\ncandidates = 3\n\
+            transmission_deg_min = 30\nextent_max = 12\n[solve]\nmethod = \"genetic\"\nobjective = \"max-deviation\"\ncandidates = 3\n\
             evaluations = 1e4\ntime_limit_s = 5\ngenetic.population = 60\n";
         let problem = parse("all", text, None, &[]).expect("a problem");
         let ask = Ask::of(&problem).expect("it fits");
@@ -444,6 +444,7 @@ mod tests {
                 "design.a",
                 "design.b",
                 "design.ground_angle_deg",
+                "require.extent_max",
                 "solve.candidates",
                 "solve.evaluations",
                 "solve.genetic.population",
