@@ -13,7 +13,6 @@
 //! | [`schema`] | JSON Schemas of the files that are read and of the record that is written, generated from the types that read and write them |
 //! | [`svg_file`] | SVG drawings as targets: one shape of a drawing as target points, spaced evenly by arc length, y up |
 //! | [`toml_text`] | A TOML text with its errors: reads a type from it and finds the place of a key |
-//! | [`toml_values`] | the value types of our TOML files, with errors that state the expected value in a designer's words |
 
 pub mod diagnostic;
 pub mod generator;
@@ -26,4 +25,4 @@ pub mod problem_template;
 pub mod schema;
 pub mod svg_file;
 pub(crate) mod toml_text;
-pub(crate) mod toml_values;
+pub(crate) use crate::task::values as toml_values;

@@ -2,6 +2,7 @@
 
 use crate::files::name;
 use crate::files::name::NameError;
+use crate::task::requirement::RequirementKind;
 
 /// A closed path in mm that a crank-rocker of usual proportions draws.
 const SAMPLE_POINTS: &str = "\
@@ -50,7 +51,8 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
         }
         _ => HEAD.to_owned(),
     };
-    Ok(head.replace("NAME", &quoted(name)) + &points + TAIL)
+    let required: String = RequirementKind::ALL.iter().map(|kind| kind.definition().template()).collect();
+    Ok(head.replace("NAME", &quoted(name)) + &points + TAIL + &required + SEARCH)
 }
 
 const HEAD: &str = "\
@@ -85,13 +87,9 @@ const TAIL: &str = r#"
 
 # What an answer must satisfy.
 [require]
-type = ["crank-rocker", "double-crank"]   # a motor on the crank can turn fully
-transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam
-# link_ratio_max = 10           # longest over shortest link; 20 where silent
-# pivots_in = [-100, -100, 250, 250]      # xmin, ymin, xmax, ymax: where there is room for the two pivots
-# footprint_in = [-150, -150, 300, 300]   # where there is room for all of it as it moves
-# direction = "ccw"             # or "cw": which way the crank turns
+"#;
 
+const SEARCH: &str = r#"
 # How to search.
 [solve]
 candidates = 5                  # how many different answers

@@ -4,6 +4,7 @@
 //! place is looked up here. Serde's messages are translated into a designer's words.
 
 use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::toml_values::TOO_LARGE;
 use serde::de::DeserializeOwned;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -237,9 +238,6 @@ impl<'a> TomlText<'a> {
         slips.iter().find(|(slip, _)| message.contains(slip)).map(|(_, help)| (*help).to_owned())
     }
 }
-
-/// The remedy for a number that is too large, of an unknown key.
-pub(crate) const TOO_LARGE: &str = "write a number of at most 1e12 in magnitude";
 
 /// Returns the remedy for a number that is too large for a key (or a column): it differs for lengths, times and angles.
 pub(crate) fn too_large_help(key: &str) -> &'static str {

@@ -4,25 +4,15 @@
 //! optimiser.
 
 use crate::judge::error::{distances_to_curve, rms};
-use crate::judge::referee::{Verdict, judge};
+use crate::judge::referee::judge;
+use crate::judge::requirement::{Judged, at_least, at_most};
 use crate::mechanism::{AssemblyMode, Complex, FourBar};
-use crate::record::{
-    Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TO_AND_FRO, TransmissionRecord,
-};
-use crate::task::Defect;
+use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
 use crate::task::Problem;
-use crate::task::spec::{DirectionPolicy, Limits, Objective, OnePolicy, OrderPolicy, TransmissionOver};
+use crate::task::requirement::RequirementKind;
+use crate::task::spec::{Limits, Objective, TransmissionOver};
 
 pub use crate::record::MET_TOLERANCE;
-
-/// Returns whether `value` reaches at least `limit`, within the tolerance.
-fn at_least(value: f64, limit: f64) -> bool {
-    value >= limit - MET_TOLERANCE * limit.abs().max(1.0)
-}
-
-fn at_most(value: f64, limit: f64) -> bool {
-    value <= limit + MET_TOLERANCE * limit.abs().max(1.0)
-}
 
 /// Judges a linkage at crank angles given in degrees, one per target point (as in the record).
 ///
@@ -114,10 +104,8 @@ pub fn assess_on_curve(
         defects: verdict.defects.clone(),
         costs: Vec::new(),
     };
-    candidate.requirements = requirements(problem, &candidate, &verdict);
-    if let Some(tolerances) = task.tolerances() {
-        candidate.requirements.push(tolerance_row(tolerances, &error.structural));
-    }
+    let judged = Judged { problem, candidate: &candidate, verdict: &verdict, structural: &error.structural };
+    candidate.requirements = requirements(&judged);
     candidate.accepted = candidate.requirements.iter().all(|r| r.met)
         && !candidate.defects.iter().any(|d| problem.spec().require.forbids(d));
     Some(candidate)
@@ -133,90 +121,13 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
     Some(CurveErrorRecord { sum_sq: found.sum_sq, rms: rms(found.sum_sq, points.len()), max: found.max })
 }
 
-fn tolerance_row(tolerances: &[f64], structural: &[crate::mechanism::Complex]) -> Requirement {
-    // The point whose error is the largest part of its own tolerance: the quantity that the largest deviation minimises
-    // and that ranks. A point that is missed goes before one that is met only by the margin of a very small tolerance.
-    let error = |k: usize| structural[k].norm();
-    let missed = |k: usize| !at_most(error(k), tolerances[k]);
-    let part = |k: usize| if error(k) == 0.0 { 0.0 } else { error(k) / tolerances[k] };
-    let worst = (0..structural.len())
-        .max_by(|&i, &j| missed(i).cmp(&missed(j)).then(part(i).total_cmp(&part(j))).then(j.cmp(&i)))
-        .unwrap_or(0);
-    let (value, limit) = (structural[worst].norm(), tolerances[worst]);
-    Requirement {
-        name: "tolerance".into(),
-        value: Figure::Number(value),
-        limit: Figure::Number(limit),
-        met: at_most(value, limit),
-    }
-}
-
-fn requirements(problem: &Problem, candidate: &Candidate, verdict: &Verdict) -> Vec<Requirement> {
-    let require = &problem.spec().require;
-    let mut rows = Vec::new();
-    let mut push = |name: &str, value: Figure, limit: Figure, met: bool| {
-        rows.push(Requirement { name: name.into(), value, limit, met });
-    };
-    if !require.types.is_empty() {
-        push(
-            "type",
-            Figure::Word(candidate.linkage_type.name().into()),
-            Figure::Words(require.types.iter().map(|t| t.name().into()).collect()),
-            require.types.contains(&candidate.linkage_type),
-        );
-    }
-    if let Some(limit) = require.transmission_deg_min {
-        let value = candidate.transmission_deg.worst;
-        push("transmission_deg_min", Figure::Number(value), Figure::Number(limit), at_least(value, limit));
-    }
-    let limit = require.link_ratio_max;
-    push(
-        "link_ratio_max",
-        Figure::Number(candidate.link_ratio),
-        Figure::Number(limit),
-        at_most(candidate.link_ratio, limit),
-    );
-    let inside = |held: [f64; 4], limit: [f64; 4]| {
-        (0..2).all(|i| at_least(held[i], limit[i]) && at_most(held[i + 2], limit[i + 2]))
-    };
-    let boxed = |b: [f64; 4]| Figure::Numbers(b.to_vec());
-    if let Some(limit) = require.pivots_in {
-        let (a, b) = (candidate.linkage.crank_pivot(), candidate.linkage.follower_pivot());
-        let held = [a.re.min(b.re), a.im.min(b.im), a.re.max(b.re), a.im.max(b.im)];
-        push("pivots_in", boxed(held), boxed(limit), inside(held, limit));
-    }
-    if let Some(limit) = require.footprint_in {
-        let held = verdict.motion.footprint();
-        push("footprint_in", boxed(held), boxed(limit), inside(held, limit));
-    }
-    if require.direction != DirectionPolicy::Any {
-        let word = |ccw: bool| if ccw { "ccw" } else { "cw" };
-        let (has, wants) = (verdict.direction > 0.0, require.direction == DirectionPolicy::Ccw);
-        push("direction", Figure::Word(word(has).into()), Figure::Word(word(wants).into()), has == wants);
-    }
-    for defect in ["order", "branch", "circuit"] {
-        let policy = match defect {
-            "order" => require.order == OrderPolicy::Required,
-            "branch" => require.branch == OnePolicy::One,
-            _ => require.circuit == OnePolicy::One,
-        };
-        if policy {
-            let found = candidate.defects.iter().any(|d| d.name() == defect);
-            let wants = if defect == "order" { "required" } else { "one" };
-            let has = match (found, defect) {
-                (false, _) => wants,
-                (true, "order") if candidate.defects.iter().any(Defect::is_to_and_fro) => TO_AND_FRO,
-                (true, "order") => "broken",
-                (true, _) => "several",
-            };
-            push(defect, Figure::Word(has.into()), Figure::Word(wants.into()), !found);
-        }
-    }
-    if !require.closing.is_one_way() && problem.task().returns() {
-        let has = if verdict.to_and_fro { TO_AND_FRO } else { "one-way" };
-        push("closing", Figure::Word(has.into()), Figure::Word("any".into()), true);
-    }
-    rows.extend(design_rows(problem, &candidate.linkage));
+/// Returns the rows of the requirements and of the design's bounds, in the order of a record.
+fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
+    let of = |kind: &RequirementKind| judged.row(*kind);
+    let before = |kind: &&RequirementKind| **kind != RequirementKind::Tolerance;
+    let mut rows: Vec<Requirement> = RequirementKind::ALL.iter().filter(before).filter_map(of).collect();
+    rows.extend(design_rows(judged.problem, &judged.candidate.linkage));
+    rows.extend(of(&RequirementKind::Tolerance));
     rows
 }
 

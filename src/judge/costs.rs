@@ -19,9 +19,10 @@ use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
 use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Shape};
-use crate::task::forms::requirements::{Motion, Requirements, RowKind, Side};
+use crate::task::forms::rows::{Motion, Requirements, RowKind, Side};
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::TorusFit;
+use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 use crate::task::{Problem, Setting};
 
@@ -111,7 +112,7 @@ impl At<'_> {
         let size = self.problem.task().size();
         let mut kinds = Vec::new();
         requirements.rows(self.setting.aim, self.shape, motion, &mut |row| {
-            kinds.push((row.kind, free_timing && row.crank.abs() > MOVED_BY_POINTS * size));
+            kinds.push((row.kind, free_timing && row.by_turn().abs() > MOVED_BY_POINTS * size));
         });
         // Unknowns that can move, lengths in sizes of the target.
         let unknowns: Vec<(usize, f64)> = (0..DESIGN)
@@ -198,31 +199,21 @@ impl At<'_> {
     }
 
     fn label(&self, kind: RowKind) -> Option<Label> {
-        let require = &self.problem.spec().require;
-        let size = self.problem.task().size();
-        let label =
-            |name: &str, side: Option<Side>, limit: f64, unit: LimitUnit, by_room: f64, scale: f64| {
-                Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
-            };
-        let length = LimitUnit::Length;
+        let (spec, size) = (self.problem.spec(), self.problem.task().size());
         match kind {
-            // If no type is asked for, the crank has to turn fully to come back to the first point.
-            RowKind::Type if require.types.is_empty() => label("closing", None, 0.0, length, 1.0, size),
-            RowKind::Type => label("type", None, 0.0, length, 1.0, size),
-            RowKind::LinkRatio(longer) => {
-                let limit = require.link_ratio_max;
-                label("link_ratio_max", None, limit, LimitUnit::Ratio, longer / (limit * limit), limit)
-            }
-            RowKind::Pivots(side) => {
-                label("pivots_in", Some(side), require.pivots_in?[side.index()], length, 1.0, size)
-            }
-            RowKind::Footprint(side) => {
-                label("footprint_in", Some(side), require.footprint_in?[side.index()], length, 1.0, size)
-            }
-            RowKind::Transmission => {
-                let limit = require.transmission_deg_min?;
-                let by_room = size * limit.to_radians().sin() * 1f64.to_radians();
-                label("transmission_deg_min", None, limit, LimitUnit::Degree, by_room, 90.0)
+            RowKind::Limit { of, side, by_room } => {
+                // If no type is asked for, the crank has to turn fully to come back to the first point.
+                let turns_fully = of == RequirementKind::Type && spec.require.types.is_empty();
+                let name = if turns_fully { RequirementKind::Closing } else { of }.name();
+                let limits = of.definition().limits(spec).unwrap_or_default();
+                let limit = limits.get(side.map_or(0, Side::index)).map_or(0.0, |limit| limit.value);
+                let unit = of.definition().unit();
+                let scale = match unit {
+                    LimitUnit::Length => size,
+                    LimitUnit::Degree => 90.0,
+                    LimitUnit::Ratio => limit,
+                };
+                Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
             }
             RowKind::Derived(quantity, lower) => {
                 let name = match quantity {

@@ -3,36 +3,14 @@
 use crate::judge::assess::assess;
 use crate::record::{Candidate, Change, Figure, TypedValue};
 use crate::task::Problem;
-use crate::task::spec::{
-    ClosingPolicy, DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, DirectionPolicy, Limits, OnePolicy,
-    OrderPolicy, ProblemSpec,
-};
+use crate::task::requirement::{Choice, Limit, RequirementKind};
+use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, ProblemSpec, RequireSpec};
 
 /// A requirement, or the bounds of a design key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Demand {
-    /// The key `require.type`.
-    Type,
-    /// The key `require.transmission_deg_min`.
-    Transmission,
-    /// The key `require.link_ratio_max`.
-    LinkRatio,
-    /// The key `require.pivots_in`.
-    PivotsIn,
-    /// The key `require.footprint_in`.
-    FootprintIn,
-    /// The key `task.path.tolerance`.
-    Tolerance,
-    /// The key `require.order`.
-    Order,
-    /// The key `require.direction`.
-    Direction,
-    /// The key `require.circuit`.
-    Circuit,
-    /// The key `require.branch`.
-    Branch,
-    /// The key `require.closing`.
-    Closing,
+    /// A requirement.
+    Require(RequirementKind),
     /// A key of `[design]`.
     Design(DesignKey),
 }
@@ -78,124 +56,49 @@ const DESIGN_KEYS: [DesignKey; 11] = [
     DesignKey::CouplerY,
 ];
 
-/// A limit of the link ratio that practically does not bind: a slider-crank to four digits.
-const NO_LINK_RATIO: f64 = 1e4;
 /// The bound of a dropped design key, in sizes of the target.
 const FAR: f64 = 2.0 * DEFAULT_REACH;
 
-/// A limit, and the side on which it is loosened: +1 above it, -1 below it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limit {
-    /// The value of the limit.
-    pub value: f64,
-    /// The direction in which it is loosened, +1 or -1.
-    pub outward: f64,
-}
-
 impl Demand {
+    /// The demand for a tolerance.
+    pub const TOLERANCE: Demand = Demand::Require(RequirementKind::Tolerance);
+    /// The demand for a type.
+    pub const TYPE: Demand = Demand::Require(RequirementKind::Type);
+
     /// Returns the demands of a problem in a fixed order; design keys last.
     pub fn of(problem: &Problem) -> Vec<Demand> {
-        let spec = problem.spec();
-        let require = &spec.require;
-        let mut all = Vec::new();
-        let mut push = |demand, asked: bool| {
-            if asked {
-                all.push(demand);
-            }
-        };
-        push(Demand::Transmission, require.transmission_deg_min.is_some());
-        push(Demand::PivotsIn, require.pivots_in.is_some());
-        push(Demand::FootprintIn, require.footprint_in.is_some());
-        push(Demand::LinkRatio, true);
-        push(Demand::Tolerance, spec.task.path.tolerance.is_some());
-        push(Demand::Type, !require.types.is_empty());
-        push(Demand::Order, require.order == OrderPolicy::Required && spec.task.path.timing.is_none());
-        push(Demand::Direction, require.direction != DirectionPolicy::Any);
-        push(Demand::Circuit, require.circuit == OnePolicy::One);
-        push(Demand::Branch, require.branch == OnePolicy::One);
-        push(Demand::Closing, problem.has_to_turn_on());
-        for key in DESIGN_KEYS {
-            push(Demand::Design(key), !key.get(&spec.design).is_empty());
-        }
-        all
+        let asked = |kind: &RequirementKind| kind.definition().is_asked(problem);
+        let given = |key: &DesignKey| !key.get(&problem.spec().design).is_empty();
+        let requirements = RequirementKind::IN_CONFLICTS.into_iter().filter(asked).map(Demand::Require);
+        requirements.chain(DESIGN_KEYS.into_iter().filter(given).map(Demand::Design)).collect()
     }
 
     /// Returns the demand that a requirement of the record belongs to.
     pub fn named(name: &str) -> Option<Demand> {
-        let all = [
-            Demand::Type,
-            Demand::Transmission,
-            Demand::LinkRatio,
-            Demand::PivotsIn,
-            Demand::FootprintIn,
-            Demand::Tolerance,
-            Demand::Order,
-            Demand::Direction,
-            Demand::Circuit,
-            Demand::Branch,
-            Demand::Closing,
-        ];
-        let designs = DESIGN_KEYS.map(Demand::Design);
-        all.into_iter().chain(designs).find(|demand| demand.rows().contains(&name))
+        let design = || DESIGN_KEYS.into_iter().find(|key| key.rows().contains(&name)).map(Demand::Design);
+        RequirementKind::named(name).map(Demand::Require).or_else(design)
     }
 
     /// Returns whether it is a choice among words, with no measure of how far it is loosened.
     pub fn is_policy(self) -> bool {
-        use Demand::{Branch, Circuit, Closing, Direction, Order, Type};
-        matches!(self, Type | Order | Direction | Circuit | Branch | Closing)
+        match self {
+            Demand::Require(kind) => kind.definition().choice(&RequireSpec::default()).is_some(),
+            Demand::Design(_) => false,
+        }
     }
 
     /// Returns the key in the problem file.
     pub fn key(self) -> &'static str {
         match self {
-            Demand::Type => "require.type",
-            Demand::Transmission => "require.transmission_deg_min",
-            Demand::LinkRatio => "require.link_ratio_max",
-            Demand::PivotsIn => "require.pivots_in",
-            Demand::FootprintIn => "require.footprint_in",
-            Demand::Tolerance => "task.path.tolerance",
-            Demand::Order => "require.order",
-            Demand::Direction => "require.direction",
-            Demand::Circuit => "require.circuit",
-            Demand::Branch => "require.branch",
-            Demand::Closing => "require.closing",
+            Demand::Require(kind) => kind.definition().key(),
             Demand::Design(key) => key.key(),
-        }
-    }
-
-    /// Returns the names of its rows among a candidate's requirements.
-    fn rows(self) -> &'static [&'static str] {
-        match self {
-            Demand::Type => &["type"],
-            Demand::Transmission => &["transmission_deg_min"],
-            Demand::LinkRatio => &["link_ratio_max"],
-            Demand::PivotsIn => &["pivots_in"],
-            Demand::FootprintIn => &["footprint_in"],
-            Demand::Tolerance => &["tolerance"],
-            Demand::Order => &["order"],
-            Demand::Direction => &["direction"],
-            Demand::Circuit => &["circuit"],
-            Demand::Branch => &["branch"],
-            Demand::Closing => &["closing"],
-            Demand::Design(key) => key.rows(),
         }
     }
 
     /// Returns the problem without this demand; design keys keep within reach of the target.
     pub fn dropped(self, problem: &Problem, mut spec: ProblemSpec) -> ProblemSpec {
-        let require = &mut spec.require;
         match self {
-            Demand::Type => require.types.clear(),
-            Demand::Transmission => require.transmission_deg_min = None,
-            Demand::LinkRatio => require.link_ratio_max = require.link_ratio_max.max(NO_LINK_RATIO),
-            Demand::PivotsIn => require.pivots_in = None,
-            Demand::FootprintIn => require.footprint_in = None,
-            Demand::Tolerance => spec.task.path.tolerance = None,
-            Demand::Order => require.order = OrderPolicy::Any,
-            Demand::Direction => require.direction = DirectionPolicy::Any,
-            Demand::Circuit => require.circuit = OnePolicy::Any,
-            Demand::Branch => require.branch = OnePolicy::Any,
-            Demand::Closing => require.closing = ClosingPolicy::Any,
+            Demand::Require(kind) => kind.definition().drop_from(&mut spec),
             Demand::Design(key) => key.widen(problem, &mut spec.design),
         }
         spec
@@ -204,54 +107,24 @@ impl Demand {
     /// Returns its limits as numbers; `None` if it has none (a policy, types, a tolerance that differs from point to
     /// point).
     pub fn limits(self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
-        let require = &spec.require;
-        let one = |value: Option<f64>, outward| Some(vec![Limit { value: value?, outward }]);
-        let of_box = |b: Option<[f64; 4]>| {
-            let b = b?;
-            Some((0..4).map(|i| Limit { value: b[i], outward: if i < 2 { -1.0 } else { 1.0 } }).collect())
-        };
         match self {
-            Demand::Transmission => one(require.transmission_deg_min, -1.0),
-            Demand::LinkRatio => one(Some(require.link_ratio_max), 1.0),
-            Demand::PivotsIn => of_box(require.pivots_in),
-            Demand::FootprintIn => of_box(require.footprint_in),
-            Demand::Tolerance => {
-                let list = spec.task.path.tolerance.as_ref()?;
-                let first = *list.first()?;
-                list.iter().all(|t| *t == first).then(|| vec![Limit { value: first, outward: 1.0 }])
-            }
+            Demand::Require(kind) => kind.definition().limits(spec),
             Demand::Design(key) => {
                 let limits = key.get(&spec.design);
                 let pair =
                     |l: Limits| [Limit { value: l.0, outward: -1.0 }, Limit { value: l.1, outward: 1.0 }];
                 (!limits.is_empty()).then(|| limits.into_iter().flat_map(pair).collect())
             }
-            Demand::Type
-            | Demand::Order
-            | Demand::Direction
-            | Demand::Circuit
-            | Demand::Branch
-            | Demand::Closing => None,
         }
     }
 
     /// Returns the problem with other limits, as many as [`Demand::limits`] gives.
     pub fn with_limits(self, mut spec: ProblemSpec, limits: &[f64]) -> ProblemSpec {
-        let require = &mut spec.require;
-        let as_box = || <[f64; 4]>::try_from(limits).ok();
         match self {
-            Demand::Transmission => require.transmission_deg_min = limits.first().copied(),
-            Demand::LinkRatio => require.link_ratio_max = limits.first().map_or(NO_LINK_RATIO, |l| *l),
-            Demand::PivotsIn => require.pivots_in = as_box(),
-            Demand::FootprintIn => require.footprint_in = as_box(),
-            Demand::Tolerance => {
-                let (n, first) = (spec.task.path.points.len(), limits.first());
-                spec.task.path.tolerance = first.map(|limit| vec![*limit; n]);
-            }
+            Demand::Require(kind) => kind.definition().set_limits(&mut spec, limits),
             Demand::Design(key) => {
                 key.set(&mut spec.design, |i| Limits(limits[2 * i], limits[2 * i + 1]));
             }
-            _ => {}
         }
         spec
     }
@@ -260,7 +133,7 @@ impl Demand {
     /// farther out, a policy that allows any, the types with others.
     pub fn is_no_tighter(self, spec: &ProblemSpec, to: &TypedValue) -> bool {
         match (self, to) {
-            (Demand::Type, TypedValue::Words(names)) => {
+            (Demand::TYPE, TypedValue::Words(names)) => {
                 spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
             }
             (policy, TypedValue::Word(word)) if policy.is_policy() => word == "any",
@@ -290,10 +163,14 @@ impl Demand {
 
     /// Returns the values that a candidate, judged under the problem that demands, attains in place of each limit.
     pub fn attained(self, judged: &Candidate) -> Option<Vec<f64>> {
-        if self == Demand::Tolerance {
+        if self == Demand::TOLERANCE {
             return Some(vec![judged.error.max]);
         }
-        let rows = self.rows().iter().map(|name| judged.requirements.iter().find(|r| r.name == *name));
+        let row = |name: &str| judged.requirements.iter().find(|r| r.name == name);
+        let rows: Vec<_> = match self {
+            Demand::Require(kind) => vec![row(kind.name())],
+            Demand::Design(key) => key.rows().iter().map(|name| row(name)).collect(),
+        };
         let mut values = Vec::new();
         for row in rows {
             match &row?.value {
@@ -309,21 +186,7 @@ impl Demand {
 
     /// Returns the value of the key in a problem, as it is typed; `None` if it cannot be typed.
     pub fn typed(self, spec: &ProblemSpec) -> Option<TypedValue> {
-        let require = &spec.require;
-        let word = |any: bool, otherwise: &str| {
-            Some(TypedValue::Word(if any { "any".into() } else { otherwise.into() }))
-        };
         match self {
-            Demand::Type => Some(TypedValue::Words(require.types.iter().map(|t| t.name().into()).collect())),
-            Demand::Order => word(require.order == OrderPolicy::Any, "required"),
-            Demand::Direction => match require.direction {
-                DirectionPolicy::Any => word(true, ""),
-                DirectionPolicy::Ccw => word(false, "ccw"),
-                DirectionPolicy::Cw => word(false, "cw"),
-            },
-            Demand::Circuit => word(require.circuit == OnePolicy::Any, "one"),
-            Demand::Branch => word(require.branch == OnePolicy::Any, "one"),
-            Demand::Closing => word(!require.closing.is_one_way(), "one-way"),
             Demand::Design(key) => {
                 let limits = key.get(&spec.design);
                 match limits.as_slice() {
@@ -334,13 +197,19 @@ impl Demand {
                     _ => None,
                 }
             }
-            _ => {
-                let limits: Vec<f64> = self.limits(spec)?.iter().map(|l| l.value).collect();
-                Some(match limits.as_slice() {
-                    [only] => TypedValue::Number(*only),
-                    _ => TypedValue::Numbers(limits),
-                })
-            }
+            Demand::Require(kind) => match kind.definition().choice(&spec.require) {
+                Some(Choice::Word(word)) => Some(TypedValue::Word(word.into())),
+                Some(Choice::Words(words)) => {
+                    Some(TypedValue::Words(words.into_iter().map(str::to_owned).collect()))
+                }
+                None => {
+                    let limits: Vec<f64> = self.limits(spec)?.iter().map(|l| l.value).collect();
+                    Some(match limits.as_slice() {
+                        [only] => TypedValue::Number(*only),
+                        _ => TypedValue::Numbers(limits),
+                    })
+                }
+            },
         }
     }
 }

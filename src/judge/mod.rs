@@ -16,6 +16,7 @@
 //! | [`practicality`] | practicality of building a linkage: layers of its plates, clearances between its parts, and sensitivity of the path to errors of its dimensions |
 //! | [`rank`] | ranking of candidates and choice of the distinct ones |
 //! | [`referee`] | the referee: judges order, circuit and branch of a motion through target points |
+//! | [`requirement`] | the judge's own arithmetic for each requirement: value, limit and whether it is met |
 //! | [`symmetry`] | symmetries of a target, and the images of a linkage under them |
 //! | [`unwrapped`] | crank angles unwrapped along the motion through the points |
 //! | [`verify`] | verification of a record: every figure and verdict is recomputed from its problem and its linkages |
@@ -36,6 +37,7 @@ pub mod mechanisms;
 pub mod practicality;
 pub mod rank;
 pub mod referee;
+mod requirement;
 pub mod symmetry;
 pub mod unwrapped;
 pub mod verify;

@@ -21,6 +21,7 @@ use super::symmetry::Symmetries;
 use crate::record::{Candidate, Figure};
 use crate::task::Defect;
 use crate::task::Problem;
+use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 use std::borrow::Cow;
 use std::cmp::Ordering;
@@ -113,9 +114,13 @@ pub(super) fn severity(candidate: &Candidate) -> usize {
 
 /// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
 fn missed(candidate: &Candidate) -> (bool, f64) {
-    let row = candidate.requirements.iter().find(|r| !candidate.accepted && r.name == "tolerance");
+    let row = candidate
+        .requirements
+        .iter()
+        .find(|r| !candidate.accepted && r.name == RequirementKind::Tolerance.name());
     row.map_or((false, 0.0), |row| {
-        let otherwise = candidate.requirements.iter().all(|r| r.met || r.name == "tolerance");
+        let otherwise =
+            candidate.requirements.iter().all(|r| r.met || r.name == RequirementKind::Tolerance.name());
         let part = match (&row.value, &row.limit) {
             (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
             _ => 0.0,

@@ -3,7 +3,7 @@
 use crate::record::Candidate;
 use crate::task::Timing;
 use crate::task::forms::design_space::Shape;
-use crate::task::forms::requirements::nearest_type;
+use crate::task::forms::rows::nearest_type;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
 use crate::task::{Problem, Setting};

@@ -7,6 +7,7 @@ use crate::mechanism::LinkageType;
 use crate::mechanism::four_bar::transmission::{ForceTransmission, JAM_UNDER_LOAD_DEG};
 use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
 use crate::task::Problem;
+use crate::task::requirement::{LimitUnit, RequirementKind};
 
 /// The worst transmission angle, in degrees, below which a loaded linkage may jam.
 pub const LEAST_TRANSMISSION_DEG: f64 = JAM_UNDER_LOAD_DEG;
@@ -77,11 +78,12 @@ const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
 /// values and coordinates that a box fixes have none.
 fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
     let name = requirement.name.as_str();
-    let unit = match name {
-        "link_ratio_max" => 1.0,
-        "transmission_deg_min" | "design.ground_angle_deg" => 180.0,
-        _ => problem.task().size(),
+    let unit = match RequirementKind::named(name) {
+        Some(kind) => kind.definition().unit(),
+        None if name == "design.ground_angle_deg" => LimitUnit::Degree,
+        None => LimitUnit::Length,
     };
+    let unit = unit.whole(problem.task().size());
     let on = |value: f64, limit: f64| (value - limit).abs() <= ON_BOUND * limit.abs().max(unit);
     match (&requirement.value, &requirement.limit) {
         (Figure::Number(value), Figure::Numbers(limits)) if name.starts_with("design.") => {
@@ -92,7 +94,9 @@ fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&
                 }
             }
         }
-        (Figure::Number(value), Figure::Number(limit)) if name != "tolerance" && on(*value, *limit) => {
+        (Figure::Number(value), Figure::Number(limit))
+            if name != RequirementKind::Tolerance.name() && on(*value, *limit) =>
+        {
             each(name, "", *value, *limit);
         }
         (Figure::Numbers(values), Figure::Numbers(limits)) if values.len() == 4 && limits.len() == 4 => {

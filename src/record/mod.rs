@@ -5,6 +5,7 @@
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
 use crate::task::Defect;
+pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TransmissionOver};
 use serde::{Deserialize, Serialize};
 
@@ -332,18 +333,6 @@ pub struct Cost {
     /// The least rms error that was found without the requirement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rms_without: Option<f64>,
-}
-
-/// What the unit of a limit is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum LimitUnit {
-    /// The file's unit of length.
-    Length,
-    /// A degree.
-    Degree,
-    /// One more of longest over shortest.
-    Ratio,
 }
 
 /// Requirements that cannot be met together.

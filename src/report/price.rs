@@ -4,6 +4,7 @@ use super::text::{clean, significant, wrapped};
 use super::words;
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue};
+use crate::task::requirement::RequirementKind;
 
 /// The largest relative change of the error by a step for which rates are stated.
 const SMALL_STEP: f64 = 0.5;
@@ -75,8 +76,11 @@ fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
         None if step == 1.0 => "one unit".to_owned(),
         None => shown.clone(),
     };
+    // A type and a crank that turns fully have no limit of their own.
+    let of_margin = cost.limit == 0.0;
     let room = match (cost.unit_of_limit, cost.side.as_deref()) {
-        (LimitUnit::Length, None) => format!("{length} of Grashof margin"),
+        (LimitUnit::Length, None) if of_margin => format!("{length} of Grashof margin"),
+        (LimitUnit::Length, None) => format!("{length} more than {}", significant(cost.limit, 4)),
         (LimitUnit::Length, Some("min")) => format!("{length} less than {}", significant(cost.limit, 4)),
         (LimitUnit::Length, Some("max")) => format!("{length} more than {}", significant(cost.limit, 4)),
         (LimitUnit::Length, Some(side)) => format!("{length} more at {}", clean(side)),
@@ -155,12 +159,9 @@ fn demand(record: &Record, key: &str) -> String {
     let from = |relaxation: &Relaxation| {
         relaxation.set.iter().find(|change| change.key == key).map(|change| change.from.clone())
     };
-    let require = &record.problem.resolved.require;
-    let value = match key {
-        "require.transmission_deg_min" => require.transmission_deg_min.map(TypedValue::Number),
-        "require.link_ratio_max" => Some(TypedValue::Number(require.link_ratio_max)),
-        _ => record.relaxations.iter().find_map(from),
-    };
+    let required = RequirementKind::with_key(key).filter(|kind| *kind != RequirementKind::Tolerance);
+    let limit = required.and_then(|kind| kind.only_limit(&record.problem.resolved));
+    let value = limit.map(TypedValue::Number).or_else(|| record.relaxations.iter().find_map(from));
     match value {
         Some(value @ (TypedValue::Number(_) | TypedValue::Word(_) | TypedValue::Words(_))) => {
             format!("{short} = {}", clean(&value.to_string()))

@@ -3,6 +3,7 @@
 use super::text::{brief, clean, exact};
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Figure, Reason, Record, Requirement};
+use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Measure, TransmissionOver};
 use crate::task::{AngleOffset, Defect};
 
@@ -27,12 +28,16 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
         .iter()
         .filter(|r| !r.met && !forbidden.iter().any(|defect| defect.name() == r.name))
         .map(|r| {
-            let pointed = if r.name == "tolerance" { of_tolerance(record, candidate) } else { None };
+            let pointed = if r.name == RequirementKind::Tolerance.name() {
+                of_tolerance(record, candidate)
+            } else {
+                None
+            };
             pointed.unwrap_or_else(|| of_requirement(r))
         })
         .collect();
     list.extend(forbidden.iter().map(|d| Objection { key: d.name().to_owned(), sentence: of_defect(d) }));
-    if !candidate.requirements.iter().any(|r| r.name == "tolerance") {
+    if !candidate.requirements.iter().any(|r| r.name == RequirementKind::Tolerance.name()) {
         list.extend(of_tolerance(record, candidate));
     }
     if list.is_empty() {
@@ -80,30 +85,19 @@ fn of_requirement(requirement: &Requirement) -> Objection {
         // Rounding must not make a missed limit look met.
         (value, limit) = (figure(&requirement.value, exact), figure(&requirement.limit, exact));
     }
-    let (key, sentence) = match requirement.name.as_str() {
-        "type" => ("type", format!("type {value}, asked for {limit}")),
-        "transmission_deg_min" => {
-            ("transmission", format!("worst transmission angle {value}°, at least {limit}° asked"))
-        }
-        "link_ratio_max" => ("link ratio", format!("link ratio {value}, at most {limit} asked")),
-        "pivots_in" => ("pivots", format!("fixed pivots span [{value}], outside of [{limit}]")),
-        "footprint_in" => ("footprint", format!("the motion spans [{value}], outside of [{limit}]")),
-        "direction" => ("direction", format!("turns {value}, {limit} asked")),
-        // If the record can be evaluated, the sentence names the point.
-        "tolerance" => ("tolerance", format!("error {value}, tolerance {limit}")),
-        other => {
-            if let (Some(key), Figure::Numbers(_)) = (other.strip_prefix("design."), &requirement.limit) {
-                let key = clean(key);
-                let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");
-                return Objection { key, sentence };
-            }
-            let name = clean(other);
-            let name = if name.is_empty() { "a requirement".to_owned() } else { name };
-            let sentence = format!("{name}: {value}, limit {limit}");
-            return Objection { key: name, sentence };
-        }
-    };
-    Objection { key: key.to_owned(), sentence }
+    let name = clean(&requirement.name);
+    if let Some(kind) = RequirementKind::named(&requirement.name) {
+        let sentence = kind.definition().objection(&value, &limit);
+        let sentence = sentence.unwrap_or_else(|| format!("{name}: {value}, limit {limit}"));
+        return Objection { key: kind.definition().words().short.to_owned(), sentence };
+    }
+    if let (Some(key), Figure::Numbers(_)) = (name.strip_prefix("design."), &requirement.limit) {
+        let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");
+        return Objection { key: key.to_owned(), sentence };
+    }
+    let name = if name.is_empty() { "a requirement".to_owned() } else { name };
+    let sentence = format!("{name}: {value}, limit {limit}");
+    Objection { key: name, sentence }
 }
 
 fn short(value: f64) -> String {
@@ -164,7 +158,7 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
     // Among the candidates that meet everything else, if there are any.
     let otherwise_good = |c: &&Candidate| {
         let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
-        !forbidden && c.requirements.iter().all(|r| r.met || r.name == "tolerance")
+        !forbidden && c.requirements.iter().all(|r| r.met || r.name == RequirementKind::Tolerance.name())
     };
     let nearest = |list: &mut dyn Iterator<Item = &Candidate>| {
         let measured = list.map(|c| (band(c), c.rank, c.clone()));
@@ -177,7 +171,7 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
         nearest(&mut record.candidates.iter().filter(otherwise_good))
             .or_else(|| nearest(&mut record.candidates.iter()))?
     };
-    let row = best.requirements.iter().find(|r| r.name == "tolerance")?;
+    let row = best.requirements.iter().find(|r| r.name == RequirementKind::Tolerance.name())?;
     let list = deviations(record, &best);
     let unit = unit_suffix(record);
     let worst = worst(&list)?;
@@ -381,7 +375,9 @@ pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
             names.push(name);
         }
     }
-    if !candidate.accepted && !candidate.requirements.iter().any(|r| r.name == "tolerance") {
+    if !candidate.accepted
+        && !candidate.requirements.iter().any(|r| r.name == RequirementKind::Tolerance.name())
+    {
         names.extend(of_tolerance(record, candidate).map(|objection| objection.key));
     }
     names

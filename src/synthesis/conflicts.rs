@@ -27,7 +27,7 @@ use crate::numbers::optimise::population::PopulationError;
 use crate::record::RELAXED;
 use crate::record::{Candidate, Conflict, Relaxation};
 use crate::task::Problem;
-use crate::task::spec::{ClosingPolicy, DirectionPolicy, Method, OnePolicy, OrderPolicy, ProblemSpec};
+use crate::task::spec::{Method, ProblemSpec};
 
 /// Most evaluations of a trial.
 const TRIAL: u64 = 20_000;
@@ -211,7 +211,7 @@ impl Inquiry<'_> {
         spec.solve.candidates = WARM;
         let mut found = self.known_under(&spec);
         // A tolerance does not guide a fit: the search that is explained has already looked for the nearest to it.
-        if found.is_empty() || demands != [Demand::Tolerance] {
+        if found.is_empty() || demands != [Demand::TOLERANCE] {
             found.extend(self.short_search(spec, self.trial, WARM)?);
         }
         self.tried.push((demands.to_vec(), found.clone()));
@@ -302,26 +302,20 @@ impl Inquiry<'_> {
                 types.push(candidate.linkage_type);
             }
         }
-        if !demands.contains(&Demand::Type) {
+        if !demands.contains(&Demand::TYPE) {
             types.truncate(1);
         }
         for linkage_type in types {
-            let of_type = |c: &&Candidate| c.linkage_type == linkage_type || !demands.contains(&Demand::Type);
+            let of_type = |c: &&Candidate| c.linkage_type == linkage_type || !demands.contains(&Demand::TYPE);
             let warm: Vec<Candidate> = found.iter().filter(of_type).cloned().collect();
             let mut base = self.problem.spec().clone();
             for demand in demands {
-                match demand {
-                    Demand::Type => {
-                        base.require.types.push(linkage_type);
-                        base.require.types.sort_unstable();
-                        base.require.types.dedup();
-                    }
-                    Demand::Order => base.require.order = OrderPolicy::Any,
-                    Demand::Direction => base.require.direction = DirectionPolicy::Any,
-                    Demand::Circuit => base.require.circuit = OnePolicy::Any,
-                    Demand::Branch => base.require.branch = OnePolicy::Any,
-                    Demand::Closing => base.require.closing = ClosingPolicy::Any,
-                    _ => {}
+                if *demand == Demand::TYPE {
+                    base.require.types.push(linkage_type);
+                    base.require.types.sort_unstable();
+                    base.require.types.dedup();
+                } else if demand.is_policy() {
+                    base = demand.dropped(self.problem, base);
                 }
             }
             if let Some(relaxation) = self.least(demands, &base, warm)? {
@@ -359,7 +353,7 @@ impl Inquiry<'_> {
         let mut outer = outermost.clone();
         // The tolerance judges the error but does not guide a fit: the error found is the best known. Beside other
         // limits it follows: it becomes the error that the last fit leaves.
-        if measured != [Demand::Tolerance] && !measured.is_empty() {
+        if measured != [Demand::TOLERANCE] && !measured.is_empty() {
             let mut step: f64 = 0.5;
             for _ in 0..STEPS {
                 if step < SHORTEST_STEP || self.exhausted() {
@@ -475,7 +469,7 @@ impl Ladder {
                 ladder.outward.push(limit.outward);
                 ladder.scale.push(if measure > 0.0 { measure } else { problem.task().size() });
                 ladder.lengths.push(matches!(demand, Demand::Design(key) if key.is_length()));
-                ladder.tolerances.push(*demand == Demand::Tolerance);
+                ladder.tolerances.push(*demand == Demand::TOLERANCE);
             }
         }
         Some(ladder)

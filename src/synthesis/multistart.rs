@@ -17,7 +17,7 @@ use crate::numbers::optimise::levenberg_marquardt::{
 };
 use crate::record::Candidate;
 use crate::task::forms::design_space::{Design, Shape};
-use crate::task::forms::requirements::assembly_of;
+use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::{Positions, TorusFit};

@@ -15,7 +15,7 @@
 
 use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Mobility};
 use crate::task::Problem;
-use crate::task::forms::requirements::assembly_of;
+use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -34,7 +34,7 @@ use crate::task::forms::linear_fit::{KnownPivots, Ratios};
 use crate::task::forms::projection::{ProjectedFit, Projection, ratio_box};
 use crate::task::forms::reduced::known_ground;
 use crate::task::forms::start::Start;
-use crate::task::spec::DEFAULT_LINK_RATIO;
+use crate::task::requirement::DEFAULT_LINK_RATIO;
 use std::f64::consts::{PI, TAU};
 use std::sync::{Mutex, PoisonError};
 

@@ -26,8 +26,6 @@ const FITTED: usize = 12;
 const FIT_SHARE: u64 = 4;
 /// Least evaluations of a relaxed search: with fewer it finds nothing.
 const LEAST_SEARCH: u64 = 1000;
-/// Requirements that are left out in turn.
-const LEFT_OUT: [Demand; 3] = [Demand::Transmission, Demand::FootprintIn, Demand::PivotsIn];
 
 /// Judges the first [`JUDGED`] ends of a relaxed problem by the problem itself. If none of them is acceptable, fits the
 /// most promising `most` of them under all of its requirements, with at most `each` evaluations a fit.
@@ -82,8 +80,11 @@ pub(super) fn search(
 ) -> (Vec<Candidate>, Evaluations) {
     let mut evaluations = Evaluations::default();
     let mut found = Vec::new();
-    let asked: Vec<Demand> =
-        Demand::of(problem).into_iter().filter(|demand| LEFT_OUT.contains(demand)).collect();
+    let in_turn = |demand: &Demand| match demand {
+        Demand::Require(kind) => kind.definition().is_left_out_in_turn(),
+        Demand::Design(_) => false,
+    };
+    let asked: Vec<Demand> = Demand::of(problem).into_iter().filter(in_turn).collect();
     let n = problem.task().len() as u64;
     for (turn, demand) in (0..).zip(&asked) {
         let share = limit.saturating_sub(evaluations.objective) / (asked.len() as u64 - turn);

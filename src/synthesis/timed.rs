@@ -29,7 +29,7 @@ use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
 use crate::record::{Candidate, Evaluations, Reason, Repeats};
 use crate::task::forms::design_space::{Design, DesignSpace};
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
-use crate::task::forms::requirements::{Motion, Requirements, nearest_type};
+use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
 use crate::task::{AngleOffset, Timing};
 use crate::task::{Problem, Setting};

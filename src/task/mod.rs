@@ -7,6 +7,7 @@
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
 //! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
+//! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 
@@ -15,8 +16,10 @@ pub mod defect;
 pub mod forms;
 mod path;
 pub mod problem;
+pub mod requirement;
 pub mod resampling;
 pub mod spec;
+pub(crate) mod values;
 
 pub use builder::ProblemBuilder;
 pub use defect::Defect;

@@ -8,7 +8,7 @@ use super::spec::{
 };
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
 use crate::task::forms::design_space::DesignSpace;
-use crate::task::forms::requirements::Requirements;
+use crate::task::forms::rows::Requirements;
 use crate::task::{AngleOffset, PathTask, Return, TaskError, Timing};
 use serde::{Deserialize, Serialize};
 

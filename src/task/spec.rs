@@ -3,13 +3,15 @@
 //! It is written as `problem.resolved` in a record, and a run starts from it; a problem file, a library caller and
 //! `verify` all lead to it. Angles in degrees, lengths in the file's unit.
 
-use crate::mechanism::{LinkageType, MAX_MAGNITUDE};
+use crate::mechanism::MAX_MAGNITUDE;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::resampling::{resample, smooth};
-use crate::task::{AngleOffset, Defect, PathOptions, PathTask, TaskError, Timing};
+use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+pub use crate::task::requirement::{RequireSpec, TransmissionOver};
 
 /// An interval [low, high]; a fixed value has low = high.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -185,8 +187,6 @@ pub struct DesignSpec {
     pub coupler_y: Option<Limits>,
 }
 
-/// The default of `link_ratio_max`.
-pub const DEFAULT_LINK_RATIO: f64 = 20.0;
 /// The default half width of the pivots' box and the greatest default length, in sizes of the target.
 pub const DEFAULT_REACH: f64 = 5.0;
 /// The least default length of a link, in sizes of the target.
@@ -223,16 +223,6 @@ impl DesignSpec {
             self.coupler_y.get_or_insert(offset);
         }
     }
-}
-
-/// Over which motion the transmission angle is judged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum TransmissionOver {
-    /// The full turn of the crank.
-    Cycle,
-    /// The crank angles between the target points.
-    Used,
 }
 
 /// Whether a defect is forbidden.
@@ -286,69 +276,6 @@ pub enum DirectionPolicy {
     Ccw,
     /// Clockwise.
     Cw,
-}
-
-/// What an acceptable linkage satisfies.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct RequireSpec {
-    /// The types allowed; empty: any.
-    #[serde(rename = "type")]
-    pub types: Vec<LinkageType>,
-    /// The least of min(mu, 180 - mu) over the motion, degrees.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub transmission_deg_min: Option<f64>,
-    /// Over which motion; absent: the cycle where the input turns fully, else the used part.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub transmission_over: Option<TransmissionOver>,
-    /// Longest over shortest of ground, a, b, c.
-    pub link_ratio_max: f64,
-    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pivots_in: Option<[f64; 4]>,
-    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub footprint_in: Option<[f64; 4]>,
-    /// Whether the points must be passed in order.
-    pub order: OrderPolicy,
-    /// Which way the crank turns.
-    pub direction: DirectionPolicy,
-    /// Whether the motion must stay on one circuit.
-    pub circuit: OnePolicy,
-    /// Whether the motion must stay on one branch.
-    pub branch: OnePolicy,
-    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
-    /// there was a choice keep their digest.
-    #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
-    pub closing: ClosingPolicy,
-}
-
-impl RequireSpec {
-    /// Returns whether a defect is disallowed.
-    pub fn forbids(&self, defect: &Defect) -> bool {
-        match defect {
-            Defect::Order { .. } => self.order == OrderPolicy::Required,
-            Defect::Branch { .. } => self.branch == OnePolicy::One,
-            Defect::Circuit { .. } => self.circuit == OnePolicy::One,
-        }
-    }
-}
-
-impl Default for RequireSpec {
-    fn default() -> Self {
-        RequireSpec {
-            types: Vec::new(),
-            transmission_deg_min: None,
-            transmission_over: None,
-            link_ratio_max: DEFAULT_LINK_RATIO,
-            pivots_in: None,
-            footprint_in: None,
-            order: OrderPolicy::default(),
-            direction: DirectionPolicy::default(),
-            circuit: OnePolicy::default(),
-            branch: OnePolicy::default(),
-            closing: ClosingPolicy::default(),
-        }
-    }
 }
 
 /// How to search.

@@ -45,7 +45,7 @@ function inWords(key: string, from: Value, to: Value, unit: string | undefined):
 export function changed(task: Task, key: string, to: Value): Task {
   if (key === "task.path.tolerance") return { ...task, tolerance: to as number, tolerances: undefined };
   if (key === "require.type") return { ...task, types: to as string[] };
-  if (key.startsWith("require.")) return { ...task, [key.slice(8)]: to };
+  if (key.startsWith("require.") && task.kept?.[key] === undefined) return { ...task, [key.slice(8)]: to };
   // JSON of numbers, words and lists of them is TOML too.
   return { ...task, kept: { ...task.kept, [key]: JSON.stringify(to) } };
 }

@@ -174,7 +174,7 @@ function asked(task: Task): string {
       .filter(([, value]) => value !== undefined)
       .sort(),
     Object.entries(kept ?? {})
-      .filter(([key]) => key.startsWith("design."))
+      .filter(([key]) => !key.startsWith("solve."))
       .sort(),
   ]);
 }

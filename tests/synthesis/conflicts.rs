@@ -114,6 +114,18 @@ fn proposals_that_are_typed_in_end_with_accepted_candidates() {
     assert!(proposed >= 3, "{proposed} proposals");
 }
 
+#[test]
+fn an_extent_that_is_too_small_for_the_tolerance_is_named_and_what_helps_is_proposed() {
+    let set = vec![("require.extent_max", "1"), ("task.path.tolerance", "0.05")];
+    assert!(proposals_that_hold(vec![(literature_path("k18"), set, "require.extent_max")]) >= 1);
+}
+
+#[test]
+fn a_longest_link_that_is_too_short_for_the_tolerance_is_named_and_what_helps_is_proposed() {
+    let set = vec![("require.longest_max", "0.38"), ("task.path.tolerance", "0.05")];
+    assert!(proposals_that_hold(vec![(literature_path("k18"), set, "require.longest_max")]) >= 1);
+}
+
 /// A key that is typed is no longer filled in by a default, and may take the default of another with it: what is
 /// proposed has to say enough for the problem that was proved.
 #[test]

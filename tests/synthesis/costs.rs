@@ -6,7 +6,7 @@ use linkwright::internals::judge::costs::weighted_rms;
 use linkwright::internals::judge::loosen::Demand;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::judge::warm::start_at;
-use linkwright::internals::record::{Candidate, Cost};
+use linkwright::internals::record::{Candidate, Cost, Figure};
 use linkwright::internals::synthesis::Budget;
 use linkwright::internals::synthesis::multistart::{judged, polish};
 use linkwright::internals::task::Problem;
@@ -78,6 +78,19 @@ fn rates_of_published_problems_agree_with_solving_again_at_moved_limits() {
     assert!(timed.iter().any(|name| name.starts_with("pivots_in")), "{timed:?}");
     let timed = rates_agree(literature("k18", &[("require.footprint_in", "[-0.1, -1, 1.2, 1.3]")]));
     assert!(timed.iter().any(|name| name.starts_with("footprint_in")), "{timed:?}");
+}
+
+#[test]
+fn rates_of_extent_and_longest_link_agree_with_solving_again_at_moved_limits() {
+    for name in ["extent_max", "longest_max"] {
+        let key = format!("require.{name}");
+        let loose = run_on(2, literature("k18", &[(key.as_str(), "1e6")]));
+        let row = loose.candidates[0].requirements.iter().find(|r| r.name == name).expect("it is asked for");
+        let Figure::Number(value) = row.value else { panic!("{name} is a number") };
+        let tight = (0.9 * value).to_string();
+        let priced = rates_agree(literature("k18", &[(key.as_str(), tight.as_str())]));
+        assert!(priced.contains(&name.to_owned()), "{name}: {priced:?}");
+    }
 }
 
 #[test]

@@ -55,6 +55,9 @@ fn cases() -> Vec<(&'static str, Problem)> {
             problem(&(timing("free") + "[design]\nd = [0.1, 9]\ne = [0.1, 9]\n" + REQUIRE + cycle)),
         ),
         ("footprint", problem(&(timing("free") + "[require]\nfootprint_in = [-2, -2, 3, 3]\n"))),
+        ("extent", problem(&(timing("free") + "[require]\nextent_max = 4\n"))),
+        ("extent, ground", problem(&(timing("ground") + "[require]\nextent_max = 4\n"))),
+        ("longest", problem(&(timing("free") + "[require]\nlongest_max = 3\n"))),
         ("used", problem(&(timing("free") + REQUIRE + "transmission_over = \"used\"\n"))),
         ("free timing", problem(&(REQUIRE.to_string() + cycle))),
         ("free timing, used", open_problem(&(REQUIRE.to_string() + "transmission_over = \"used\"\n"))),
@@ -76,6 +79,19 @@ fn cases() -> Vec<(&'static str, Problem)> {
                 "[require]\nfootprint_in = [-2, -2, 3, 3]\ntype = [\"triple-rocker\"]\nbranch = \"any\"\n",
             ),
         ),
+        (
+            "free timing, extent",
+            open_problem("[require]\nextent_max = 4\ntype = [\"crank-rocker\", \"double-crank\"]\n"),
+        ),
+        (
+            "free timing, extent of a rocker",
+            open_problem("[require]\nextent_max = 4\ntype = [\"double-rocker\", \"rocker-crank\"]\n"),
+        ),
+        (
+            "free timing, extent past toggles",
+            open_problem("[require]\nextent_max = 4\ntype = [\"triple-rocker\"]\nbranch = \"any\"\n"),
+        ),
+        ("free timing, longest", open_problem("[require]\nlongest_max = 3\n")),
         (
             "free timing, types",
             problem("[require]\ntype = [\"double-rocker\", \"rocker-crank\"]\nbranch = \"any\"\n"),

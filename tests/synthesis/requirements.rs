@@ -60,6 +60,49 @@ fn a_binding_transmission_angle_is_used_up_to_its_limit() {
 }
 
 #[test]
+fn a_binding_extent_and_a_binding_longest_link_are_used_up_to_their_limits() {
+    for name in ["extent_max", "longest_max"] {
+        let asked = |limit: f64| egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{name} = {limit}\n"));
+        let number = |record: &Record| match requirement(record, name) {
+            Figure::Number(value) => value,
+            other => panic!("{name} = {other}"),
+        };
+        let (loose, free) = (accepted_and_true(&asked(1e6)), accepted_and_true(&egg("")));
+        let limit = 0.85 * number(&loose);
+        let tight = accepted_and_true(&asked(limit));
+        let value = number(&tight);
+        assert!(value <= limit * (1.0 + 1e-7) && value >= limit * (1.0 - 1e-5), "{name}: {value} of {limit}");
+        let sum_sq = |record: &Record| record.candidates[0].error.sum_sq;
+        assert!(sum_sq(&tight) > sum_sq(&loose), "{name} costs");
+        assert!(free.candidates[0].requirements.iter().all(|r| r.name != name), "{name} is not asked for");
+    }
+}
+
+#[test]
+fn extent_and_longest_link_are_what_the_joints_and_the_lengths_say() {
+    let text = egg("[require]\ntype = [\"crank-rocker\"]\nextent_max = 1e6\nlongest_max = 1e6\n");
+    let record = accepted_and_true(&text);
+    let linkage = record.candidates[0].linkage;
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for i in 0..36_000 {
+        let joints = linkage.position(f64::from(i).to_radians() / 100.0).joints().expect("it turns fully");
+        let [a, b] = [linkage.crank_pivot(), linkage.follower_pivot()];
+        for p in [a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point] {
+            low = [low[0].min(p.re), low[1].min(p.im)];
+            high = [high[0].max(p.re), high[1].max(p.im)];
+        }
+    }
+    let Figure::Number(extent) = requirement(&record, "extent_max") else { panic!("a number") };
+    let seen = (high[0] - low[0]).hypot(high[1] - low[1]);
+    // Samples in steps of a hundredth of a degree miss an extreme by a few parts in 1e9.
+    assert!((extent - seen).abs() <= 1e-7 * seen, "{extent} {seen}");
+    let Figure::Number(longest) = requirement(&record, "longest_max") else { panic!("a number") };
+    let [ground, crank, coupler, follower] = linkage.links();
+    let lengths = [ground, crank, coupler, follower, linkage.crank_side(), linkage.follower_side()];
+    assert_eq!(longest, lengths.into_iter().fold(0.0, f64::max));
+}
+
+#[test]
 fn every_type_can_be_asked_for() {
     for kind in
         ["crank-rocker", "double-crank", "rocker-crank", "double-rocker", "triple-rocker", "change-point"]

@@ -4,7 +4,8 @@ use super::messages::{Ask, Known};
 use crate::files::problem_file;
 use crate::files::problem_file::{Expect, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, SolveSpec};
+use crate::task::requirement::RequirementKind;
+use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display, Write};
@@ -74,11 +75,11 @@ impl Ask {
     /// The text of the problem file that asks the same.
     ///
     /// # Errors
-    /// What of [`kept`](Ask::kept) is no key and value under `design` or `solve`, in words.
+    /// What of [`kept`](Ask::kept) is no key and value under `design`, `require` or `solve`, in words.
     pub fn problem_text(&self) -> Result<String, String> {
         let mut text =
             format!("# Drawn in linkwright's studio.\nformat = 1\nname = {}\n", quoted(&self.name));
-        let [design, solve] = self.kept_lines()?;
+        let [design, require, solve] = self.kept_lines()?;
         // Writing to a String cannot fail.
         let _ = self.write_head(&mut text);
         let _ = self.write_path(&mut text);
@@ -86,6 +87,7 @@ impl Ask {
             text.push_str(&format!("\n[design]\n{design}"));
         }
         let _ = self.write_require(&mut text);
+        text.push_str(&require);
         let _ = self.write_solve(&mut text);
         text.push_str(&solve);
         if let Some(expect) = self.expect_text(&text) {
@@ -107,17 +109,18 @@ impl Ask {
         Some(format!("\n{text}"))
     }
 
-    /// The lines of what is kept, under `design` and under `solve`.
-    fn kept_lines(&self) -> Result<[String; 2], String> {
-        let mut lines = [String::new(), String::new()];
+    /// The lines of what is kept, under `design`, under `require` and under `solve`.
+    fn kept_lines(&self) -> Result<[String; 3], String> {
+        let mut lines = [const { String::new() }; 3];
         for (key, value) in &self.kept {
             let plain = |key: &str| {
                 !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
             };
-            let (place, rest) = match (key.strip_prefix("design."), key.strip_prefix("solve.")) {
-                (Some(rest), _) if plain(rest) => (0, rest),
-                (_, Some(rest)) if plain(rest) => (1, rest),
-                _ => return Err(format!("{key:.60} cannot be kept: keys under design and solve can")),
+            let tables = [(0, "design."), (1, "require."), (2, "solve.")];
+            let mut within =
+                tables.iter().filter_map(|(place, table)| Some((*place, key.strip_prefix(table)?)));
+            let Some((place, rest)) = within.next().filter(|(_, rest)| plain(rest)) else {
+                return Err(format!("{key:.60} cannot be kept: keys under design, require and solve can"));
             };
             lines[place].push_str(&format!("{rest} = {}\n", one_value(key, value)?));
         }
@@ -255,7 +258,7 @@ impl Ask {
         let tolerance = all.filter(|all| path.tolerance.iter().flatten().all(|t| t == all));
         let mut kept = design_lines(design, &problem.spec);
         kept.extend(solve_lines(solve));
-        let ask = Ask {
+        let mut ask = Ask {
             version: 0,
             name: problem.name.clone(),
             source: problem.source.clone(),
@@ -286,6 +289,8 @@ impl Ask {
             moving: false,
             fresh: false,
         };
+        let others = require_lines(require, &ask);
+        ask.kept.extend(others);
         match ask.problem() {
             Ok(again) if again.expect != problem.expect => {
                 Err(NotHere::Other("what is known of its answer is another when it is read back".into()))
@@ -360,6 +365,14 @@ fn design_lines(design: &DesignSpec, spec: &ProblemSpec) -> BTreeMap<String, Str
     differing("design", &written, &toml::Table::new())
 }
 
+/// The requirements that a problem gives and the studio has no control for.
+fn require_lines(require: &RequireSpec, ask: &Ask) -> BTreeMap<String, String> {
+    let shown = table(ask);
+    let mut others = table(require);
+    others.retain(|key, _| key != RequirementKind::Type.name() && !shown.contains_key(key));
+    differing("require", &others, &table(&RequireSpec::default()))
+}
+
 /// What a problem says of the search beside method, objective and seed.
 fn solve_lines(solve: &SolveSpec) -> BTreeMap<String, String> {
     let default = SolveSpec {
@@ -418,7 +431,7 @@ mod tests {
             closed = true\ntiming = { crank_deg = [0, 90, 180, 270.5], offset = \"ground\" }\n[design]\nA = [[0, 1], 2]\n\
             a = 1\nb = [1, 2]\nground_angle_deg = [10, 20]\n[require]\ntype = [\"crank-rocker\"]\norder = \"any\"\n\
             circuit = \"any\"\nbranch = \"any\"\nfootprint_in = [-9, -9, 9, 9]\ntransmission_over = \"used\"\n\
-            transmission_deg_min = 30\n[solve]\nmethod = \"genetic\"\nobjective = \"max-deviation\"\ncandidates = 3\n\
+            transmission_deg_min = 30\nextent_max = 12\n[solve]\nmethod = \"genetic\"\nobjective = \"max-deviation\"\ncandidates = 3\n\
             evaluations = 1e4\ntime_limit_s = 5\ngenetic.population = 60\n";
         let problem = parse("all", text, None, &[]).expect("a problem");
         let ask = Ask::of(&problem).expect("it fits");
@@ -431,6 +444,7 @@ mod tests {
                 "design.a",
                 "design.b",
                 "design.ground_angle_deg",
+                "require.extent_max",
                 "solve.candidates",
                 "solve.evaluations",
                 "solve.genetic.population",

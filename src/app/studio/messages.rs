@@ -89,7 +89,7 @@ pub struct Ask {
     /// What is minimised.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objective: Objective,
-    /// Other keys of the problem file under `design` and `solve`, each with its value as it is typed there.
+    /// Other keys of the problem file under `design`, `require` and `solve`, each with its value as it is typed there.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kept: BTreeMap<String, String>,
     /// Where the problem comes from, in words.

@@ -3,6 +3,7 @@
 use crate::record::{Completeness, ExactRecord, Reason, Record};
 use crate::report::{exact, table};
 use crate::synthesis::{HitsSoFar, Progress};
+use crate::task::requirement::RequirementKind;
 
 /// What a search is doing.
 pub(super) fn under_way(progress: &Progress) -> String {
@@ -78,21 +79,8 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
 
 /// A requirement in plain words.
 pub(super) fn plain(key: &str) -> String {
-    let words = match key {
-        "require.type" => "how it is driven",
-        "require.transmission_deg_min" => "the least transmission angle",
-        "require.link_ratio_max" => "the longest over shortest link",
-        "require.pivots_in" => "the pivot box",
-        "require.footprint_in" => "the space for the whole linkage",
-        "require.order" => "the order of the points",
-        "require.direction" => "the direction of the crank",
-        "require.circuit" => "staying on one circuit",
-        "require.branch" => "passing no toggle",
-        "require.closing" => "returning to the first point without reversing",
-        "task.path.tolerance" => "the largest error",
-        _ => return key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}")),
-    };
-    words.to_owned()
+    let bounds = || key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}"));
+    RequirementKind::with_key(key).map_or_else(bounds, |kind| kind.definition().words().plain.to_owned())
 }
 
 /// Which requirements are not met together, and whether a change helps.

@@ -18,20 +18,20 @@ use crate::files::input_text;
 use crate::files::linkage_file::{check_format, checked_name};
 use crate::files::name;
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::{Corners, Count, OnlyTable};
+use crate::files::toml_values::{Count, OnlyTable};
 use crate::mechanism::AssemblyMode;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
-use crate::task::AngleOffset;
 use crate::task::Problem;
 use crate::task::forms::precision;
 use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
+use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
-    DirectionPolicy, MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec,
-    ProblemSpec, RequireSpec, SolveSpec, TimingSpec,
+    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec, ProblemSpec, RequireSpec,
+    SolveSpec, TimingSpec,
 };
-use raw::{RawExpect, RawRequire, RawSolve};
+use raw::{RawExpect, RawSolve};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -255,67 +255,14 @@ fn require_of(
     raw: RawRequire,
     timing: Option<&TimingSpec>,
 ) -> Result<RequireSpec, Box<Diagnostic>> {
-    let refuse = |key: &str, message: String, help: &str| {
-        Err(Box::new(toml.at(&format!("require.{key}"), message).with_help(help)))
-    };
-    if let Some(t) = raw.transmission_deg_min
-        && !(0.0..=90.0).contains(&t.0)
-    {
-        let message = format!("transmission_deg_min = {} is not between 0 and 90 degrees", t.0);
-        return refuse(
-            "transmission_deg_min",
-            message,
-            "the angle meant is min(mu, 180 - mu): 90 is best, 30 to 40 is usual",
-        );
-    }
-    if let Some(r) = raw.link_ratio_max
-        && r.0 < 1.0
-    {
-        let message =
-            format!("link_ratio_max = {}: the longest link is at least as long as the shortest", r.0);
-        return refuse("link_ratio_max", message, "write 1 or more, such as 10");
-    }
-    for (key, corners) in [("pivots_in", raw.pivots_in), ("footprint_in", raw.footprint_in)] {
-        let Some([x0, y0, x1, y1]) = corners.map(corner_numbers) else { continue };
-        if !(x0 < x1 && y0 < y1) {
-            let message = format!("the box [{x0}, {y0}, {x1}, {y1}] is empty or the wrong way round");
-            return refuse(key, message, "write [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax");
+    let require = RequireSpec::from(raw);
+    for kind in RequirementKind::ALL {
+        let definition = kind.definition();
+        if let Err(refusal) = definition.check(&require, timing) {
+            return Err(Box::new(toml.at(definition.key(), refusal.message).with_help(refusal.help)));
         }
     }
-    if let Some(timing) = timing.filter(|t| t.offset != AngleOffset::Free)
-        && raw.direction != DirectionPolicy::Any
-    {
-        let offset = if timing.offset == AngleOffset::Fixed { "fixed" } else { "ground" };
-        return refuse(
-            "direction",
-            format!(
-                "the direction is already told by crank_deg, which is meant as written \
-                 with offset = \"{offset}\""
-            ),
-            "remove direction; to turn the other way, change the signs of crank_deg",
-        );
-    }
-    let default = RequireSpec::default();
-    let mut types = raw.types.map_or(default.types, |t| t.0);
-    types.sort_unstable();
-    types.dedup();
-    Ok(RequireSpec {
-        types,
-        transmission_deg_min: raw.transmission_deg_min.map(|t| t.0),
-        transmission_over: raw.transmission_over,
-        link_ratio_max: raw.link_ratio_max.map_or(default.link_ratio_max, |r| r.0),
-        pivots_in: raw.pivots_in.map(corner_numbers),
-        footprint_in: raw.footprint_in.map(corner_numbers),
-        order: raw.order,
-        direction: raw.direction,
-        circuit: raw.circuit,
-        branch: raw.branch,
-        closing: raw.closing,
-    })
-}
-
-fn corner_numbers(corners: Corners) -> [f64; 4] {
-    corners.0.map(|n| n.0)
+    Ok(require)
 }
 
 fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnostic>> {

@@ -1,16 +1,12 @@
 //! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
 
-use crate::files::toml_values::{
-    BoundedXY, Bounds, Corners, Count, Number, OneOrEach, OneOrMore, OnlyTable, XY,
-};
-use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, LinkageType};
+use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, XY};
+use crate::mechanism::{AssemblyMode, Unit};
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::AngleOffset;
-use crate::task::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, TransmissionOver, Variables,
-};
+use crate::task::requirement::RawRequire;
+use crate::task::spec::{Method, Objective, Variables};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -125,41 +121,6 @@ pub(crate) struct RawDesign {
     pub coupler_x: Option<Bounds>,
     /// P across the line from C to D, positive to its left; likewise.
     pub coupler_y: Option<Bounds>,
-}
-
-/// What an acceptable linkage satisfies.
-#[derive(Default, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Require")]
-pub(crate) struct RawRequire {
-    /// The types allowed; where silent, any.
-    #[serde(rename = "type")]
-    pub types: Option<OneOrMore<LinkageType>>,
-    /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
-    pub transmission_deg_min: Option<Number>,
-    /// Over which motion it is judged; where silent, the cycle where the crank turns fully.
-    pub transmission_over: Option<TransmissionOver>,
-    /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
-    pub link_ratio_max: Option<Number>,
-    /// The box [xmin, ymin, xmax, ymax] that must hold both fixed pivots.
-    pub pivots_in: Option<Corners>,
-    /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
-    pub footprint_in: Option<Corners>,
-    /// Whether the points must be passed in order.
-    #[serde(default)]
-    pub order: OrderPolicy,
-    /// Which way the crank turns.
-    #[serde(default)]
-    pub direction: DirectionPolicy,
-    /// Whether the motion must stay on one circuit.
-    #[serde(default)]
-    pub circuit: OnePolicy,
-    /// Whether the motion must stay on one branch.
-    #[serde(default)]
-    pub branch: OnePolicy,
-    /// How a target that ends where it begins is closed.
-    #[serde(default)]
-    pub closing: ClosingPolicy,
 }
 
 /// How to search and when to stop.

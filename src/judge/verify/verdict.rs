@@ -3,20 +3,20 @@
 use crate::judge::assess::MET_TOLERANCE;
 use crate::record::{Candidate, Figure, Requirement};
 use crate::task::Problem;
+use crate::task::requirement::RequirementKind;
 
 /// Returns the scale of the rounding of a requirement's figure: the margin is [`super::ABSOLUTE`] of it.
 pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
-    match (&requirement.value, requirement.name.as_str()) {
-        // Extremes of a motion are found by search, to the square root of the rounding.
-        (Figure::Numbers(_), _) => 1e4 * size,
-        (_, "link_ratio_max") => 1.0,
-        (Figure::Number(value), "transmission_deg_min") => {
-            180.0 / value.min(180.0 - value).max(1e-5).to_radians().sin()
-        }
-        (_, "design.ground_angle_deg") => 180.0,
+    let value = match requirement.value {
+        Figure::Number(value) => Some(value),
+        Figure::Numbers(_) | Figure::Word(_) | Figure::Words(_) => None,
+    };
+    match (RequirementKind::named(&requirement.name), requirement.name.as_str()) {
+        (Some(kind), _) => kind.definition().rounding(value, size),
+        (None, "design.ground_angle_deg") => 180.0,
         // d, e and the coupler's offset follow from each other by square roots of small differences.
-        (_, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,
-        _ => size,
+        (None, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,
+        (None, _) => size,
     }
 }
 

@@ -5,6 +5,7 @@ use super::table::{head, minus, scrolling};
 use crate::record::{Candidate, Figure, Record, Requirement};
 use crate::report::text::{brief, clean, exact};
 use crate::report::{price, words};
+use crate::task::requirement::RequirementKind;
 
 /// Returns the requirements as tables: those of `[require]` and the tolerance at once, the bounds of `[design]` folded
 /// away unless the candidate is at a bound or misses it.
@@ -89,32 +90,18 @@ fn signed(text: &str, figure: &Figure) -> String {
 
 /// Returns the relation between value and limit.
 fn relation(r: &Requirement) -> &'static str {
-    match (r.name.as_str(), &r.limit) {
-        ("transmission_deg_min", _) => "at least ",
-        ("link_ratio_max" | "tolerance", _) => "at most ",
-        ("pivots_in" | "footprint_in", _) => "in ",
-        (_, Figure::Numbers(_)) => "in ",
-        _ => "",
+    match (RequirementKind::named(&r.name), &r.limit) {
+        (Some(kind), _) => kind.definition().words().relation,
+        (None, Figure::Numbers(_)) => "in ",
+        (None, _) => "",
     }
 }
 
 /// Returns the name for readers; the problem file's key if there is no word for it.
 fn label(name: &str) -> String {
-    match name {
-        "type" => "type".to_owned(),
-        "transmission_deg_min" => "worst transmission angle, °".to_owned(),
-        "link_ratio_max" => "longest to shortest link".to_owned(),
-        "pivots_in" => "fixed pivots inside".to_owned(),
-        "footprint_in" => "motion inside".to_owned(),
-        "order" => "order of the points".to_owned(),
-        "closing" => "return to the first point".to_owned(),
-        "branch" => "branch".to_owned(),
-        "circuit" => "circuit".to_owned(),
-        "direction" => "direction".to_owned(),
-        "tolerance" => "error at the worst point".to_owned(),
-        other => {
-            let plain = clean(other.strip_prefix("design.").unwrap_or(other));
-            if plain.is_empty() { "a requirement".to_owned() } else { plain }
-        }
+    if let Some(kind) = RequirementKind::named(name) {
+        return kind.definition().words().label.to_owned();
     }
+    let plain = clean(name.strip_prefix("design.").unwrap_or(name));
+    if plain.is_empty() { "a requirement".to_owned() } else { plain }
 }

@@ -8,7 +8,7 @@
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Branch, LinkageType};
 use crate::task::Problem;
-use crate::task::forms::requirements::assembly_of;
+use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 
 /// Types whose circuits are branches: the input turns fully.

@@ -12,7 +12,7 @@
 //! of points.
 
 use super::design_space::{DesignSpace, Shape};
-use super::requirements::{Motion, Requirements, nearest_type};
+use super::rows::{Motion, Requirements, nearest_type};
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::mobility::{linkage_type, wrapped};
 use crate::mechanism::four_bar::position::Kernel;

@@ -8,7 +8,7 @@
 //! | [`precision`] | exact problems: paths of nine precision points with free timing |
 //! | [`projection`] | variable projection for prescribed timing (the reduced form): the linear parameters are solved for inside |
 //! | [`reduced`] | admissibility of a problem for the search in reduced variables |
-//! | [`requirements`] | requirements on a linkage, as smooth constraint functions g(shape, motion) >= 0 in units of length |
+//! | [`rows`] | requirements on a linkage, as smooth constraint functions g(shape, motion) >= 0 in units of length |
 //! | [`start`] | the start of a local search: a design vector with its discrete choices and the points' positions |
 //! | [`timed`] | prescribed timing as a least-squares problem in the design vector |
 //! | [`torus`] | free timing as a least-squares problem: the design vector and, for each point, a position of the linkage of its own |
@@ -19,7 +19,7 @@ pub mod linear_fit;
 pub mod precision;
 pub mod projection;
 pub mod reduced;
-pub mod requirements;
+pub mod rows;
 pub mod start;
 pub mod timed;
 pub mod torus;

@@ -5,12 +5,12 @@
 //! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
 
 use super::design_space::{DESIGN, Design, DesignSpace, Shape, unit};
-use super::requirements::{Motion, Requirements};
+use super::rows::{Motion, Requirements};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
 use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{Complex, turned, xy};
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
 use crate::task::{AngleOffset, Timing};
 use crate::task::{Problem, Setting};
 use std::f64::consts::TAU;
@@ -177,22 +177,22 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {
-            let mut by_shape = row.shape;
+            let (mut by_shape, by_turn) = (row.shape, row.by_turn());
             let mut by_offset = 0.0;
             match self.offset {
-                AngleOffset::Free => by_offset = row.crank,
+                AngleOffset::Free => by_offset = by_turn,
                 AngleOffset::Fixed => {}
                 AngleOffset::Ground => {
-                    by_shape[0] -= row.crank * by_ground_angle.re;
-                    by_shape[1] -= row.crank * by_ground_angle.im;
-                    by_shape[2] += row.crank * by_ground_angle.re;
-                    by_shape[3] += row.crank * by_ground_angle.im;
+                    by_shape[0] -= by_turn * by_ground_angle.re;
+                    by_shape[1] -= by_turn * by_ground_angle.im;
+                    by_shape[2] += by_turn * by_ground_angle.re;
+                    by_shape[3] += by_turn * by_ground_angle.im;
                 }
             }
             each(&ConstraintRow {
                 value: row.value,
                 gradient: self.space.pull_back(x, &shape, &by_shape, by_offset),
-                own: None,
+                own: [None; MOST_OWN],
             });
         });
     }

@@ -14,12 +14,12 @@
 //! The tangents are eliminated point by point in [`crate::numbers::optimise::levenberg_marquardt`].
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
-use super::requirements::{Motion, Place, Requirements, assembly_of};
+use super::rows::{Motion, Place, Requirements, assembly_of};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
-use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
 use crate::task::{Problem, Setting};
 
 use crate::task::defect::ORDER_TOLERANCE;
@@ -520,20 +520,22 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
         let Some(shape) = self.space.shape(x) else { return };
         let (motion, ends) = self.motion_between(&shape, state);
         self.requirements.rows(self.setting.aim, &shape, &motion, &mut |row| {
-            let point = match row.place {
-                Place::Anywhere => None,
-                Place::First => ends.map(|[first, _]| first),
-                Place::Last => ends.map(|[_, last]| last),
-                Place::Position(j) => Some(j),
-            };
-            let (mut by_shape, mut own) = (row.shape, None);
-            if let Some(j) = point {
-                // The crank angle is the point's: it moves with the return to the curve and with the point's step.
-                let (by_return, by_step) = self.crank_of(&shape, state[j]);
-                for (out, by) in by_shape.iter_mut().zip(by_return) {
-                    *out += row.crank * by;
+            let (mut by_shape, mut own) = (row.shape, [None; MOST_OWN]);
+            for (turn, own) in row.turns.iter().zip(&mut own) {
+                let point = match turn.place {
+                    Place::Anywhere => None,
+                    Place::First => ends.map(|[first, _]| first),
+                    Place::Last => ends.map(|[_, last]| last),
+                    Place::Position(j) => Some(j),
+                };
+                if let Some(j) = point {
+                    // The crank angle is the point's: it moves with the return to the curve and with the point's step.
+                    let (by_return, by_step) = self.crank_of(&shape, state[j]);
+                    for (out, by) in by_shape.iter_mut().zip(by_return) {
+                        *out += turn.by * by;
+                    }
+                    *own = Some((j, turn.by * by_step));
                 }
-                own = Some((j, row.crank * by_step));
             }
             each(&ConstraintRow {
                 value: row.value,

@@ -1,5 +1,6 @@
 //! Tests against known optima; no derivative is taken from the solver itself.
 
+use super::super::levenberg_marquardt::MOST_OWN;
 use super::*;
 
 type Residual<'a> = Box<dyn Fn(&[f64; 2]) -> [f64; 2] + 'a>;
@@ -46,7 +47,7 @@ impl BlockLeastSquares<2> for Plain<'_> {
     fn constraints(&self, x: &[f64; 2], (): &(), each: &mut dyn FnMut(&ConstraintRow<2>)) {
         for g in &self.rows {
             let by = |i| (g(&shifted(x, i, H)) - g(&shifted(x, i, -H))) / (2.0 * H);
-            each(&ConstraintRow { value: g(x), gradient: [by(0), by(1)], own: None });
+            each(&ConstraintRow { value: g(x), gradient: [by(0), by(1)], own: [None; MOST_OWN] });
         }
     }
 }

@@ -47,31 +47,35 @@ pub struct ConstraintRow<const N: usize> {
     pub value: f64,
     /// The gradient dg/dx, with the points' own unknowns held fixed.
     pub gradient: [f64; N],
-    /// The index of the point on whose own unknown g depends, with dg/dtau; `None` if g depends on the shared
-    /// unknowns alone.
-    pub own: Option<(usize, f64)>,
+    /// The indices of the points on whose own unknowns g depends, each with dg/dtau; `None` everywhere if g depends on
+    /// the shared unknowns alone.
+    pub own: [Option<(usize, f64)>; MOST_OWN],
 }
 
+/// The most points on whose own unknowns one inequality depends.
+pub const MOST_OWN: usize = 4;
+
 impl<const N: usize> ConstraintRow<N> {
-    /// Returns the row with the derivative by the shared unknowns alone, the point's own unknown following them:
+    /// Returns the row with the derivative by the shared unknowns alone, the points' own unknowns following them:
     ///
     /// ```text
     /// tau = -<t, r + J dx> / (|t|^2 + nu)      its best step for the residual,
     /// dg/dx + dg/dtau dtau/dx
     /// ```
     ///
-    /// `blocks` are the points' blocks at the same point of the iteration. If the point's tangent is zero, its
+    /// `blocks` are the points' blocks at the same point of the iteration. If a point's tangent is zero, its
     /// unknown stays fixed.
     pub(super) fn followed(mut self, blocks: &[PointBlock<N>], nu: f64) -> Self {
-        let Some((block, by)) = self.own.take().and_then(|(point, by)| Some((blocks.get(point)?, by))) else {
-            return self;
-        };
-        let t = block.tangent;
-        let t_sq = t[0] * t[0] + t[1] * t[1];
-        if t_sq > 0.0 {
-            let by = by / (t_sq + nu);
-            for (i, slope) in self.gradient.iter_mut().enumerate() {
-                *slope -= by * (t[0] * block.jacobian[0][i] + t[1] * block.jacobian[1][i]);
+        let own = std::mem::replace(&mut self.own, [None; MOST_OWN]);
+        for (block, by) in own.into_iter().flatten().filter_map(|(point, by)| Some((blocks.get(point)?, by)))
+        {
+            let t = block.tangent;
+            let t_sq = t[0] * t[0] + t[1] * t[1];
+            if t_sq > 0.0 {
+                let by = by / (t_sq + nu);
+                for (i, slope) in self.gradient.iter_mut().enumerate() {
+                    *slope -= by * (t[0] * block.jacobian[0][i] + t[1] * block.jacobian[1][i]);
+                }
             }
         }
         self
@@ -584,7 +588,8 @@ pub fn derivative_error<const N: usize, P: BlockLeastSquares<N>>(
             }
         }
         for (row, (u, d)) in rows.iter().zip(above.1.iter().zip(&below.1)) {
-            compare(row.own.map_or(0.0, |(_, by)| by), (u.value - d.value) / (2.0 * along));
+            let own = row.own.iter().flatten().fold(0.0, |sum, (_, by)| sum + by);
+            compare(own, (u.value - d.value) / (2.0 * along));
         }
     }
     Some(worst)

@@ -3,7 +3,6 @@
 //! Each type here refuses values that are not finite numbers below 1e12, and lists of the wrong length, which serde's
 //! own arrays would cut without an error. A custom error is `message` or `message\nhelp`.
 
-use crate::files::toml_text::TOO_LARGE;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::spec::Limits;
 use schemars::JsonSchema;
@@ -12,6 +11,9 @@ use serde::de::{
 };
 use std::fmt;
 use std::marker::PhantomData;
+
+/// The remedy for a number that is too large, of an unknown key.
+pub(crate) const TOO_LARGE: &str = "write a number of at most 1e12 in magnitude";
 
 /// Returns an error with a remedy.
 pub(crate) fn refuse<E: de::Error>(message: impl fmt::Display, help: impl fmt::Display) -> E {

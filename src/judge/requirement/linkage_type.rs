@@ -1,0 +1,13 @@
+//! The type, among those allowed.
+
+use super::{Finding, Judged};
+use crate::record::Figure;
+
+pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
+    let (allowed, has) = (&judged.require().types, judged.candidate.linkage_type);
+    (!allowed.is_empty()).then(|| Finding {
+        value: Figure::Word(has.name().into()),
+        limit: Figure::Words(allowed.iter().map(|kind| kind.name().into()).collect()),
+        met: allowed.contains(&has),
+    })
+}

@@ -1,0 +1,48 @@
+//! Limits of requirements as numbers.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What the unit of a limit is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum LimitUnit {
+    /// The file's unit of length.
+    Length,
+    /// A degree.
+    Degree,
+    /// One more of longest over shortest.
+    Ratio,
+}
+
+impl LimitUnit {
+    /// Returns a size of which values in this unit are small parts, for a target of the given size.
+    pub fn whole(self, size: f64) -> f64 {
+        match self {
+            LimitUnit::Length => size,
+            LimitUnit::Degree => 180.0,
+            LimitUnit::Ratio => 1.0,
+        }
+    }
+}
+
+/// A limit, and the side on which it is loosened: +1 above it, -1 below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// The value of the limit.
+    pub value: f64,
+    /// The direction in which it is loosened, +1 or -1.
+    pub outward: f64,
+}
+
+impl Limit {
+    /// Returns the only limit of a requirement, a greatest value.
+    pub(super) fn most(value: Option<f64>) -> Option<Vec<Limit>> {
+        Some(vec![Limit { value: value?, outward: 1.0 }])
+    }
+
+    /// Returns the only limit of a requirement, a least value.
+    pub(super) fn least(value: Option<f64>) -> Option<Vec<Limit>> {
+        Some(vec![Limit { value: value?, outward: -1.0 }])
+    }
+}

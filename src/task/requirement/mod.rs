@@ -1,0 +1,392 @@
+//! Requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words.
+//!
+//! [`RequirementKind`] is the list: parser, relaxation, costs, warnings, `verify`, tables, the studio and the template
+//! iterate over it. The optimiser's rows of a requirement are in [`crate::task::forms::rows`], the judge's own
+//! arithmetic in `judge::requirement`; the two share none.
+
+mod boxes;
+mod branch;
+mod circuit;
+mod closing;
+mod direction;
+mod extent_max;
+mod footprint_in;
+mod limit;
+mod link_ratio;
+mod linkage_type;
+mod longest_max;
+mod order;
+mod pivots_in;
+mod tolerance;
+mod transmission;
+
+pub use limit::{Limit, LimitUnit};
+pub use link_ratio::DEFAULT_LINK_RATIO;
+pub use transmission::TransmissionOver;
+
+use crate::mechanism::LinkageType;
+use crate::task::spec::{ClosingPolicy, DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec};
+use crate::task::values::{Corners, Number, OneOrMore};
+use crate::task::{Defect, Problem};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The requirements: the keys of `[require]`, and the tolerance of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RequirementKind {
+    /// The key `require.type`.
+    Type,
+    /// The key `require.transmission_deg_min`.
+    Transmission,
+    /// The key `require.link_ratio_max`.
+    LinkRatio,
+    /// The key `require.pivots_in`.
+    PivotsIn,
+    /// The key `require.footprint_in`.
+    FootprintIn,
+    /// The key `require.extent_max`.
+    ExtentMax,
+    /// The key `require.longest_max`.
+    LongestMax,
+    /// The key `require.direction`.
+    Direction,
+    /// The key `require.order`.
+    Order,
+    /// The key `require.branch`.
+    Branch,
+    /// The key `require.circuit`.
+    Circuit,
+    /// The key `require.closing`.
+    Closing,
+    /// The key `task.path.tolerance`.
+    Tolerance,
+}
+
+use RequirementKind::{
+    Branch, Circuit, Closing, Direction, ExtentMax, FootprintIn, LinkRatio, LongestMax, Order, PivotsIn,
+    Tolerance, Transmission, Type,
+};
+
+impl RequirementKind {
+    /// Every kind, in the order of a record; the bounds of the design come before the tolerance there.
+    pub const ALL: [RequirementKind; 13] = [
+        Type,
+        Transmission,
+        LinkRatio,
+        PivotsIn,
+        FootprintIn,
+        ExtentMax,
+        LongestMax,
+        Direction,
+        Order,
+        Branch,
+        Circuit,
+        Closing,
+        Tolerance,
+    ];
+
+    /// Every kind, in the order in which conflicts name them and relaxations try them.
+    pub const IN_CONFLICTS: [RequirementKind; 13] = [
+        Transmission,
+        PivotsIn,
+        FootprintIn,
+        ExtentMax,
+        LongestMax,
+        LinkRatio,
+        Tolerance,
+        Type,
+        Order,
+        Direction,
+        Circuit,
+        Branch,
+        Closing,
+    ];
+
+    /// Returns the requirement of this kind.
+    pub fn definition(self) -> &'static dyn Definition {
+        match self {
+            Type => &linkage_type::Type,
+            Transmission => &transmission::Transmission,
+            LinkRatio => &link_ratio::LinkRatio,
+            PivotsIn => &pivots_in::PivotsIn,
+            FootprintIn => &footprint_in::FootprintIn,
+            ExtentMax => &extent_max::ExtentMax,
+            LongestMax => &longest_max::LongestMax,
+            Direction => &direction::Direction,
+            Order => &order::Order,
+            Branch => &branch::Branch,
+            Circuit => &circuit::Circuit,
+            Closing => &closing::Closing,
+            Tolerance => &tolerance::Tolerance,
+        }
+    }
+
+    /// Returns the kind of a requirement with this name in a record.
+    pub fn named(name: &str) -> Option<RequirementKind> {
+        RequirementKind::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Returns the kind with this key in a problem file.
+    pub fn with_key(key: &str) -> Option<RequirementKind> {
+        RequirementKind::ALL.into_iter().find(|kind| kind.definition().key() == key)
+    }
+
+    /// Returns its name in a record: the key in its table.
+    pub fn name(self) -> &'static str {
+        let key = self.definition().key();
+        key.rsplit_once('.').map_or(key, |(_, name)| name)
+    }
+
+    /// Returns its only limit in a problem; `None` if it has none or several.
+    pub fn only_limit(self, spec: &ProblemSpec) -> Option<f64> {
+        match self.definition().limits(spec)?.as_slice() {
+            [only] => Some(only.value),
+            _ => None,
+        }
+    }
+}
+
+/// A requirement: its key with everything that a table, a message or a search without it has to know of it.
+pub trait Definition: Sync {
+    /// Returns the key in the problem file, with its table.
+    fn key(&self) -> &'static str;
+
+    /// Returns whether a problem asks for it.
+    fn is_asked(&self, problem: &Problem) -> bool;
+
+    /// Checks its value in a problem file.
+    ///
+    /// # Errors
+    /// The reason why the value is refused.
+    fn check(&self, _require: &RequireSpec, _timing: Option<&TimingSpec>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    /// Returns its limits as numbers; `None` if the problem has none (a choice among words, a tolerance that differs
+    /// from point to point).
+    fn limits(&self, _spec: &ProblemSpec) -> Option<Vec<Limit>> {
+        None
+    }
+
+    /// Puts other limits in place of its own, as many as [`Definition::limits`] gives.
+    fn set_limits(&self, _spec: &mut ProblemSpec, _limits: &[f64]) {}
+
+    /// Drops it from a problem, or loosens it as far as it goes.
+    fn drop_from(&self, spec: &mut ProblemSpec);
+
+    /// Returns the choice made, if it is a choice among words, with no measure of how far it is loosened.
+    fn choice(&self, _require: &RequireSpec) -> Option<Choice> {
+        None
+    }
+
+    /// Returns whether a search that finds nothing acceptable looks for starts without it.
+    fn is_left_out_in_turn(&self) -> bool {
+        false
+    }
+
+    /// Returns the unit of its limits.
+    fn unit(&self) -> LimitUnit {
+        LimitUnit::Length
+    }
+
+    /// Returns the scale of the rounding of its value (`None`: several numbers or a word) for a target of this size.
+    fn rounding(&self, _value: Option<f64>, size: f64) -> f64 {
+        size
+    }
+
+    /// Returns the lines about it in a problem file to start from.
+    fn template(&self) -> &'static str {
+        ""
+    }
+
+    /// Returns its words in tables.
+    fn words(&self) -> Words;
+
+    /// Returns the reason why a candidate with this value misses this limit; `None` if the words of
+    /// [`Definition::words`] say it.
+    fn objection(&self, _value: &str, _limit: &str) -> Option<String> {
+        None
+    }
+}
+
+/// A choice among words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// One word.
+    Word(&'static str),
+    /// Several words.
+    Words(Vec<&'static str>),
+}
+
+/// The words of a requirement in tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Words {
+    /// A word for a narrow column.
+    pub short: &'static str,
+    /// The head of its row in the page's table.
+    pub label: &'static str,
+    /// The relation of the value to the limit, with a blank: `at most `.
+    pub relation: &'static str,
+    /// A noun phrase for the studio.
+    pub plain: &'static str,
+}
+
+/// The reason why a value of a requirement is refused, with the remedy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// The fault.
+    pub message: String,
+    /// The remedy.
+    pub help: &'static str,
+}
+
+impl Refusal {
+    fn because(message: String, help: &'static str) -> Result<(), Refusal> {
+        Err(Refusal { message, help })
+    }
+
+    fn unless_positive(key: &str, length: Option<f64>) -> Result<(), Refusal> {
+        match length {
+            Some(length) if length <= 0.0 => Refusal::because(
+                format!("{key} = {length}: a length must be positive"),
+                "write a length above 0, or remove the key for no limit",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Require")]
+pub(crate) struct RawRequire {
+    /// The types allowed; where silent, any.
+    #[serde(rename = "type")]
+    pub types: Option<OneOrMore<LinkageType>>,
+    /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
+    pub transmission_deg_min: Option<Number>,
+    /// Over which motion it is judged; where silent, the cycle where the crank turns fully.
+    pub transmission_over: Option<TransmissionOver>,
+    /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
+    pub link_ratio_max: Option<Number>,
+    /// The box [xmin, ymin, xmax, ymax] that must hold both fixed pivots.
+    pub pivots_in: Option<Corners>,
+    /// The box [xmin, ymin, xmax, ymax] that must hold every joint and P over the motion used.
+    pub footprint_in: Option<Corners>,
+    /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
+    pub extent_max: Option<Number>,
+    /// The greatest length of the longest of ground, a, b, c, d and e; where silent, any.
+    pub longest_max: Option<Number>,
+    /// Whether the points must be passed in order.
+    #[serde(default)]
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    #[serde(default)]
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    #[serde(default)]
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    #[serde(default)]
+    pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed.
+    #[serde(default)]
+    pub closing: ClosingPolicy,
+}
+
+/// What an acceptable linkage satisfies.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct RequireSpec {
+    /// The types allowed; empty: any.
+    #[serde(rename = "type")]
+    pub types: Vec<LinkageType>,
+    /// The least of min(mu, 180 - mu) over the motion, degrees.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_deg_min: Option<f64>,
+    /// Over which motion; absent: the cycle where the input turns fully, else the used part.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub transmission_over: Option<TransmissionOver>,
+    /// Longest over shortest of ground, a, b, c.
+    pub link_ratio_max: f64,
+    /// [xmin, ymin, xmax, ymax] that holds both fixed pivots.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivots_in: Option<[f64; 4]>,
+    /// [xmin, ymin, xmax, ymax] that holds every joint and P over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub footprint_in: Option<[f64; 4]>,
+    /// The greatest diagonal of the box of every joint and P over the motion used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extent_max: Option<f64>,
+    /// The greatest length of the longest of ground, a, b, c, d and e.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub longest_max: Option<f64>,
+    /// Whether the points must be passed in order.
+    pub order: OrderPolicy,
+    /// Which way the crank turns.
+    pub direction: DirectionPolicy,
+    /// Whether the motion must stay on one circuit.
+    pub circuit: OnePolicy,
+    /// Whether the motion must stay on one branch.
+    pub branch: OnePolicy,
+    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
+    /// there was a choice keep their digest.
+    #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
+    pub closing: ClosingPolicy,
+}
+
+impl RequireSpec {
+    /// Returns whether a defect is disallowed.
+    pub fn forbids(&self, defect: &Defect) -> bool {
+        match defect {
+            Defect::Order { .. } => self.order == OrderPolicy::Required,
+            Defect::Branch { .. } => self.branch == OnePolicy::One,
+            Defect::Circuit { .. } => self.circuit == OnePolicy::One,
+        }
+    }
+}
+
+impl Default for RequireSpec {
+    fn default() -> Self {
+        RequireSpec {
+            types: Vec::new(),
+            transmission_deg_min: None,
+            transmission_over: None,
+            link_ratio_max: DEFAULT_LINK_RATIO,
+            pivots_in: None,
+            footprint_in: None,
+            extent_max: None,
+            longest_max: None,
+            order: OrderPolicy::default(),
+            direction: DirectionPolicy::default(),
+            circuit: OnePolicy::default(),
+            branch: OnePolicy::default(),
+            closing: ClosingPolicy::default(),
+        }
+    }
+}
+
+impl From<RawRequire> for RequireSpec {
+    fn from(raw: RawRequire) -> RequireSpec {
+        let number = |given: Option<Number>| given.map(|number| number.0);
+        let corners = |given: Option<Corners>| given.map(|corners| corners.0.map(|number| number.0));
+        let mut types = raw.types.map_or(Vec::new(), |types| types.0);
+        types.sort_unstable();
+        types.dedup();
+        RequireSpec {
+            types,
+            transmission_deg_min: number(raw.transmission_deg_min),
+            transmission_over: raw.transmission_over,
+            link_ratio_max: number(raw.link_ratio_max).unwrap_or(DEFAULT_LINK_RATIO),
+            pivots_in: corners(raw.pivots_in),
+            footprint_in: corners(raw.footprint_in),
+            extent_max: number(raw.extent_max),
+            longest_max: number(raw.longest_max),
+            order: raw.order,
+            direction: raw.direction,
+            circuit: raw.circuit,
+            branch: raw.branch,
+            closing: raw.closing,
+        }
+    }
+}
