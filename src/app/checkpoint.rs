@@ -126,7 +126,7 @@ impl Header {
         let solve = &job.spec.solve;
         Ok(Header {
             format: FORMAT,
-            tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+            tool: Tool::this(),
             digest: digest(&job.spec)?,
             candidates: solve.candidates,
             evaluations: solve.evaluations,
@@ -225,7 +225,7 @@ pub fn parse(path: &str, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let none =
         |e: serde_json::Error| CheckpointError::NotACheckpoint { path: path(), message: e.to_string() };
     let AnyVersion { format, tool } = serde_json::from_slice(bytes).map_err(none)?;
-    let us = Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() };
+    let us = Tool::this();
     if format != u64::from(FORMAT) || tool != us {
         let shown = |tool: &Tool, format: u64| format!("{} {} (format {format})", tool.name, tool.version);
         let (by, us) = (shown(&tool, format), shown(&us, FORMAT.into()));

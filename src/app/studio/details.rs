@@ -4,15 +4,13 @@
 use super::messages::{Ask, Shown};
 use crate::app::given::{Given, Run, Which};
 use crate::app::measured::{NotCompared, compared};
+use crate::app::run::Job;
 use crate::app::studio::shelf::Shelf;
-use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::verify;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar, NaturalCoordinates};
-use crate::record::digest::digest;
-use crate::record::{Candidate, Evaluations, FORMAT, MethodRecord, ProblemRecord, Reason, Record};
-use crate::record::{Termination, Tool};
+use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
 use crate::report::compare::SortKey;
 use crate::report::export::{Format, Settings, Subject, export};
 use crate::report::{csv, html, svg};
@@ -221,12 +219,12 @@ impl Sources<'_> {
         }
         let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
         let t1_at = t1_at.ok_or("`t1_at` holds 1 and -1 alone")?;
-        let digest = digest(&file.spec).map_err(|e| e.to_string())?;
-        if let Some(record) = self.finished.of(&digest) {
+        let asked = ProblemRecord::try_from(Job::from(file)).map_err(|e| e.to_string())?;
+        if let Some(record) = self.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
-                (record.problem.name, record.problem.unit) = (file.name, file.unit);
+                (record.problem.name, record.problem.unit) = (asked.name, asked.unit);
                 return Ok(Found { record, index });
             }
         }
@@ -238,7 +236,7 @@ impl Sources<'_> {
             annotate(&problem, candidate);
             candidate.error.to_raw = to_raw(&problem, candidate);
         }
-        Ok(Found { record: by_hand(file, digest, candidates), index: 0 })
+        Ok(Found { record: by_hand(asked, candidates), index: 0 })
     }
 
     /// What is known of a linkage.
@@ -349,31 +347,9 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
 }
 
 /// The record of a linkage that no search ended with: it was fitted under the hand, and that was ended by hand.
-fn by_hand(file: ProblemFile, digest: String, candidates: Vec<Candidate>) -> Record {
-    Record {
-        format: FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
-        seed: file.spec.solve.seed,
-        method: MethodRecord { asked: file.spec.solve.method, used: vec!["following-the-hand".into()] },
-        problem: ProblemRecord {
-            name: file.name,
-            source: file.source,
-            unit: file.unit,
-            digest,
-            resolved: file.spec,
-        },
-        termination: Termination { reason: Reason::ByHand, reproducible: Reason::ByHand.is_repeatable() },
-        evaluations: Evaluations::default(),
-        family: None,
-        buildable: None,
-        exact: None,
-        candidates,
-        conflict: None,
-        relaxations: Vec::new(),
-        certificate: None,
-        no_certificate: None,
-        repeats: None,
-    }
+fn by_hand(problem: ProblemRecord, candidates: Vec<Candidate>) -> Record {
+    let used = vec!["following-the-hand".into()];
+    Record::new(problem, used, Reason::ByHand, Evaluations::default(), candidates)
 }
 
 /// The media type of a format, and the ending of its files.

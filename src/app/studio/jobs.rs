@@ -219,8 +219,7 @@ impl Jobs {
                 "the folder {name} holds the result of {other}: run it with `linkwright synth`"
             )));
         }
-        let job = Job { name: asked.name, source: asked.source, unit: asked.unit, spec: asked.resolved };
-        self.begin(job, how, None)
+        self.begin(Job::from(asked), how, None)
     }
 
     /// Stops a job: its threads end at once, its best so far is saved.

@@ -120,7 +120,7 @@ pub fn suite(
     }
     Ok(Suite {
         format: FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        tool: Tool::this(),
         command: options.command.clone(),
         seeds: options.seeds,
         threads: 1,
