@@ -10,9 +10,9 @@
 //! The digest does not cover the number of candidates and the budget ([`digest`]): a search for another number of
 //! candidates, or with a smaller budget, would not have reached this state and begins anew ([`Checkpoint::leads_to`]).
 
-use crate::app::run::{Job, RunError};
+use crate::app::run::Job;
 use crate::record::Tool;
-use crate::record::digest::digest;
+use crate::record::digest::{NotWritten, digest};
 use crate::synthesis::keeper::SearchState;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -79,7 +79,7 @@ pub enum CheckpointError {
     },
     /// The problem has no digest.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Digest(#[from] NotWritten),
 }
 
 const REMEDY: &str = "run without --resume to begin anew";
@@ -122,7 +122,7 @@ struct AnyVersion {
 }
 
 impl Header {
-    fn of(job: &Job) -> Result<Self, RunError> {
+    fn of(job: &Job) -> Result<Self, NotWritten> {
         let solve = &job.spec.solve;
         Ok(Header {
             format: FORMAT,
@@ -149,8 +149,8 @@ impl Writer {
     /// Creates a writer for the search of `job`.
     ///
     /// # Errors
-    /// [`RunError::NotWritten`] if the problem cannot be written as data.
-    pub fn new(job: &Job) -> Result<Self, RunError> {
+    /// [`NotWritten`] if the problem cannot be written as data.
+    pub fn new(job: &Job) -> Result<Self, NotWritten> {
         Ok(Writer { header: Header::of(job)? })
     }
 
@@ -186,7 +186,7 @@ impl Checkpoint {
             return Err(CheckpointError::TooLarge { path: shown });
         }
         let checkpoint = parse(&shown, &bytes)?;
-        if checkpoint.header.digest != digest(&job.spec).map_err(RunError::from)? {
+        if checkpoint.header.digest != digest(&job.spec)? {
             return Err(CheckpointError::OtherProblem { path: shown, name: job.name.clone() });
         }
         Ok(Some(checkpoint))

@@ -3,7 +3,7 @@
 
 use super::messages::{Ask, Shown};
 use crate::app::given::{Given, Run, Which};
-use crate::app::measured::{NotCompared, compared};
+use crate::app::measured::compared;
 use crate::app::run::Job;
 use crate::app::studio::shelf::Shelf;
 use crate::judge::assess::{assess, to_raw};
@@ -313,10 +313,7 @@ impl Sources<'_> {
             let run = Run { named, record, which: Which::Rank(index + 1) };
             given.push((Path::new(""), Given::Run(Box::new(run))));
         }
-        let comparison = compared(&given, None, &keys, None).map_err(|e| match e {
-            NotCompared::Refused(why) => why,
-            NotCompared::Nothing(_) => "none of these can be compared".to_owned(),
-        })?;
+        let comparison = compared(&given, None, &keys, None).map_err(|e| e.to_string())?;
         let (kind, ending, text) = match ask.form {
             Form::Json => ("application/json", "json", comparison.json()),
             Form::Html => ("text/html; charset=utf-8", "html", comparison.html()),

@@ -299,9 +299,9 @@ impl Jobs {
         };
         let place = self.shelf.folder().join(&job.name);
         let run = || saved_run::run(job, &place, options, listener, &one.cancel, one.begun);
-        if let Ran::Written(written) = pool.install(run)? {
+        if let Ran::Written(written) = pool.install(run).map_err(|e| e.to_string())? {
             for put in saved_run::put_in_place(vec![written]) {
-                put?;
+                put.map_err(|e| e.to_string())?;
             }
         }
         Ok(())
