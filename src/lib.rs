@@ -36,7 +36,7 @@
 //! | `synthesis` | what to try: the [`plan`](internals::synthesis::plan) of a search, starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for [`timed`](internals::synthesis::timed) and [`free`](internals::synthesis::free) timing, populations, [`conflicts`](internals::synthesis::conflicts), live fitting, snapping | numbers, mechanism, task, record, judge |
 //! | `files` | text in: problem, points, linkage and drawing files, schemas, and errors that point at their place | numbers, mechanism, task, record |
 //! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
-//! | `app` | the doors: a job in, a record out ([`run`](internals::app::run)), folders of results, checkpoints, the [`suite`](internals::app::suite), the command line (feature `cli`), the studio (feature `studio`) | everything |
+//! | `app` | the doors: a job in, a record out ([`run`](internals::app::job::run)), folders of results, checkpoints, the [`suite`](internals::app::suite), the command line (feature `cli`), the studio (feature `studio`) | everything |
 //!
 //! Public are the names below; `internals` holds the rest for this repository's own tests and tools, and versions say
 //! nothing about it.
@@ -51,7 +51,7 @@ mod report;
 mod synthesis;
 mod task;
 
-pub use app::run::{Context, Finished, Job, RunError, run};
+pub use app::job::run::{Context, Finished, Job, RunError, run};
 pub use files::diagnostic::Diagnostic;
 pub use files::linkage_file::{
     AnyLinkageFile, load_any as load_linkage, parse_any as parse_linkage, to_toml as linkage_to_toml,

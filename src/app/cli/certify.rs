@@ -5,18 +5,17 @@ use super::progress::Shown;
 use super::result;
 use super::result::Which;
 use super::{Ended, interrupt, refuse, terminal};
-use crate::app::result_files;
-use crate::app::result_files::Timing;
-use crate::app::results_folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, replace_file};
-use crate::app::saved_run::SaveError;
+use crate::app::job::files;
+use crate::app::job::files::Timing;
+use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, read_at_most, replace_file};
+use crate::app::job::save::SaveError;
 use crate::files::diagnostic::escaped;
 use crate::judge::certificate::checkpoint::{MAX_BYTES, REMEDY};
 use crate::judge::certificate::{NoCertificate, Proof, Request, ResumeError};
 use crate::record::{Certificate, Record};
 use crate::report::certificate::{certificate_text, parts_text, repeats_text};
 use crate::task::spec::CertifySpec;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -119,25 +118,18 @@ fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
     if !options.resume {
         return Ok(None);
     }
-    let file = match File::open(options.result.join(CERTIFICATE_CHECKPOINT)) {
-        Ok(file) => file,
+    let place = format!("{shown}/{CERTIFICATE_CHECKPOINT}");
+    match read_at_most(&options.result.join(CERTIFICATE_CHECKPOINT), MAX_BYTES) {
+        Ok(Some(bytes)) => Ok(Some(bytes)),
+        Ok(None) => Err(refuse(format!("{place}: it has at most {MAX_BYTES} bytes; {REMEDY}"))),
         Err(e) if e.kind() == io::ErrorKind::NotFound => {
             if !options.quiet {
                 terminal::tell(&format!("{shown}: no run of certify was stopped here: it begins anew"));
             }
-            return Ok(None);
+            Ok(None)
         }
-        Err(e) => return Err(refuse(format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}"))),
-    };
-    let mut bytes = Vec::new();
-    let read = file.take(MAX_BYTES + 1).read_to_end(&mut bytes);
-    read.map_err(|e| refuse(format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}")))?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(refuse(format!(
-            "{shown}/{CERTIFICATE_CHECKPOINT}: it has at most {MAX_BYTES} bytes; {REMEDY}"
-        )));
+        Err(e) => Err(refuse(format!("{place}: {e}"))),
     }
-    Ok(Some(bytes))
 }
 
 /// The files of the result with the certificate, its leaves if they are wanted, and its checkpoint if it can go on; the
@@ -154,7 +146,7 @@ fn files(
     let total_s = begun.elapsed().as_secs_f64();
     let threads = rayon::current_num_threads();
     let timing = Timing { search_s: total_s, beside_s: 0.0, advice_s: None, total_s, threads };
-    let mut files = result_files::files(record, &timing).map_err(refuse)?;
+    let mut files = files::files(record, &timing).map_err(refuse)?;
     if let Ok(kept) = std::fs::read(place.join(TIMING)) {
         for (_, bytes) in files.iter_mut().filter(|(name, _)| name == TIMING) {
             bytes.clone_from(&kept);

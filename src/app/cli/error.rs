@@ -1,6 +1,6 @@
 //! The reasons for which a command refuses its input, if no room below the command line names them.
 
-use crate::app::results_folder::FolderError;
+use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
 use std::io;
 

@@ -3,7 +3,7 @@
 use super::arguments::Synth;
 use super::error::CommandError;
 use super::terminal;
-use crate::app::run::Job;
+use crate::app::job::run::Job;
 use crate::files::diagnostic::escaped;
 use crate::files::input_text;
 use crate::files::problem_file;

@@ -2,7 +2,7 @@
 
 use super::arguments::New;
 use super::{Ended, refuse, refuse_at, terminal};
-use crate::app::results_folder::{OutputFile, Replace, write_files};
+use crate::app::job::folder::{OutputFile, Replace, write_files};
 use crate::files::generator::FileKind;
 use crate::files::name;
 use crate::files::problem_file::{from_points_file, parse};

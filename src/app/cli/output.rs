@@ -1,7 +1,7 @@
 //! Files that a command writes where its user says: what is there and is not ours stays, unless `--force`.
 
 use super::{Ended, refuse, result};
-use crate::app::results_folder::{FolderError, OutputFile, Replace, check_files, write_files};
+use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};
 use crate::files::generator::FileKind;
 use std::path::{Path, PathBuf};
 

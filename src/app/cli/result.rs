@@ -3,8 +3,8 @@
 
 use super::{Ended, refuse, refuse_at, terminal};
 pub use crate::app::given::{Given, NoCandidate, Run, Which};
-use crate::app::result_files;
-use crate::app::results_folder::{BUILDABLE, RECORD, read_record};
+use crate::app::job::files;
+use crate::app::job::folder::{BUILDABLE, RECORD, read_record};
 use crate::files::diagnostic::escaped;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
@@ -58,7 +58,7 @@ pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
     let problem = &run.record.problem;
     Ok(AnyLinkageFile {
         // The name that its linkage file has.
-        name: result_files::linkage_name(&run.record, &chosen.suffix),
+        name: files::linkage_name(&run.record, &chosen.suffix),
         unit: problem.unit,
         linkage: Linkage::FourBar(chosen.candidate.linkage),
     })

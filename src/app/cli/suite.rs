@@ -4,7 +4,7 @@ use super::arguments::Suite as Asked;
 use super::error::CommandError;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, refuse_at, terminal};
-use crate::app::results_folder::{OutputFile, Replace, check_files, write_files};
+use crate::app::job::folder::{OutputFile, Replace, check_files, write_files};
 use crate::app::suite::{Options, Step, literature, suite};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;

@@ -6,10 +6,10 @@ use super::inputs;
 use super::inputs::Input;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, terminal};
-use crate::app::results_folder::{FolderError, OutputFile, Replace, check_files, write_files};
-use crate::app::run::Job;
-use crate::app::saved_run;
-use crate::app::saved_run::{Done, Listener, Options, Ran, SaveError, Written};
+use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};
+use crate::app::job::run::Job;
+use crate::app::job::save;
+use crate::app::job::save::{Done, Listener, Options, Ran, SaveError, Written};
 use crate::files::generator::FileKind;
 use crate::record::Reason;
 use crate::report::batch_csv::batch_csv;
@@ -160,7 +160,7 @@ impl Batch<'_> {
             extent: if self.side_by_side { Extent::Brief } else { Extent::Full },
         };
         pool.install(|| {
-            let ran = saved_run::run(job, place, how, listener, self.cancel, begun);
+            let ran = save::run(job, place, how, listener, self.cancel, begun);
             shown.finish();
             ran
         })
@@ -169,7 +169,7 @@ impl Batch<'_> {
     /// Puts results in their places.
     fn put(&self, group: Vec<(usize, Written)>) {
         let (indices, written): (Vec<_>, Vec<_>) = group.into_iter().unzip();
-        for (i, put) in indices.into_iter().zip(saved_run::put_in_place(written)) {
+        for (i, put) in indices.into_iter().zip(save::put_in_place(written)) {
             let refused = |why: SaveError| Outcome::Refused(why.to_string());
             self.take(i, put.map_or_else(refused, |done| Outcome::Done(Box::new(done))));
         }

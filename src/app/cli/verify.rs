@@ -5,7 +5,7 @@ use super::progress::Shown;
 use super::result;
 use super::result::Which;
 use super::{Ended, interrupt, refuse, terminal};
-use crate::app::results_folder::LEAVES;
+use crate::app::job::folder::{LEAVES, read_at_most};
 use crate::files::diagnostic::escaped;
 use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
 use crate::judge::verify::{Checked, Mismatch, unchecked, verify, verify_certificate};
@@ -14,8 +14,7 @@ use crate::record::Record;
 use crate::report::table::COLUMNS;
 use crate::report::text::wrapped;
 use std::fmt::Display;
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Runs the command: every record is looked at, whatever is wrong with those before it, and the gravest end is that of
@@ -133,15 +132,11 @@ fn check_leaves(path: &Path, record: &Record) -> Result<Result<CheckedLeaves, Ch
         .as_ref()
         .ok_or_else(|| refused(path, &"the record has no certificate; run certify with --leaves first"))?;
     let file = leaves_of(path);
-    let mut bytes = Vec::new();
-    let read = File::open(&file).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
-    read.map_err(|e| match e.kind() {
+    let read = read_at_most(&file, MAX_BYTES).map_err(|e| match e.kind() {
         io::ErrorKind::NotFound => refused(&file, &"there are no leaves; run certify with --leaves first"),
         _ => refused(&file, &e),
     })?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(refused(&file, &format!("leaves have at most {MAX_BYTES} bytes")));
-    }
+    let bytes = read.ok_or_else(|| refused(&file, &format!("leaves have at most {MAX_BYTES} bytes")))?;
     let cancel = interrupt::watch("ending the check");
     let (shown, named) = (Shown::of_proof("", false), escaped(&file.display().to_string()));
     match check(record, recorded, &bytes, cancel, &mut |checked| shown.leaves(&named, checked.leaves)) {

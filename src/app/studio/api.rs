@@ -2,13 +2,13 @@
 //! and checked here and answered by the room that knows; the work is done on threads of its own, few at once.
 
 use super::details::{CompareAsk, DetailsAsk, ExportAsk, Handed, Sources};
-use super::job_messages::JobAsk;
-use super::jobs::{Refusal, absent};
+use super::house::{House, json, refused};
+use super::job_messages::{JobAsk, Opened};
+use super::jobs::Refusal;
 use super::messages::{Ask, Shown};
 use super::openapi::document;
-use super::server::{House, json, refused};
+use super::shelf::ShelfError;
 use crate::files::problem_file::ProblemFile;
-use crate::mechanism::Unit;
 use crate::record::Record;
 use axum::Router;
 use axum::body::Bytes;
@@ -16,37 +16,13 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::fmt::Display;
 use std::sync::Arc;
 
 /// Requests that are worked on at once; more wait, and not for long.
 pub(super) const AT_ONCE: usize = 2;
-
-/// A saved result, opened.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Opened {
-    /// What to ask for the same in a tab, where a tab can hold it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ask: Option<Ask>,
-    /// Why it cannot, in words.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub why_not: Option<String>,
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
-    /// The candidates, better first.
-    pub candidates: Vec<Shown>,
-    /// The names of the result's files.
-    pub files: Vec<String>,
-}
 
 pub(super) fn routes() -> Router<Arc<House>> {
     Router::new()
@@ -91,14 +67,22 @@ fn read<T: DeserializeOwned>(body: &[u8]) -> Result<T, Box<Response>> {
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        let (status, why) = match self {
-            Refusal::Absent(why) => (StatusCode::NOT_FOUND, why),
-            Refusal::Conflict(why) => (StatusCode::CONFLICT, why),
-            Refusal::Bad(why) => (StatusCode::UNPROCESSABLE_ENTITY, why),
-            Refusal::Busy(why) => (StatusCode::SERVICE_UNAVAILABLE, why),
+        let status = match self {
+            Refusal::Absent(_) | Refusal::NotRunning(_) | Refusal::Name(_) => StatusCode::NOT_FOUND,
+            Refusal::Taken(_)
+            | Refusal::OtherResult { .. }
+            | Refusal::Unreadable(_)
+            | Refusal::Running(_)
+            | Refusal::InUse(_) => StatusCode::CONFLICT,
+            Refusal::Ask(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            Refusal::Closing | Refusal::TooMany | Refusal::NotBegun(_) => StatusCode::SERVICE_UNAVAILABLE,
         };
-        (status, why + "\n").into_response()
+        (status, format!("{self}\n")).into_response()
     }
+}
+
+fn no_such(why: impl Display) -> Response {
+    (StatusCode::NOT_FOUND, format!("{why}\n")).into_response()
 }
 
 /// A file, to be saved: nothing that stands in it is shown or run as a part of the studio.
@@ -119,7 +103,7 @@ async fn list(State(house): State<Arc<House>>) -> Response {
 fn told(house: &House, name: &str, status: StatusCode) -> Response {
     match house.jobs.one(name) {
         Some(job) => (status, written(&job)).into_response(),
-        None => absent(name).into_response(),
+        None => Refusal::Absent(name.to_owned()).into_response(),
     }
 }
 
@@ -158,7 +142,7 @@ async fn opened(State(house): State<Arc<House>>, Path(name): Path<String>) -> Re
     worked(house, move |house| {
         let shelf = house.jobs.shelf();
         match shelf.record(&name) {
-            Err(why) if shelf.place(&name).is_none() => Refusal::Absent(why).into_response(),
+            Err(why @ ShelfError::Absent(_)) => no_such(why),
             Err(why) => refused(why),
             Ok(record) => written(&opened_of(record, shelf.files(&name))),
         }
@@ -187,7 +171,7 @@ fn opened_of(record: Record, files: Vec<String>) -> Opened {
 
 async fn file(State(house): State<Arc<House>>, Path((name, file)): Path<(String, String)>) -> Response {
     worked(house, move |house| match house.jobs.shelf().file(&name, &file) {
-        None => Refusal::Absent(format!("there is no file {file} of a result named {name}")).into_response(),
+        None => no_such(format!("there is no file {file} of a result named {name}")),
         Some(bytes) => {
             let (kind, ending) = match file.rsplit_once('.').map_or("", |(_, ending)| ending) {
                 "json" => ("application/json", "json"),

@@ -1,18 +1,20 @@
 //! Everything that is known of one linkage: of a saved result, or as it stands under the hand. Details, files and
 //! comparisons are made from the record that it belongs to, by the functions that the command line calls.
 
+use super::asked::AskError;
 use super::messages::{Ask, Shown};
+use super::shelf::{Shelf, ShelfError};
 use crate::app::given::{Given, Run, Which};
-use crate::app::measured::compared;
-use crate::app::run::Job;
-use crate::app::studio::shelf::Shelf;
+use crate::app::job::run::Job;
+use crate::app::measured::{NotCompared, compared};
 use crate::judge::assess::{assess, to_raw};
-use crate::judge::verify::verify;
+use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, FourBar, NaturalCoordinates};
+use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
+use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
-use crate::report::compare::SortKey;
-use crate::report::export::{Format, Settings, Subject, export};
+use crate::report::compare::{SortKey, UnknownKey};
+use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, export};
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
 use crate::synthesis::errors_without;
@@ -178,6 +180,44 @@ impl Finished {
     }
 }
 
+/// Why nothing is said of a linkage.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum DetailsError {
+    #[error(transparent)]
+    Ask(#[from] AskError),
+    #[error(transparent)]
+    Shelf(#[from] ShelfError),
+    /// The recorded problem is invalid.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    #[error("the record of {name} is not true: {first}")]
+    Untrue { name: String, first: Mismatch },
+    #[error("{name} has no candidate {rank}: it has {n}")]
+    NoRank { name: String, rank: usize, n: usize },
+    #[error("there is no such candidate")]
+    NoCandidate,
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+    #[error("`crank_deg` and `t1_at` have one value for each of the {0} points")]
+    Positions(usize),
+    #[error("`t1_at` holds 1 and -1 alone")]
+    Assembly,
+    #[error("this linkage cannot be assembled at every point")]
+    NotAssembled,
+    #[error("{0} takes no settings")]
+    NoSettings(String),
+    #[error("{0}, html, sheet or points")]
+    Format(#[from] UnknownFormat),
+    #[error("{}: {}", .0.message, .0.help)]
+    Export(Refusal),
+    #[error("compare 1 to {MOST_COMPARED} linkages")]
+    HowMany,
+    #[error(transparent)]
+    Sort(#[from] UnknownKey),
+    #[error(transparent)]
+    NotCompared(#[from] NotCompared),
+}
+
 /// A record and one of its candidates, counted from 0.
 struct Found {
     record: Record,
@@ -192,16 +232,16 @@ pub(super) struct Sources<'a> {
 }
 
 impl Sources<'_> {
-    fn find(self, source: &Source, with_costs: bool) -> Result<Found, String> {
+    fn find(self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
         match source {
             Source::Job(OfJob { name, rank }) => {
                 let record = self.shelf.record(name)?;
-                if let Some(first) = verify(&record).map_err(|e| e.to_string())?.first() {
-                    return Err(format!("the record of {name} is not true: {first}"));
+                if let Some(first) = verify(&record)?.into_iter().next() {
+                    return Err(DetailsError::Untrue { name: name.clone(), first });
                 }
                 let n = record.candidates.len();
                 if *rank == 0 || *rank > n {
-                    return Err(format!("{name} has no candidate {rank}: it has {n}"));
+                    return Err(DetailsError::NoRank { name: name.clone(), rank: *rank, n });
                 }
                 Ok(Found { record, index: rank - 1 })
             }
@@ -209,17 +249,17 @@ impl Sources<'_> {
         }
     }
 
-    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, String> {
+    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
-        let problem = Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
-        let linkage = FourBar::new(drawn.linkage).map_err(|e| e.to_string())?;
+        let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
+        let linkage = FourBar::new(drawn.linkage)?;
         let n = problem.task().len();
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
-            return Err(format!("`crank_deg` and `t1_at` have one value for each of the {n} points"));
+            return Err(DetailsError::Positions(n));
         }
         let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
-        let t1_at = t1_at.ok_or("`t1_at` holds 1 and -1 alone")?;
-        let asked = ProblemRecord::try_from(Job::from(file)).map_err(|e| e.to_string())?;
+        let t1_at = t1_at.ok_or(DetailsError::Assembly)?;
+        let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
         if let Some(record) = self.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
@@ -228,8 +268,8 @@ impl Sources<'_> {
                 return Ok(Found { record, index });
             }
         }
-        let mut candidate = assess(&problem, &linkage, &drawn.crank_deg, &t1_at)
-            .ok_or("this linkage cannot be assembled at every point")?;
+        let mut candidate =
+            assess(&problem, &linkage, &drawn.crank_deg, &t1_at).ok_or(DetailsError::NotAssembled)?;
         candidate.rank = 1;
         let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
         for candidate in &mut candidates {
@@ -242,12 +282,12 @@ impl Sources<'_> {
     /// What is known of a linkage.
     ///
     /// # Errors
-    /// Why nothing is, in words.
-    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, String> {
+    /// [`DetailsError`].
+    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
         let Found { record, index } = self.find(&ask.of, true)?;
         let words = html::candidate_markup(&record, index).unwrap_or_default();
         let summary = html::summary_markup(&record);
-        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
+        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
         let path = &record.problem.resolved.task.path;
         Ok(Details {
             name: record.problem.name.clone(),
@@ -266,26 +306,25 @@ impl Sources<'_> {
     /// A linkage as a file.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, String> {
+    /// [`DetailsError`].
+    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
         let plain = ["html", "sheet", "points"].contains(&ask.format.as_str());
         if plain && !ask.set.is_empty() {
-            return Err(format!("{} takes no settings", ask.format));
+            return Err(DetailsError::NoSettings(ask.format.clone()));
         }
         let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
-        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
+        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
         let text = |kind, ending, text: String| Ok(Handed { kind, ending, bytes: text.into_bytes() });
         match ask.format.as_str() {
             "html" => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
             "sheet" => text("image/svg+xml", "svg", svg::candidate_svg(&record, index)),
             "points" => text("text/csv; charset=utf-8", "csv", csv::candidate_curve_csv(candidate)),
             other => {
-                let format: Format = other.parse().map_err(|e| format!("{e}, html, sheet or points"))?;
+                let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
-                let said = |e: crate::report::export::Refusal| format!("{}: {}", e.message, e.help);
-                let settings = Settings::parse(format, &set).map_err(said)?;
+                let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
                 let subject = Subject::of_candidate(&record, candidate);
-                let bytes = export(&subject, format, &settings).map_err(said)?.bytes;
+                let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
                 let (kind, ending) = kind_of(format);
                 Ok(Handed { kind, ending, bytes })
             }
@@ -295,13 +334,12 @@ impl Sources<'_> {
     /// Linkages side by side.
     ///
     /// # Errors
-    /// Why there is no comparison, in words.
-    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, String> {
+    /// [`DetailsError`].
+    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
         if ask.of.is_empty() || ask.of.len() > MOST_COMPARED {
-            return Err(format!("compare 1 to {MOST_COMPARED} linkages"));
+            return Err(DetailsError::HowMany);
         }
-        let keys: Result<Vec<SortKey>, _> = ask.sort.iter().map(|key| key.parse()).collect();
-        let keys = keys.map_err(|e| e.to_string())?;
+        let keys = ask.sort.iter().map(|key| key.parse()).collect::<Result<Vec<SortKey>, _>>()?;
         let mut given = Vec::new();
         for (i, source) in ask.of.iter().enumerate() {
             // With costs: they are worked out again where the record is proved.
@@ -313,7 +351,7 @@ impl Sources<'_> {
             let run = Run { named, record, which: Which::Rank(index + 1) };
             given.push((Path::new(""), Given::Run(Box::new(run))));
         }
-        let comparison = compared(&given, None, &keys, None).map_err(|e| e.to_string())?;
+        let comparison = compared(&given, None, &keys, None)?;
         let (kind, ending, text) = match ask.form {
             Form::Json => ("application/json", "json", comparison.json()),
             Form::Html => ("text/html; charset=utf-8", "html", comparison.html()),

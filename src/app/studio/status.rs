@@ -135,7 +135,7 @@ pub(super) fn census(record: &ExactRecord) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::run::{Context, Job, run};
+    use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
     use std::sync::atomic::AtomicBool;
 

@@ -6,7 +6,7 @@
 use super::details::Finished;
 use super::messages::{Answer, Ask, Counted, Doing, Shown};
 use super::status::{ended, under_way};
-use crate::app::run::{Context, Job, run};
+use crate::app::job::run::{Context, Job, run};
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
@@ -255,11 +255,11 @@ impl Tab {
             }
         };
         let read = ask.problem().and_then(|file| {
-            let problem = Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
+            let problem = Problem::new(file.spec.clone())?;
             Ok(Current { version: ask.version, job: Job::from(file), problem })
         });
         match read {
-            Err(why) => self.refuse(ask.version, why),
+            Err(why) => self.refuse(ask.version, why.to_string()),
             Ok(current) => {
                 if ask.fresh {
                     self.session.clear();

@@ -7,8 +7,8 @@
 
 pub mod literature;
 
+use crate::app::job::run::{Context, Job, RunError, prove, run};
 use crate::app::published;
-use crate::app::run::{Context, Job, RunError, prove, run};
 use crate::files::problem_file::{ProblemFile, Published};
 use crate::judge::rank::exact_sum_sq;
 use crate::record::statistics::{Bar, Summary};

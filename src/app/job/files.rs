@@ -1,7 +1,7 @@
 //! The files of a result's folder, as bytes: pure functions of the record, apart from its times.
 
-use crate::app::results_folder::BUILDABLE;
-use crate::app::run::AdviceSeconds;
+use crate::app::job::folder::BUILDABLE;
+use crate::app::job::run::AdviceSeconds;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::record::Record;
@@ -29,8 +29,8 @@ impl Timing {
     /// words.
     ///
     /// ```
-    /// use linkwright::internals::app::result_files::Timing;
-    /// use linkwright::internals::app::run::AdviceSeconds;
+    /// use linkwright::internals::app::job::files::Timing;
+    /// use linkwright::internals::app::job::run::AdviceSeconds;
     /// let advice_s = AdviceSeconds { conflicts: 85.5, ..AdviceSeconds::default() };
     /// let timing = Timing { search_s: 13.189, beside_s: 85.5, advice_s: Some(advice_s), total_s: 98.9, threads: 2 };
     /// let words = "98.900 s in all: 13.189 s of search, 85.500 s for what conflicts, 0.211 s for reading and writing";

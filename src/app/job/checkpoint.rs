@@ -10,14 +10,14 @@
 //! The digest does not cover the number of candidates and the budget ([`digest`]): a search for another number of
 //! candidates, or with a smaller budget, would not have reached this state and begins anew ([`Checkpoint::leads_to`]).
 
-use crate::app::run::Job;
+use crate::app::job::folder::read_at_most;
+use crate::app::job::run::Job;
 use crate::record::Tool;
 use crate::record::digest::{NotWritten, digest};
 use crate::synthesis::keeper::SearchState;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// The largest checkpoint that is written or read.
@@ -174,17 +174,12 @@ impl Checkpoint {
     /// [`CheckpointError`].
     pub fn read(path: &Path, job: &Job) -> Result<Option<Self>, CheckpointError> {
         let shown = path.display().to_string();
-        let failed = |source| CheckpointError::Io { path: shown.clone(), source };
-        let file = match File::open(path) {
-            Ok(file) => file,
+        let bytes = match read_at_most(path, MAX_BYTES) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return Err(CheckpointError::TooLarge { path: shown }),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(failed(e)),
+            Err(source) => return Err(CheckpointError::Io { path: shown, source }),
         };
-        let mut bytes = Vec::new();
-        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(CheckpointError::TooLarge { path: shown });
-        }
         let checkpoint = parse(&shown, &bytes)?;
         if checkpoint.header.digest != digest(&job.spec)? {
             return Err(CheckpointError::OtherProblem { path: shown, name: job.name.clone() });

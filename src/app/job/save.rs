@@ -3,12 +3,12 @@
 //! `linkwright synth` and the studio both run jobs with this module only, so that the same problem and seed give the
 //! same bytes.
 
-use crate::app::checkpoint::{Checkpoint, CheckpointError, Writer};
-use crate::app::result_files::{NotJson, Timing, files_of};
-use crate::app::results_folder::{
+use crate::app::job::checkpoint::{Checkpoint, CheckpointError, Writer};
+use crate::app::job::files::{NotJson, Timing, files_of};
+use crate::app::job::folder::{
     CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
 };
-use crate::app::run::{Context, Finished, Job, RunError, prove, run_kept};
+use crate::app::job::run::{Context, Finished, Job, RunError, prove, run_kept};
 use crate::judge::certificate;
 use crate::record::digest::{NotWritten, digest};
 use crate::record::{Reason, Record};
