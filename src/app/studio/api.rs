@@ -61,8 +61,17 @@ fn written(what: &impl Serialize) -> Response {
     }
 }
 
-fn read<T: DeserializeOwned>(body: &[u8]) -> Result<T, Box<Response>> {
-    serde_json::from_slice(body).map_err(|e| Box::new(refused(format!("this cannot be read: {e}"))))
+/// Answers what the body of a request asks.
+async fn asked<T: DeserializeOwned>(
+    house: Arc<House>,
+    body: Bytes,
+    answer: impl FnOnce(&House, T) -> Response + Send + 'static,
+) -> Response {
+    worked(house, move |house| match serde_json::from_slice(&body) {
+        Err(e) => refused(format!("this cannot be read: {e}")),
+        Ok(ask) => answer(house, ask),
+    })
+    .await
 }
 
 impl IntoResponse for Refusal {
@@ -88,7 +97,7 @@ fn no_such(why: impl Display) -> Response {
 /// A file, to be saved: nothing that stands in it is shown or run as a part of the studio.
 fn handed(file: Handed) -> Response {
     let name = format!("attachment; filename=\"linkage.{}\"", file.ending);
-    let mut response = ([(header::CONTENT_TYPE, file.kind)], file.bytes).into_response();
+    let mut response = ([(header::CONTENT_TYPE, file.media_type())], file.bytes).into_response();
     if let Ok(value) = HeaderValue::from_str(&name) {
         response.headers_mut().insert(header::CONTENT_DISPOSITION, value);
     }
@@ -112,12 +121,9 @@ async fn one(State(house): State<Arc<House>>, Path(name): Path<String>) -> Respo
 }
 
 async fn start(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<JobAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => match house.jobs.start(&ask) {
-            Ok(name) => told(house, &name, StatusCode::CREATED),
-            Err(refusal) => refusal.into_response(),
-        },
+    asked(house, body, |house, ask: JobAsk| match house.jobs.start(&ask) {
+        Ok(name) => told(house, &name, StatusCode::CREATED),
+        Err(refusal) => refusal.into_response(),
     })
     .await
 }
@@ -173,46 +179,30 @@ async fn file(State(house): State<Arc<House>>, Path((name, file)): Path<(String,
     worked(house, move |house| match house.jobs.shelf().file(&name, &file) {
         None => no_such(format!("there is no file {file} of a result named {name}")),
         Some(bytes) => {
-            let (kind, ending) = match file.rsplit_once('.').map_or("", |(_, ending)| ending) {
-                "json" => ("application/json", "json"),
-                "csv" => ("text/csv; charset=utf-8", "csv"),
-                "svg" => ("image/svg+xml", "svg"),
-                "toml" => ("application/toml; charset=utf-8", "toml"),
-                "html" => ("text/html; charset=utf-8", "html"),
-                _ => ("application/octet-stream", "bin"),
-            };
-            handed(Handed { kind, ending, bytes })
+            let given = file.rsplit_once('.').map_or("", |(_, ending)| ending);
+            let ending = ["json", "csv", "svg", "toml", "html"].into_iter().find(|ending| *ending == given);
+            handed(Handed { ending: ending.unwrap_or("bin"), bytes })
         }
     })
     .await
 }
 
 async fn details(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<DetailsAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => house.sources().details(&ask).map_or_else(refused, |details| written(&details)),
-    })
-    .await
+    let answer = |house: &House, ask: DetailsAsk| {
+        house.sources().details(&ask).map_or_else(refused, |details| written(&details))
+    };
+    asked(house, body, answer).await
 }
 
 async fn export(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<ExportAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => house.sources().file(&ask).map_or_else(refused, handed),
-    })
-    .await
+    asked(house, body, |house, ask: ExportAsk| house.sources().file(&ask).map_or_else(refused, handed)).await
 }
 
 async fn compare(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<CompareAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => match house.sources().compared(&ask) {
-            Ok(Handed { kind: "application/json", bytes, .. }) => {
-                json(String::from_utf8_lossy(&bytes).into_owned())
-            }
-            Ok(file) => handed(file),
-            Err(why) => refused(why),
-        },
+    asked(house, body, |house, ask: CompareAsk| match house.sources().compared(&ask) {
+        Ok(Handed { ending: "json", bytes }) => json(String::from_utf8_lossy(&bytes).into_owned()),
+        Ok(file) => handed(file),
+        Err(why) => refused(why),
     })
     .await
 }

@@ -151,12 +151,30 @@ pub enum Form {
 
 /// A file to hand out.
 pub(super) struct Handed {
-    /// Its media type.
-    pub(super) kind: &'static str,
     /// What stands after the dot of its name.
     pub(super) ending: &'static str,
     /// Its bytes.
     pub(super) bytes: Vec<u8>,
+}
+
+impl Handed {
+    /// Its media type.
+    pub(super) fn media_type(&self) -> &'static str {
+        match self.ending {
+            "csv" => "text/csv; charset=utf-8",
+            "dxf" => "image/vnd.dxf",
+            "gif" => "image/gif",
+            "html" => "text/html; charset=utf-8",
+            "json" => "application/json",
+            "png" => "image/png",
+            "scad" => "application/x-openscad",
+            "stl" => "model/stl",
+            "svg" => "image/svg+xml",
+            "toml" => "application/toml; charset=utf-8",
+            "txt" => "text/plain; charset=utf-8",
+            _ => "application/octet-stream",
+        }
+    }
 }
 
 /// The records of the latest searches of all tabs.
@@ -314,19 +332,18 @@ impl Sources<'_> {
         }
         let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
         let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
-        let text = |kind, ending, text: String| Ok(Handed { kind, ending, bytes: text.into_bytes() });
+        let text = |ending, text: String| Ok(Handed { ending, bytes: text.into_bytes() });
         match ask.format.as_str() {
-            "html" => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
-            "sheet" => text("image/svg+xml", "svg", svg::candidate_svg(&record, index)),
-            "points" => text("text/csv; charset=utf-8", "csv", csv::candidate_curve_csv(candidate)),
+            "html" => text("html", html::report_html(&record, index)),
+            "sheet" => text("svg", svg::candidate_svg(&record, index)),
+            "points" => text("csv", csv::candidate_curve_csv(candidate)),
             other => {
                 let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
                 let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
                 let subject = Subject::of_candidate(&record, candidate);
                 let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
-                let (kind, ending) = kind_of(format);
-                Ok(Handed { kind, ending, bytes })
+                Ok(Handed { ending: ending_of(format), bytes })
             }
         }
     }
@@ -352,13 +369,13 @@ impl Sources<'_> {
             given.push((Path::new(""), Given::Run(Box::new(run))));
         }
         let comparison = compared(&given, None, &keys, None)?;
-        let (kind, ending, text) = match ask.form {
-            Form::Json => ("application/json", "json", comparison.json()),
-            Form::Html => ("text/html; charset=utf-8", "html", comparison.html()),
-            Form::Csv => ("text/csv; charset=utf-8", "csv", comparison.csv()),
-            Form::Svg => ("image/svg+xml", "svg", comparison.svg()),
+        let (ending, text) = match ask.form {
+            Form::Json => ("json", comparison.json()),
+            Form::Html => ("html", comparison.html()),
+            Form::Csv => ("csv", comparison.csv()),
+            Form::Svg => ("svg", comparison.svg()),
         };
-        Ok(Handed { kind, ending, bytes: text.into_bytes() })
+        Ok(Handed { ending, bytes: text.into_bytes() })
     }
 }
 
@@ -387,20 +404,13 @@ fn by_hand(problem: ProblemRecord, candidates: Vec<Candidate>) -> Record {
     Record::new(problem, used, Reason::ByHand, Evaluations::default(), candidates)
 }
 
-/// The media type of a format, and the ending of its files.
-fn kind_of(format: Format) -> (&'static str, &'static str) {
+/// The ending of the files of a format.
+fn ending_of(format: Format) -> &'static str {
     match format {
-        Format::Svg | Format::SvgPlates => ("image/svg+xml", "svg"),
-        Format::Dxf | Format::DxfPlates => ("image/vnd.dxf", "dxf"),
-        Format::Stl => ("model/stl", "stl"),
-        Format::Scad => ("application/x-openscad", "scad"),
-        Format::Csv | Format::CutListCsv => ("text/csv; charset=utf-8", "csv"),
-        Format::Toml => ("application/toml; charset=utf-8", "toml"),
-        Format::Json => ("application/json", "json"),
-        Format::CutList => ("text/plain; charset=utf-8", "txt"),
-        #[cfg(feature = "images")]
-        Format::Png => ("image/png", "png"),
-        #[cfg(feature = "images")]
-        Format::Gif => ("image/gif", "gif"),
+        Format::SvgPlates => "svg",
+        Format::DxfPlates => "dxf",
+        Format::CutListCsv => "csv",
+        Format::CutList => "txt",
+        other => other.name(),
     }
 }

@@ -101,10 +101,10 @@ pub struct Ask {
     #[serde(default = "one")]
     pub seed: u64,
     /// The hand is still moving: the search waits until it rests.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub moving: bool,
     /// The target has nothing to do with the one before: nothing is to follow it.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,
 }
 
@@ -128,11 +128,6 @@ fn one() -> u64 {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
-}
-
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// What the studio is doing for a tab.
