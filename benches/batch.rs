@@ -10,9 +10,9 @@
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 
-use linkwright::internals::app::checkpoint::{Checkpoint, Writer};
-use linkwright::internals::app::results_folder::{CHECKPOINT, replace_file};
-use linkwright::internals::app::run::{Context, Job, run_kept};
+use linkwright::internals::app::job::checkpoint::{Checkpoint, Writer};
+use linkwright::internals::app::job::folder::{CHECKPOINT, replace_file};
+use linkwright::internals::app::job::run::{Context, Job, run_kept};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
 use std::fs;

@@ -38,7 +38,7 @@ mod random;
 #[path = "recovery/yardstick.rs"]
 mod yardstick;
 
-use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::judge::assess::assess;
 use linkwright::internals::mechanism::Complex;
 use linkwright::internals::mechanism::LinkageType;

@@ -15,7 +15,7 @@
 #[path = "../tests/common/random.rs"]
 mod random;
 
-use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::mechanism::LinkageType;
 use linkwright::internals::numbers::arithmetic::streams::stream;

@@ -45,7 +45,7 @@
 //! | `synthesis` | the search: its [`plan`](internals::synthesis::plan), starts, the [`atlas`](internals::synthesis::atlas) of coupler curves, searches for prescribed ([`timed`](internals::synthesis::timed)) and [`free`](internals::synthesis::free) timing, population searches, [`conflicts`](internals::synthesis::conflicts) of requirements, fitting while a target is dragged, rounding lengths to stock sizes; its limits and its cancellation | numbers, mechanism, task, record, judge |
 //! | `files` | file formats: problem, points, linkage and drawing files are read, with errors that point at their place; schemas, templates | numbers, mechanism, task, record |
 //! | `report` | what a person sees, pure functions of records and analyses: text, tables, drawings, the [page](internals::report::html), the [comparison](internals::report::compare), and files to build from in [`export`](internals::report::export) (DXF, STL, ..) | mechanism, task, record, judge, synthesis, files |
-//! | `app` | entry points: a job in, a record out ([`run`](internals::app::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
+//! | `app` | entry points: a job in, a record out ([`run`](internals::app::job::run)), folders of results and checkpoints, the [`suite`](internals::app::suite), the command line in `cli/` (Ctrl-C, exit codes), the local page in `studio/` | everything |
 //!
 //! The public interface is the names below. `internals` is for this repository's own tests and tools; versions say nothing
 //! about it.
@@ -60,7 +60,7 @@ mod report;
 mod synthesis;
 mod task;
 
-pub use app::run::{Context, Finished, Job, RunError, prove, run};
+pub use app::job::run::{Context, Finished, Job, RunError, prove, run};
 pub use files::diagnostic::Diagnostic;
 pub use files::linkage_file::{
     AnyLinkageFile, LinkageFile, load_any as load_linkage, parse_any as parse_linkage,

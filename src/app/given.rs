@@ -1,7 +1,7 @@
 //! Inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a
 //! run.
 
-use crate::app::results_folder::BUILDABLE;
+use crate::app::job::folder::BUILDABLE;
 use crate::files::linkage_file::LinkageFile;
 use crate::record::{Candidate, Record};
 

@@ -7,7 +7,7 @@ use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::assess;
 use crate::judge::verify::verify_candidate;
 use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, FourBar, LinkageError};
 use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
@@ -18,6 +18,40 @@ use crate::synthesis::nearest::nearest_positions;
 use crate::task::Problem;
 use crate::task::TaskError;
 use std::path::Path;
+
+/// The reason why there is no comparison.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NotCompared {
+    /// No input has figures; the reason for each.
+    #[error("none of these can be compared")]
+    Nothing(Vec<LeftOut>),
+    /// The problem of a record is invalid.
+    #[error("{named}: the recorded problem is none: {source}")]
+    Problem {
+        /// The result as it was named.
+        named: String,
+        /// The reason.
+        source: TaskError,
+    },
+    /// A linkage without a run has no target.
+    #[error("{0} is a linkage without a target: say which with --target PROBLEM.toml")]
+    NoTarget(String),
+    /// The reference of the differences has no figures.
+    #[error("{0} has no figures that others could be compared with")]
+    NoReference(String),
+    /// A linkage cannot be converted to the common unit.
+    #[error("a linkage cannot be converted to another unit: {0}")]
+    Unit(LinkageError),
+}
+
+/// The reason why a linkage has no figures on a target.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+enum NotMeasured {
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+    #[error("it cannot be assembled at every point of {0}")]
+    NotAssembled(String),
+}
 
 /// The target that errors are measured against, with the problem that it belongs to.
 #[derive(Clone)]
@@ -40,10 +74,10 @@ impl Target {
     }
 
     /// Returns the target of a run.
-    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, String> {
+    fn of_run(run: &Run, unit: Option<Unit>) -> Result<Self, NotCompared> {
         let asked = &run.record.problem;
         let problem = Problem::new(asked.resolved.clone())
-            .map_err(|e| format!("{}: the recorded problem is none: {e}", run.named))?;
+            .map_err(|source| NotCompared::Problem { named: run.named.clone(), source })?;
         Ok(Target { name: asked.name.clone(), problem, unit: asked.unit.or(unit) })
     }
 
@@ -71,12 +105,12 @@ impl Target {
     }
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
-    fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, String> {
+    fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
         let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
-        let linkage = scaled(linkage, factor).map_err(|e| e.to_string())?;
+        let linkage = scaled(linkage, factor)?;
         nearest_positions(&self.problem, &linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
-            .ok_or_else(|| format!("it cannot be assembled at every point of {}", self.name))
+            .ok_or_else(|| NotMeasured::NotAssembled(self.name.clone()))
     }
 
     fn at(&self, linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Option<Candidate> {
@@ -99,15 +133,6 @@ pub struct Measured {
     pub remarks: Vec<String>,
 }
 
-/// The reason why there is no comparison.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NotCompared {
-    /// No input has figures; the reason for each.
-    Nothing(Vec<LeftOut>),
-    /// The comparison is refused; the message for the user.
-    Refused(String),
-}
-
 /// Compares the inputs side by side: in the unit of the target, otherwise of the first input that has a unit, ranked by
 /// `keys`. `reference` is the label of the entry from which differences are taken.
 ///
@@ -122,18 +147,16 @@ pub fn compared(
     let named = target.map(|target| (target.name.clone(), target.unit));
     let unit = named.as_ref().and_then(|(_, unit)| *unit);
     let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
-    let measured = Measured::of(given, target, unit).map_err(NotCompared::Refused)?;
+    let measured = Measured::of(given, target, unit)?;
     if measured.entries.is_empty() {
         return Err(NotCompared::Nothing(measured.left_out));
     }
-    let reference = match reference {
-        Some(label) => Some(measured.entries.iter().position(|e| e.label == label).ok_or_else(|| {
-            NotCompared::Refused(format!("{label} has no figures that others could be compared with"))
-        })?),
-        None => None,
+    let position = |label: &str| {
+        let found = measured.entries.iter().position(|entry| entry.label == label);
+        found.ok_or_else(|| NotCompared::NoReference(label.to_owned()))
     };
-    let entries = in_one_unit(&measured.entries, unit)
-        .map_err(|e| NotCompared::Refused(format!("a linkage cannot be converted to another unit: {e}")))?;
+    let reference = reference.map(position).transpose()?;
+    let entries = in_one_unit(&measured.entries, unit).map_err(NotCompared::Unit)?;
     let mut comparison = compare(&entries, keys, reference);
     comparison.remarks.extend(measured.remarks);
     let units: Vec<_> = named.into_iter().chain(measured.units).collect();
@@ -163,8 +186,12 @@ impl Measured {
     /// unit, also those of a target, are taken to be in `unit`.
     ///
     /// # Errors
-    /// The message for the user.
-    pub fn of(given: &[(&Path, Given)], target: Option<&Target>, unit: Option<Unit>) -> Result<Self, String> {
+    /// [`NotCompared`].
+    pub fn of(
+        given: &[(&Path, Given)],
+        target: Option<&Target>,
+        unit: Option<Unit>,
+    ) -> Result<Self, NotCompared> {
         let mut measured = Measured::default();
         let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
         let target = target.as_ref();
@@ -193,10 +220,8 @@ impl Measured {
                     }
                 }
                 (Given::Linkage(file), _) => {
-                    let on = common.ok_or_else(|| {
-                        let shown = escaped(&path.display().to_string());
-                        format!("{shown} is a linkage without a target: say which with --target PROBLEM.toml")
-                    })?;
+                    let shown = || escaped(&path.display().to_string());
+                    let on = common.ok_or_else(|| NotCompared::NoTarget(shown()))?;
                     let label = label_of_file(given, i);
                     measured.units.push((label.clone(), file.unit));
                     measured.file(label, file, on);
@@ -215,10 +240,10 @@ impl Measured {
         Ok(measured)
     }
 
-    fn put(&mut self, label: String, entry: Result<Entry, String>) {
+    fn put(&mut self, label: String, entry: Result<Entry, NotMeasured>) {
         match entry {
             Ok(entry) => self.entries.push(entry),
-            Err(why) => self.left_out.push(LeftOut { label, why }),
+            Err(why) => self.left_out.push(LeftOut { label, why: why.to_string() }),
         }
     }
 

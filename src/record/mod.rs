@@ -7,6 +7,7 @@ use crate::mechanism::{AssemblyMode, FourBar, LinkageType, Unit};
 use crate::task::Defect;
 pub use crate::task::requirement::LimitUnit;
 use crate::task::spec::{Method, ProblemSpec, TransmissionOver};
+use digest::NotWritten;
 use serde::{Deserialize, Serialize};
 
 mod certificate;
@@ -80,6 +81,37 @@ pub struct Record {
     pub repeats: Option<Repeats>,
 }
 
+impl Record {
+    /// Returns the record of a run of this program that ended with these candidates; everything else is absent.
+    pub fn new(
+        problem: ProblemRecord,
+        used: Vec<String>,
+        reason: Reason,
+        evaluations: Evaluations,
+        candidates: Vec<Candidate>,
+    ) -> Record {
+        let solve = &problem.resolved.solve;
+        Record {
+            format: FORMAT,
+            tool: Tool::this(),
+            seed: solve.seed,
+            method: MethodRecord { asked: solve.method, used },
+            problem,
+            termination: Termination { reason, reproducible: reason.is_repeatable() },
+            evaluations,
+            family: None,
+            buildable: None,
+            exact: None,
+            candidates,
+            conflict: None,
+            relaxations: Vec::new(),
+            certificate: None,
+            no_certificate: None,
+            repeats: None,
+        }
+    }
+}
+
 /// Name and version of the program.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Tool {
@@ -87,6 +119,13 @@ pub struct Tool {
     pub name: String,
     /// The version.
     pub version: String,
+}
+
+impl Tool {
+    /// Returns name and version of this program.
+    pub fn this() -> Tool {
+        Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() }
+    }
 }
 
 /// The problem as it was run.
@@ -104,6 +143,21 @@ pub struct ProblemRecord {
     pub digest: String,
     /// Every key with its default filled in.
     pub resolved: ProblemSpec,
+}
+
+impl ProblemRecord {
+    /// Returns a problem with the digest of its specification.
+    ///
+    /// # Errors
+    /// As [`digest`](digest::digest).
+    pub fn new(
+        name: String,
+        source: Option<String>,
+        unit: Option<Unit>,
+        resolved: ProblemSpec,
+    ) -> Result<ProblemRecord, NotWritten> {
+        Ok(ProblemRecord { name, source, unit, digest: digest::digest(&resolved)?, resolved })
+    }
 }
 
 /// The method asked for and the methods that ran.

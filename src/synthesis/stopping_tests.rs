@@ -3,7 +3,7 @@
 #![cfg(test)]
 
 use super::{Budget, JUDGED_AFTER_STOP};
-use crate::app::run::{Context, Job, run};
+use crate::app::job::run::{Context, Job, run};
 use crate::files::problem_file::parse;
 use crate::mechanism::effort::counted::{Counts, begin, counts};
 use crate::record::{Reason, Record};

@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "every test file uses its own part of it")]
 
-use linkwright::internals::app::run::{Context, Job, run};
+use linkwright::internals::app::job::run::{Context, Job, run};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::record::Record;

@@ -3,10 +3,10 @@
 
 #![allow(dead_code, reason = "a fuzz target uses one of them")]
 
-use linkwright::internals::app::checkpoint;
-use linkwright::internals::app::checkpoint::Writer;
-use linkwright::internals::app::run::{Context, Job};
-use linkwright::internals::app::{results_folder, run};
+use linkwright::internals::app::job::checkpoint;
+use linkwright::internals::app::job::checkpoint::Writer;
+use linkwright::internals::app::job::run::{Context, Job};
+use linkwright::internals::app::job::{folder, run};
 use linkwright::internals::files::diagnostic::Diagnostic;
 use linkwright::internals::files::linkage_file;
 use linkwright::internals::files::linkage_file::AnyLinkageFile;
@@ -168,7 +168,7 @@ pub fn drawing(bytes: &[u8]) {
 
 /// Records, as `verify`, `compare` and the reports read them.
 pub fn record(bytes: &[u8]) {
-    let Ok(record) = results_folder::parse_record("record.json", bytes) else { return };
+    let Ok(record) = folder::parse_record("record.json", bytes) else { return };
     if let Ok(mismatches) = verify::verify(&record) {
         mismatches.iter().for_each(|mismatch| assert!(!mismatch.to_string().is_empty()));
     }

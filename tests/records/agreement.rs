@@ -7,8 +7,8 @@
 
 use crate::common::{bytes, job, parse};
 use crate::problems::wide_case;
-use linkwright::internals::app::results_folder::parse_record;
-use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::app::job::folder::parse_record;
+use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::{Mismatch, verify};
 use linkwright::internals::record::{Reason, Record};

@@ -4,8 +4,8 @@
 //! `EVERY_LEAF=1` changes each of them; without it some of each key.
 
 use crate::common::{job, load, parse, root};
-use linkwright::internals::app::results_folder::parse_record;
-use linkwright::internals::app::run::{Context, prove, run};
+use linkwright::internals::app::job::folder::parse_record;
+use linkwright::internals::app::job::run::{Context, prove, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::certificate::{Proof, Request};
 use linkwright::internals::judge::verify::{Checked, UNCHECKED, checked, unchecked, verify};

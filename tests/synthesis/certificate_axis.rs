@@ -3,7 +3,7 @@
 use crate::certificate::{cell, directions, draws, points_of};
 use crate::certificate_leaves::{sealed, stopped, whole};
 use crate::common::{job, literature};
-use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::judge::certificate::{CheckError, Proof, Request, check};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
 use linkwright::internals::numbers::bound::absolute::{bound, exclude};

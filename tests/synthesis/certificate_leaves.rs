@@ -2,7 +2,7 @@
 
 use crate::certificate::{K18, KINDS, capped_sum, cell, directions, draws, points_of, turns};
 use crate::common::{job, literature};
-use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::judge::certificate::{CheckError, Checked, Proof, Request, check};
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
 use linkwright::internals::numbers::bound::Question;

@@ -1,7 +1,7 @@
 //! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
 
 use crate::common::{bytes, job, literature, load, root, run_on};
-use linkwright::internals::app::run::{Context, run};
+use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::record::{Reason, Record};

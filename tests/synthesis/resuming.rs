@@ -1,8 +1,8 @@
 //! A search that goes on from a checkpoint ends in the same bytes as one that was never broken.
 
 use crate::common::{bytes, job, literature, parse};
-use linkwright::internals::app::checkpoint::{Checkpoint, Writer};
-use linkwright::internals::app::run::{Context, Job, run_kept};
+use linkwright::internals::app::job::checkpoint::{Checkpoint, Writer};
+use linkwright::internals::app::job::run::{Context, Job, run_kept};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::record::{Reason, Record};
 use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};

@@ -67,8 +67,8 @@ fn checkpoints() {
 #[test]
 #[ignore = "writes into the project"]
 fn remake_the_corpus_of_checkpoints() {
-    use linkwright::internals::app::checkpoint::Writer;
-    use linkwright::internals::app::run::{Context, run_kept};
+    use linkwright::internals::app::job::checkpoint::Writer;
+    use linkwright::internals::app::job::run::{Context, run_kept};
     use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
     use std::collections::BTreeSet;
     use std::sync::Mutex;

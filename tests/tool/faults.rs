@@ -1,8 +1,8 @@
 //! Machines are switched off and disks are full: no torn file, no lost result, and an error that says what to do.
 
 use crate::common::root;
-use linkwright::internals::app::checkpoint;
-use linkwright::internals::app::results_folder::{ResultsFolder, read_record};
+use linkwright::internals::app::job::checkpoint;
+use linkwright::internals::app::job::folder::{ResultsFolder, read_record};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, unit};
 use std::collections::BTreeMap;
 use std::fs;

@@ -2,7 +2,7 @@
 
 use super::arguments::{Analyze, Cognates};
 use super::output::Output;
-use super::{Ended, result, terminal};
+use super::{Ended, refuse, result, terminal};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
@@ -10,7 +10,7 @@ use crate::files::linkage_file::AnyLinkageFile;
 use crate::files::name;
 use crate::mechanism::Linkage;
 use crate::mechanism::analysis::chain::{ChainRequest, analyze_chain};
-use crate::mechanism::analysis::{PositionMethod, Request, analyze, full_turn};
+use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::report::analysis_csv::analysis_csv;
 use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
@@ -25,11 +25,7 @@ const DEFAULT_POSITIONS: usize = 12;
 const LONG_TABLE: usize = 72;
 
 /// Runs `analyze`.
-pub fn run(options: &Analyze) -> Ended {
-    inner(options).unwrap_or_else(|ended| ended)
-}
-
-fn inner(options: &Analyze) -> Result<Ended, Ended> {
+pub fn run(options: &Analyze) -> Result<Ended, Ended> {
     let file = result::read_linkage(&options.linkage)?;
     let crank_deg = match (&options.angle, options.cycle) {
         (Some(angles), _) => angles.clone(),
@@ -42,10 +38,9 @@ fn inner(options: &Analyze) -> Result<Ended, Ended> {
         Linkage::FourBar(linkage) => linkage,
         Linkage::Chain(chain) => {
             if options.all_configurations || !options.method.is_empty() {
-                terminal::complain(
+                return Err(refuse(
                     "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
-                );
-                return Err(Ended::Refused);
+                ));
             }
             let request = ChainRequest { name: file.name, unit: file.unit, chain: *chain, crank_deg, input };
             return of_chain(options, &request);
@@ -114,10 +109,8 @@ fn deliver(
         asked.iter().flatten().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
     Output::new([&options.linkage], options.force).write(&written)?;
     if options.json {
-        let text = serde_json::to_string_pretty(analysis).map_err(|e| {
-            terminal::complain(&format!("the analysis cannot be written as JSON: {e}"));
-            Ended::Refused
-        })?;
+        let text = serde_json::to_string_pretty(analysis)
+            .map_err(|e| refuse(format!("the analysis cannot be written as JSON: {e}")))?;
         terminal::answer(&(text + "\n"));
         return Ok(Ended::Good);
     }
@@ -135,17 +128,12 @@ fn deliver(
 }
 
 /// Runs `cognates`.
-pub fn cognates(options: &Cognates) -> Ended {
-    inner_cognates(options).unwrap_or_else(|ended| ended)
-}
-
-fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
+pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
     let Linkage::FourBar(linkage) = linkage else {
         let shown = escaped(&options.linkage.display().to_string());
         let why = "it is a chain, and cognates are of four-bars: give a file with [linkage] or [vector_loop]";
-        terminal::complain(&format!("{shown}: {why}"));
-        return Err(Ended::Refused);
+        return Err(refuse(format!("{shown}: {why}")));
     };
     let mut found = Vec::new();
     let mut text = String::new();
@@ -165,11 +153,10 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
         let name = name::with_suffix(&name, &format!("-cognate-{}", i + 1));
         let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
         if path.exists() && !options.force {
-            terminal::complain(&format!(
+            return Err(refuse(format!(
                 "{} exists already; give another folder with --out, or replace it with --force",
                 path.display()
-            ));
-            return Err(Ended::Refused);
+            )));
         }
         written.push((path, FileKind::Linkage, linkage_file::to_toml(&name, unit, linkage)));
     }
@@ -182,10 +169,7 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
         output.check(path, *kind)?;
     }
     if let Some(out) = &options.out {
-        std::fs::create_dir_all(out).map_err(|e| {
-            terminal::complain(&format!("{}: {e}", out.display()));
-            Ended::Refused
-        })?;
+        std::fs::create_dir_all(out).map_err(|e| refuse(format!("{}: {e}", out.display())))?;
     }
     let files: Vec<_> =
         written.iter().map(|(path, kind, text)| (path.as_path(), *kind, text.as_bytes())).collect();
@@ -198,9 +182,4 @@ fn inner_cognates(options: &Cognates) -> Result<Ended, Ended> {
         crate::report::text::clean(&name)
     ));
     Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
-}
-
-/// The methods of a comma-separated list.
-pub fn methods(text: &str) -> Result<PositionMethod, String> {
-    text.parse().map_err(|e: crate::mechanism::analysis::UnknownMethod| e.to_string())
 }

@@ -1,6 +1,7 @@
 //! What can be typed.
 
 use crate::files::schema::SchemaKind;
+use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::analysis::PositionMethod;
 use crate::report::compare::SortKey;
 use crate::report::export::Format;
@@ -60,7 +61,6 @@ pub enum Command {
     /// Print the JSON Schema of a file, for editors, or a reference of its keys
     Schema {
         /// problem, linkage or record
-        #[arg(value_parser = schema_kind)]
         kind: SchemaKind,
         /// Print a reference page (Markdown) of its keys instead
         #[arg(long)]
@@ -151,7 +151,7 @@ pub struct Compare {
     pub target: Option<PathBuf>,
     /// Which figures rank, the first first: sum_sq, rms, max, to_curve, transmission, link_ratio, size, objective
     /// [default: what the problem minimises, sum_sq where there are several]
-    #[arg(long, value_name = "KEY,..", value_delimiter = ',', value_parser = sort_key)]
+    #[arg(long, value_name = "KEY,..", value_delimiter = ',')]
     pub sort: Vec<SortKey>,
     /// Print by how many per cent each figure is above that of this RESULT
     #[arg(long, value_name = "RESULT")]
@@ -246,7 +246,7 @@ pub struct Analyze {
     #[arg(long, value_name = "A", default_value = "0", allow_negative_numbers = true, value_parser = finite)]
     pub alpha: f64,
     /// Methods side by side: natural, algebraic, complex, fixed-point
-    #[arg(long, value_name = "METHOD,..", value_delimiter = ',', value_parser = super::analyze::methods)]
+    #[arg(long, value_name = "METHOD,..", value_delimiter = ',')]
     pub method: Vec<PositionMethod>,
     /// All four configurations (t1, t2), not the file's alone
     #[arg(long)]
@@ -384,7 +384,7 @@ pub struct Export {
     #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// svg, svg-plates, dxf, dxf-plates, stl, scad, csv, toml, json, cut-list or cut-list-csv
-    #[arg(long, value_name = "FORMAT", value_parser = export_format)]
+    #[arg(long, value_name = "FORMAT")]
     pub format: Format,
     /// Set a size or the scale, e.g. --set hole_mm=4
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
@@ -397,97 +397,95 @@ pub struct Export {
     pub force: bool,
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    match text.trim().parse::<f64>() {
-        Ok(number) if number.abs() <= crate::mechanism::MAX_MAGNITUDE => Ok(number),
-        Ok(_) => {
-            Err(format!("a finite number below {:e} in magnitude is needed", crate::mechanism::MAX_MAGNITUDE))
-        }
-        Err(_) => Err("this is not a number".into()),
-    }
+/// The reason why a value of an option is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+enum ValueError {
+    #[error("this is not a number")]
+    NotANumber,
+    #[error("a finite number below {MAX_MAGNITUDE:e} in magnitude is needed")]
+    TooLarge,
+    #[error("a number above 0 is needed")]
+    NotPositive,
+    #[error("a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent")]
+    Gap,
+    #[error("at most {MAX_CERTIFY_S:e} seconds")]
+    TooLong,
+    #[error("a number of seconds is wanted, such as 0.5 or 60")]
+    NotSeconds,
+    #[error("it is from 0 to 86400 seconds")]
+    NotWithinADay,
+    #[error("write KEY=VALUE, for example {0}")]
+    NotAPair(&'static str),
+    #[error("what can be set is certify.time_limit_s")]
+    NotOfCertify,
+    #[error("a hole distance is one of ground, a, b, c, d, e")]
+    NotALength,
+    #[error("what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg")]
+    NotKept,
+    #[error("what can be set is one of ground, a, b, c, d, e, ground_angle_deg")]
+    NotADimension,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    match finite(text)? {
-        number if number > 0.0 => Ok(number),
-        _ => Err("a number above 0 is needed".into()),
-    }
+fn finite(text: &str) -> Result<f64, ValueError> {
+    let number: f64 = text.trim().parse().map_err(|_| ValueError::NotANumber)?;
+    if number.abs() <= MAX_MAGNITUDE { Ok(number) } else { Err(ValueError::TooLarge) }
 }
 
-fn gap(text: &str) -> Result<f64, String> {
-    match positive(text)? {
-        number if number < 1.0 => Ok(number),
-        _ => Err("a gap is between 0 and 1, such as 1e-4 for a hundredth of a per cent".into()),
-    }
+fn positive(text: &str) -> Result<f64, ValueError> {
+    Some(finite(text)?).filter(|number| *number > 0.0).ok_or(ValueError::NotPositive)
 }
 
-fn certify_key(text: &str) -> Result<(String, f64), String> {
+fn gap(text: &str) -> Result<f64, ValueError> {
+    Some(positive(text)?).filter(|number| *number < 1.0).ok_or(ValueError::Gap)
+}
+
+fn certify_key(text: &str) -> Result<(String, f64), ValueError> {
     let (key, value) = key_value(text)?;
-    match key.as_str() {
-        "certify.time_limit_s" => match positive(&value)? {
-            seconds if seconds <= MAX_CERTIFY_S => Ok((key, seconds)),
-            _ => Err(format!("at most {MAX_CERTIFY_S:e} seconds")),
-        },
-        _ => Err("what can be set is certify.time_limit_s".into()),
+    if key != "certify.time_limit_s" {
+        return Err(ValueError::NotOfCertify);
     }
+    let seconds = positive(&value)?;
+    if seconds <= MAX_CERTIFY_S { Ok((key, seconds)) } else { Err(ValueError::TooLong) }
 }
 
-fn length(text: &str) -> Result<Length, String> {
-    Length::named(text.trim()).ok_or_else(|| "a hole distance is one of ground, a, b, c, d, e".into())
+fn length(text: &str) -> Result<Length, ValueError> {
+    Length::named(text.trim()).ok_or(ValueError::NotALength)
 }
 
-fn kept(text: &str) -> Result<String, String> {
+fn kept(text: &str) -> Result<String, ValueError> {
     let key = text.trim();
-    match Length::named(key).is_some() || ["A", "B", "ground_angle_deg"].contains(&key) {
-        true => Ok(key.into()),
-        false => Err("what can be kept is one of ground, a, b, c, d, e, A, B, ground_angle_deg".into()),
-    }
+    let known = Length::named(key).is_some() || ["A", "B", "ground_angle_deg"].contains(&key);
+    known.then(|| key.into()).ok_or(ValueError::NotKept)
 }
 
-fn dimension(text: &str) -> Result<(String, f64), String> {
+fn dimension(text: &str) -> Result<(String, f64), ValueError> {
     let (key, value) = key_value(text)?;
-    if Length::named(&key).is_some() {
-        return Ok((key, positive(&value)?));
-    }
-    match key.as_str() {
-        "ground_angle_deg" => Ok((key, finite(&value)?)),
-        _ => Err("what can be set is one of ground, a, b, c, d, e, ground_angle_deg".into()),
-    }
+    let number = match key.as_str() {
+        key if Length::named(key).is_some() => positive(&value)?,
+        "ground_angle_deg" => finite(&value)?,
+        _ => return Err(ValueError::NotADimension),
+    };
+    Ok((key, number))
 }
 
-fn key_value(text: &str) -> Result<(String, String), String> {
+fn key_value(text: &str) -> Result<(String, String), ValueError> {
+    pair(text, "solve.candidates=9")
+}
+
+fn setting(text: &str) -> Result<(String, String), ValueError> {
+    pair(text, "hole_mm=4")
+}
+
+fn pair(text: &str, example: &'static str) -> Result<(String, String), ValueError> {
     match text.split_once('=') {
         Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
-        _ => Err("write KEY=VALUE, for example solve.candidates=9".into()),
+        _ => Err(ValueError::NotAPair(example)),
     }
-}
-
-fn setting(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((key, value)) if !key.trim().is_empty() => Ok((key.trim().into(), value.trim().into())),
-        _ => Err("write KEY=VALUE, for example hole_mm=4".into()),
-    }
-}
-
-fn export_format(text: &str) -> Result<Format, String> {
-    text.parse().map_err(|e: crate::report::export::UnknownFormat| e.to_string())
-}
-
-fn sort_key(text: &str) -> Result<SortKey, String> {
-    text.parse().map_err(|e: crate::report::compare::UnknownKey| e.to_string())
-}
-
-fn schema_kind(text: &str) -> Result<SchemaKind, String> {
-    text.parse().map_err(|e: crate::files::schema::UnknownKind| e.to_string())
 }
 
 /// A time of at most a day.
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds: f64 =
-        text.parse().map_err(|_| "a number of seconds is wanted, such as 0.5 or 60".to_string())?;
-    if (0.0..=86400.0).contains(&seconds) {
-        Ok(Duration::from_secs_f64(seconds))
-    } else {
-        Err("it is from 0 to 86400 seconds".into())
-    }
+fn seconds(text: &str) -> Result<Duration, ValueError> {
+    let seconds: f64 = text.parse().map_err(|_| ValueError::NotSeconds)?;
+    let within = (0.0..=86400.0).contains(&seconds);
+    within.then(|| Duration::from_secs_f64(seconds)).ok_or(ValueError::NotWithinADay)
 }

@@ -3,7 +3,7 @@
 use super::arguments::Build as Options;
 use super::result;
 use super::result::Given;
-use super::{Ended, terminal};
+use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 use crate::judge::practicality::Practicality;
 pub use crate::judge::practicality::{Build, millimetre, usual_tolerance};
@@ -14,11 +14,7 @@ use crate::report::text::clean;
 use crate::task::Problem;
 
 /// Runs the command.
-pub fn run(options: &Options) -> Ended {
-    inner(options).unwrap_or_else(|ended| ended)
-}
-
-fn inner(options: &Options) -> Result<Ended, Ended> {
+pub fn run(options: &Options) -> Result<Ended, Ended> {
     let made = |linkage: &FourBar, unit: Option<Unit>| {
         let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit.map(millimetre)));
         Build::new(hole, options.margin.unwrap_or(hole))
@@ -30,10 +26,7 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
         }
         Given::Run(run) => {
             let chosen = run.one()?;
-            let problem = Problem::new(run.record.problem.resolved.clone()).map_err(|e| {
-                terminal::complain(&e.to_string());
-                Ended::Refused
-            })?;
+            let problem = Problem::new(run.record.problem.resolved.clone()).map_err(refuse)?;
             let (linkage, unit) = (chosen.candidate.linkage, run.record.problem.unit);
             let found = Practicality::of_candidate(&problem, chosen.candidate, made(&linkage, unit));
             (escaped(&chosen.label), linkage, unit, found)

@@ -1,7 +1,7 @@
 //! `check`: is a file what it should be?
 
 use super::arguments::Check;
-use super::{Ended, terminal};
+use super::{Ended, refuse_at, terminal};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::linkage_file;
 use crate::files::{points_file, problem_file};
@@ -10,7 +10,7 @@ use ariadne::ReportKind;
 use std::path::Path;
 
 /// Runs the command.
-pub fn run(options: &Check) -> Ended {
+pub fn run(options: &Check) -> Result<Ended, Ended> {
     let mut ended = Ended::Good;
     for path in &options.files {
         match examine(path) {
@@ -20,13 +20,10 @@ pub fn run(options: &Check) -> Ended {
                 }
                 terminal::answer(&format!("{}: {summary}\n", escaped(&path.display().to_string())));
             }
-            Err(diagnostic) => {
-                terminal::diagnose(ReportKind::Error, &diagnostic);
-                ended = Ended::Refused;
-            }
+            Err(diagnostic) => ended = refuse_at(diagnostic),
         }
     }
-    ended
+    Ok(ended)
 }
 
 fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {

@@ -4,21 +4,16 @@ use super::arguments::Compare;
 use super::output::Output;
 use super::result;
 use super::result::{Given, Which};
-use super::{Ended, terminal};
+use super::{Ended, refuse, refuse_at, terminal};
 use crate::app::measured::{NotCompared, Target, compared};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
 use crate::report::compare::Comparison;
-use ariadne::ReportKind;
 use std::path::Path;
 
 /// Runs the command.
-pub fn run(options: &Compare) -> Ended {
-    inner(options).unwrap_or_else(|ended| ended)
-}
-
-fn inner(options: &Compare) -> Result<Ended, Ended> {
+pub fn run(options: &Compare) -> Result<Ended, Ended> {
     let target = options.target.as_deref().map(target_of).transpose()?;
     let mut given = Vec::new();
     for argument in &options.results {
@@ -27,7 +22,6 @@ fn inner(options: &Compare) -> Result<Ended, Ended> {
     let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
     let comparison = match compared(&given, target.as_ref(), &options.sort, reference.as_deref()) {
         Ok(comparison) => comparison,
-        Err(NotCompared::Refused(why)) => return Err(refuse(&why)),
         Err(NotCompared::Nothing(left_out)) => {
             for out in &left_out {
                 terminal::complain(&format!("{}: {}", out.label, out.why));
@@ -35,22 +29,15 @@ fn inner(options: &Compare) -> Result<Ended, Ended> {
             terminal::complain("none of these results has a candidate to compare");
             return Ok(Ended::Bad);
         }
+        Err(why) => return Err(refuse(why)),
     };
     deliver(options, &comparison)
 }
 
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
-}
-
 /// The target of a problem file.
 fn target_of(path: &Path) -> Result<Target, Ended> {
-    let file = problem_file::load(path, &[]).map_err(|diagnostic| {
-        terminal::diagnose(ReportKind::Error, &diagnostic);
-        Ended::Refused
-    })?;
-    Target::new(file).map_err(|e| refuse(&e.to_string()))
+    let file = problem_file::load(path, &[]).map_err(refuse_at)?;
+    Target::new(file).map_err(refuse)
 }
 
 /// The label of what differences are from; read and put to the others where it is none of them.

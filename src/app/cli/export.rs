@@ -4,22 +4,16 @@ use super::arguments::Export;
 use super::output::Output;
 use super::result;
 use super::result::Given;
-use super::{Ended, terminal};
+use super::{Ended, refuse, refuse_at, terminal};
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::report::export::{Refusal, Settings, Subject, export};
-use ariadne::ReportKind;
 
 /// Runs the command.
-pub fn run(options: &Export) -> Ended {
-    inner(options).unwrap_or_else(|ended| ended)
-}
-
-fn inner(options: &Export) -> Result<Ended, Ended> {
+pub fn run(options: &Export) -> Result<Ended, Ended> {
     let settings = Settings::parse(options.format, &options.set).map_err(|e| refused(options, e))?;
     if options.out.is_none() && !options.format.is_text() {
         let name = options.format.name();
-        terminal::complain(&format!("{name} is not text: say where it goes with --out FILE.{name}"));
-        return Err(Ended::Refused);
+        return Err(refuse(format!("{name} is not text: say where it goes with --out FILE.{name}")));
     }
     let subject = match result::read(&options.result)? {
         Given::Linkage(file) => Subject::of_linkage(&file),
@@ -50,9 +44,5 @@ fn refused(options: &Export, refusal: Refusal) -> Ended {
     if let Some((key, value)) = &refusal.setting {
         file.push_str(&format!(" with --set {key}={value}"));
     }
-    terminal::diagnose(
-        ReportKind::Error,
-        &Diagnostic::new(file, "", refusal.message).with_help(refusal.help),
-    );
-    Ended::Refused
+    refuse_at(Box::new(Diagnostic::new(file, "", refusal.message).with_help(refusal.help)))
 }

@@ -1,8 +1,9 @@
 //! What `synth` is given: files, and folders of problem files; and where the result of each goes.
 
 use super::arguments::Synth;
+use super::error::CommandError;
 use super::terminal;
-use crate::app::run::Job;
+use crate::app::job::run::Job;
 use crate::files::diagnostic::escaped;
 use crate::files::input_text;
 use crate::files::problem_file;
@@ -23,7 +24,7 @@ pub struct Input {
     /// The file as it was named, or the folder that names none.
     pub file: String,
     /// The job and its folder, or why there is none; the reason has been told.
-    pub job: Result<(Job, PathBuf), String>,
+    pub job: Result<(Job, PathBuf), CommandError>,
 }
 
 /// Reads everything that is to be run, in the order in which it was named, the files of a folder by name. What is
@@ -32,12 +33,12 @@ pub fn load(options: &Synth) -> Vec<Input> {
     let mut files = Vec::new();
     for path in &options.files {
         if !path.is_dir() {
-            files.push(Ok(path.clone()));
+            files.push((path.clone(), None));
             continue;
         }
         match problem_files(path) {
-            Ok(found) => files.extend(found.into_iter().map(Ok)),
-            Err(why) => files.push(Err((path.clone(), why))),
+            Ok(found) => files.extend(found.into_iter().map(|file| (file, None))),
+            Err(why) => files.push((path.clone(), Some(why))),
         }
     }
     let mut overrides = options.set.clone();
@@ -45,50 +46,49 @@ pub fn load(options: &Synth) -> Vec<Input> {
     overrides.extend(options.seed.iter().map(|seed| ("solve.seed".into(), seed.to_string())));
     overrides.extend(options.no_advice.then(|| ("solve.advice".into(), "false".into())));
     let several = files.len() > 1 || options.files.iter().any(|path| path.is_dir());
-    let mut inputs: Vec<Input> = Vec::new();
-    // Which file writes to which folder.
-    let mut taken: BTreeMap<PathBuf, String> = BTreeMap::new();
-    for file in files {
-        let (path, why) = match file {
-            Ok(path) => (path, None),
-            Err((path, why)) => (path, Some(why)),
-        };
+    // The file that writes to each folder.
+    let mut taken = BTreeMap::new();
+    let mut input = |(path, why): (PathBuf, Option<CommandError>)| {
         let file = path.display().to_string();
-        if let Some(why) = why {
-            terminal::complain(&why);
-            inputs.push(Input { file, job: Err(why) });
-            continue;
-        }
-        let job = match problem_file::load_any(&path, &overrides) {
-            Ok(problem) => {
-                for warning in &problem.warnings {
-                    terminal::diagnose(ReportKind::Warning, warning);
-                }
-                let place = place(options, &problem, several);
-                match taken.entry(place.clone()) {
-                    Entry::Occupied(other) => {
-                        let why = format!(
-                            "{} and {file} would both write to {}; give them different names (key `name`)",
-                            other.get(),
-                            place.display()
-                        );
-                        terminal::complain(&why);
-                        Err(why)
-                    }
-                    Entry::Vacant(free) => {
-                        free.insert(file.clone());
-                        Ok((problem.into(), place))
-                    }
-                }
-            }
-            Err(diagnostic) => {
-                terminal::diagnose(ReportKind::Error, &diagnostic);
-                Err(diagnostic.message.clone())
-            }
+        let job = match why {
+            Some(why) => Err(why),
+            None => problem_file::load_any(&path, &overrides)
+                .map_err(CommandError::Problem)
+                .and_then(|problem| job(options, problem, several, &file, &mut taken)),
         };
-        inputs.push(Input { file, job });
+        match &job {
+            Err(CommandError::Problem(diagnostic)) => terminal::diagnose(ReportKind::Error, diagnostic),
+            Err(why) => terminal::complain(&why.to_string()),
+            Ok(_) => {}
+        }
+        Input { file, job }
+    };
+    files.into_iter().map(&mut input).collect()
+}
+
+/// The job of a problem and its folder, which no file before it has taken.
+fn job(
+    options: &Synth,
+    problem: ProblemFile,
+    several: bool,
+    file: &str,
+    taken: &mut BTreeMap<PathBuf, String>,
+) -> Result<(Job, PathBuf), CommandError> {
+    for warning in &problem.warnings {
+        terminal::diagnose(ReportKind::Warning, warning);
     }
-    inputs
+    let place = place(options, &problem, several);
+    match taken.entry(place.clone()) {
+        Entry::Occupied(one) => Err(CommandError::SamePlace {
+            one: one.get().clone(),
+            other: file.to_owned(),
+            place: place.display().to_string(),
+        }),
+        Entry::Vacant(free) => {
+            free.insert(file.to_owned());
+            Ok((problem.into(), place))
+        }
+    }
 }
 
 /// Where the summary of a batch goes.
@@ -105,17 +105,18 @@ fn place(options: &Synth, problem: &ProblemFile, several: bool) -> PathBuf {
 
 /// The problem files of a folder, by name: every `*.toml` in it, not below, but for those that say of themselves that
 /// they are something else. These are named in a warning.
-fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
+fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
     let shown = escaped(&folder.display().to_string());
-    let entries = fs::read_dir(folder).map_err(|e| format!("{shown}: {e}"))?;
+    let failed = |source| CommandError::Io { path: shown.clone(), source };
+    let entries = fs::read_dir(folder).map_err(failed)?;
     let mut files = Vec::new();
     for entry in entries {
-        let path = entry.map_err(|e| format!("{shown}: {e}"))?.path();
+        let path = entry.map_err(failed)?.path();
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !path.is_dir() {
             files.push(path);
         }
         if files.len() > MOST_FILES {
-            return Err(format!("{shown} holds more than {MOST_FILES} problem files; give some of them"));
+            return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });
         }
     }
     files.sort();
@@ -127,7 +128,7 @@ fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
         ));
     }
     if problems.is_empty() {
-        return Err(format!("the folder {shown} holds no problem file (*.toml with a [task])"));
+        return Err(CommandError::NoProblems(shown));
     }
     Ok(problems)
 }

@@ -1,13 +1,13 @@
 //! `man`: the manual pages, made from the same definitions that `--help` is made from.
 
 use super::arguments::Arguments;
-use super::{Ended, terminal};
+use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::quoted;
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 
 /// Runs the command.
-pub fn run(command: Option<&str>) -> Ended {
+pub fn run(command: Option<&str>) -> Result<Ended, Ended> {
     let mut program = Arguments::command();
     program.build();
     let page = match command {
@@ -19,18 +19,11 @@ pub fn run(command: Option<&str>) -> Ended {
         let program = Arguments::command();
         let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
         let name = quoted(command.unwrap_or_default());
-        terminal::complain(&format!("there is no command {name}: the commands are {}", names.join(", ")));
-        return Ended::Refused;
+        return Err(refuse(format!("there is no command {name}: the commands are {}", names.join(", "))));
     };
     let mut text = Vec::new();
-    match Man::new(page).render(&mut text) {
-        Ok(()) => {
-            terminal::answer(&String::from_utf8_lossy(&text));
-            Ended::Good
-        }
-        Err(e) => {
-            terminal::complain(&format!("the manual page cannot be written: {e}"));
-            Ended::Refused
-        }
-    }
+    let rendered = Man::new(page).render(&mut text);
+    rendered.map_err(|e| refuse(format!("the manual page cannot be written: {e}")))?;
+    terminal::answer(&String::from_utf8_lossy(&text));
+    Ok(Ended::Good)
 }

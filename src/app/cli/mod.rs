@@ -9,6 +9,7 @@ mod build;
 mod certify;
 mod check;
 mod compare;
+mod error;
 mod export;
 mod inputs;
 mod interrupt;
@@ -26,8 +27,12 @@ mod synth;
 mod terminal;
 mod verify;
 
+use crate::files::diagnostic::Diagnostic;
+use crate::files::schema::{reference, schema};
 use arguments::{Arguments, Command};
+use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
+use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
@@ -58,6 +63,18 @@ impl From<Ended> for ExitCode {
     }
 }
 
+/// Complains of the reason for which a command refuses its input.
+fn refuse(why: impl Display) -> Ended {
+    terminal::complain(&why.to_string());
+    Ended::Refused
+}
+
+/// Shows the place at which an input is refused.
+fn refuse_at(diagnostic: Box<Diagnostic>) -> Ended {
+    terminal::diagnose(ReportKind::Error, &diagnostic);
+    Ended::Refused
+}
+
 /// The exit code of a panic: a bug of ours.
 const BUG: u8 = 70;
 
@@ -65,7 +82,7 @@ const BUG: u8 = 70;
 pub fn main() -> ExitCode {
     interrupt::outlive_large_files();
     let arguments = Arguments::parse();
-    match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
+    match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command).unwrap_or_else(|ended| ended))) {
         Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),
         Ok(ended) => ended.into(),
         Err(_) => {
@@ -75,7 +92,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn dispatch(command: Command) -> Ended {
+fn dispatch(command: Command) -> Result<Ended, Ended> {
     match command {
         Command::Synth(options) => synth::run(&options),
         Command::Check(options) => check::run(&options),
@@ -93,17 +110,15 @@ fn dispatch(command: Command) -> Ended {
         #[cfg(feature = "studio")]
         Command::Studio(options) => studio::run(&options),
         Command::Schema { kind, markdown } => {
-            terminal::answer(&match markdown {
-                true => crate::files::schema::reference(kind),
-                false => format!("{:#}\n", crate::files::schema::schema(kind)),
-            });
-            Ended::Good
+            let text = if markdown { reference(kind) } else { format!("{:#}\n", schema(kind)) };
+            terminal::answer(&text);
+            Ok(Ended::Good)
         }
         Command::Completions { shell } => {
             let mut script = Vec::new();
             clap_complete::generate(shell, &mut Arguments::command(), "linkwright", &mut script);
             terminal::answer(&String::from_utf8_lossy(&script));
-            Ended::Good
+            Ok(Ended::Good)
         }
         Command::Man { command } => man::run(command.as_deref()),
     }

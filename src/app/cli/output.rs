@@ -1,7 +1,7 @@
 //! Files that a command writes where its user says: what is there and is not ours stays, unless `--force`.
 
-use super::{Ended, result, terminal};
-use crate::app::results_folder::{FolderError, OutputFile, Replace, check_files, write_files};
+use super::{Ended, refuse, result};
+use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};
 use crate::files::generator::FileKind;
 use std::path::{Path, PathBuf};
 
@@ -40,9 +40,6 @@ impl Output {
     fn with(&self, act: impl Fn(Replace<'_>) -> Result<(), FolderError>) -> Result<(), Ended> {
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let replace = if self.force { Replace::Anything } else { Replace::Ours(&inputs) };
-        act(replace).map_err(|e| {
-            terminal::complain(&e.to_string());
-            Ended::Refused
-        })
+        act(replace).map_err(refuse)
     }
 }

@@ -1,115 +1,146 @@
 //! A bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it.
 
+use super::terminal::tell;
 use crate::app::suite::Step;
 use crate::judge::certificate;
-use crate::report::text::{at_most, percent_up};
+use crate::report::text::{at_most, clean, grouped, percent_up};
 use crate::synthesis::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
-use std::sync::Mutex;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-/// Searches shorter than this show no progress.
+/// Work shorter than this shows no bar.
 const QUIET_FOR: Duration = Duration::from_millis(700);
 /// Plain lines come at most this often.
-pub const LINE_EVERY: Duration = Duration::from_secs(5);
-/// The bar of a suite moves at most this often.
+const LINE_EVERY: Duration = Duration::from_secs(5);
+/// A bar moves at most this often.
 const BAR_EVERY: Duration = Duration::from_millis(100);
 
-/// Shows where a suite stands.
-pub struct SuiteShown {
+/// Shows the progress of one piece of work.
+pub struct Shown {
+    name: String,
     start: Instant,
-    bar: Option<ProgressBar>,
     last: Mutex<Instant>,
+    bar: Option<ProgressBar>,
+    silent: bool,
+    /// Whether the bar has been put on the terminal.
+    drawn: AtomicBool,
+    /// Evaluations at the first word of a search: those of an earlier run whose checkpoint this one goes on from.
+    before: OnceLock<u64>,
+    /// The jobs of a batch that are done.
+    done: AtomicU64,
 }
 
-impl SuiteShown {
-    /// Progress from now on.
-    pub fn new() -> Self {
-        let bar = stderr().is_terminal().then(|| {
-            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr_with_hz(10));
-            let style = "[{bar:24}] {pos} of {len} runs, {msg}";
+impl Shown {
+    fn new(name: &str, silent: bool, style: Option<&str>) -> Self {
+        let style = style.filter(|_| stderr().is_terminal() && !silent);
+        let bar = style.map(|style| {
+            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
             bar.set_style(
                 ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
             );
+            bar.set_prefix(clean(name));
             bar
         });
-        SuiteShown { start: Instant::now(), bar, last: Mutex::new(Instant::now()) }
+        let now = Instant::now();
+        Shown {
+            name: clean(name),
+            start: now,
+            last: Mutex::new(now),
+            bar,
+            silent,
+            drawn: AtomicBool::new(false),
+            before: OnceLock::new(),
+            done: AtomicU64::new(0),
+        }
     }
 
-    /// Takes a word from the suite.
-    pub fn update(&self, step: &Step<'_>) {
-        if self.start.elapsed() < QUIET_FOR {
+    /// Returns the progress of the search of the problem `name`.
+    pub fn of_search(name: &str, silent: bool) -> Self {
+        Shown::new(
+            name,
+            silent,
+            Some("{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}"),
+        )
+    }
+
+    /// Returns the progress of a batch whose jobs run side by side.
+    pub fn of_batch(silent: bool) -> Self {
+        Shown::new("", silent, Some("[{bar:24}] {pos} of {len} jobs, {per_sec}, {eta} left"))
+    }
+
+    /// Returns the progress of a suite.
+    pub fn of_suite() -> Self {
+        Shown::new("", false, Some("[{bar:24}] {pos} of {len} runs, {msg}"))
+    }
+
+    /// Returns the progress of a certificate or of its check: plain lines alone.
+    pub fn of_proof(name: &str, silent: bool) -> Self {
+        Shown::new(name, silent, None)
+    }
+
+    /// Whether nothing is to be shown.
+    pub fn is_silent(&self) -> bool {
+        self.silent
+    }
+
+    /// Moves the bar, or writes a line where there is none. Words come many times during work whose time is measured:
+    /// most are dropped at once.
+    fn show(&self, [done, total]: [u64; 2], beside: impl FnOnce() -> String, line: impl FnOnce() -> String) {
+        let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
+        if self.silent || self.start.elapsed() < QUIET_FOR {
             return;
         }
-        // A word comes many times during a run whose time is measured: most are dropped at once.
-        let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
         let Ok(mut last) = self.last.lock() else { return };
         if last.elapsed() < every {
             return;
         }
         *last = Instant::now();
-        let name = crate::report::text::clean(step.problem);
-        let what = format!("{name}: {}, seed {}", step.method.name(), step.seed);
-        let Some(bar) = &self.bar else {
-            super::terminal::tell(&format!("{what}, {} of {} runs done", step.done, step.total));
-            return;
-        };
-        bar.set_length(step.total);
-        bar.set_position(step.done);
-        bar.set_message(what);
-    }
-
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+        let Some(bar) = &self.bar else { return tell(&line()) };
+        if !self.drawn.swap(true, Ordering::Relaxed) {
+            bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
         }
-    }
-}
-
-/// Shows how many jobs of a batch are done, where they run side by side.
-pub struct BatchShown {
-    start: Instant,
-    total: usize,
-    done: AtomicUsize,
-    bar: Option<ProgressBar>,
-    last_line: Mutex<Instant>,
-    silent: bool,
-}
-
-impl BatchShown {
-    /// Progress of so many jobs.
-    pub fn new(total: usize, silent: bool) -> Self {
-        let bar = (stderr().is_terminal() && !silent).then(|| {
-            let bar =
-                ProgressBar::with_draw_target(Some(total as u64), ProgressDrawTarget::stderr_with_hz(10));
-            let style = "[{bar:24}] {pos} of {len} jobs, {per_sec}, {eta} left";
-            bar.set_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
-            );
-            bar
-        });
-        let (done, last_line) = (AtomicUsize::new(0), Mutex::new(Instant::now()));
-        BatchShown { start: Instant::now(), total, done, bar, last_line, silent }
+        bar.set_length(total);
+        bar.set_position(done);
+        bar.set_message(beside());
     }
 
-    /// One more is done.
-    pub fn one_more(&self) {
+    /// Takes a word from a search.
+    pub fn search(&self, progress: &Progress) {
+        let before = *self.before.get_or_init(|| progress.evaluations);
+        let words = || Words::of(progress, before, self.start.elapsed());
+        let at = [progress.evaluations.min(progress.budget), progress.budget];
+        self.show(at, || words().beside_the_bar(), || words().line(&self.name, progress));
+    }
+
+    /// Takes a word from a suite.
+    pub fn suite(&self, step: &Step<'_>) {
+        let Step { done, total, .. } = *step;
+        let run = || format!("{}: {}, seed {}", clean(step.problem), step.method.name(), step.seed);
+        self.show([done, total], run, || format!("{}, {done} of {total} runs done", run()));
+    }
+
+    /// One more job of a batch of `total` is done.
+    pub fn one_more(&self, total: u64) {
         let done = 1 + self.done.fetch_add(1, Ordering::Relaxed);
-        if let Some(bar) = &self.bar {
-            bar.set_position(done as u64);
-            return;
-        }
-        let Ok(mut last) = self.last_line.lock() else { return };
-        if !self.silent && last.elapsed() >= LINE_EVERY {
-            *last = Instant::now();
-            let left = self.start.elapsed().as_secs_f64() * (self.total - done) as f64 / done as f64;
-            let total = self.total;
-            super::terminal::tell(&format!("{done} of {total} jobs done, about {} left", duration(left)));
-        }
+        self.show([done, total], String::new, || {
+            let left = self.start.elapsed().as_secs_f64() * (total - done) as f64 / done as f64;
+            format!("{done} of {total} jobs done, about {} left", duration(left))
+        });
+    }
+
+    /// Takes a word from a certificate.
+    pub fn proof(&self, progress: &certificate::Progress) {
+        self.show([0; 2], String::new, || proved(&self.name, self.start.elapsed(), progress));
+    }
+
+    /// Takes the number of leaves of a certificate that are checked.
+    pub fn leaves(&self, file: &str, checked: u64) {
+        let seconds = self.start.elapsed().as_secs_f64();
+        let line = || format!("{file}: {seconds:.0} s: {checked} leaves checked");
+        self.show([0; 2], String::new, line);
     }
 
     /// Takes the bar away.
@@ -126,102 +157,6 @@ fn duration(seconds: f64) -> String {
         s if s < 100.0 => format!("{s:.0} s"),
         s if s < 6000.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
-/// Shows where a search stands.
-pub struct Shown {
-    name: String,
-    start: Instant,
-    bar: Option<ProgressBar>,
-    last_line: Mutex<Instant>,
-    silent: bool,
-    /// Whether the bar has been put on the terminal.
-    drawn: AtomicBool,
-    /// Evaluations at the first word: those of an earlier run whose checkpoint this one goes on from.
-    before: OnceLock<u64>,
-}
-
-impl Shown {
-    /// Progress of the problem `name`.
-    pub fn new(name: &str, silent: bool) -> Self {
-        let bar = (stderr().is_terminal() && !silent).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
-            let style = "{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}";
-            bar.set_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
-            );
-            bar.set_prefix(crate::report::text::clean(name));
-            bar
-        });
-        Shown {
-            name: name.into(),
-            start: Instant::now(),
-            bar,
-            last_line: Mutex::new(Instant::now()),
-            silent,
-            drawn: AtomicBool::new(false),
-            before: OnceLock::new(),
-        }
-    }
-
-    /// Whether nothing is to be shown.
-    pub fn is_silent(&self) -> bool {
-        self.silent
-    }
-
-    /// Takes a word from the search.
-    pub fn update(&self, progress: &Progress) {
-        let before = *self.before.get_or_init(|| progress.evaluations);
-        if self.silent || self.start.elapsed() < QUIET_FOR {
-            return;
-        }
-        let words = Words::of(progress, before, self.start.elapsed());
-        if let Some(bar) = &self.bar {
-            if !self.drawn.swap(true, Ordering::Relaxed) {
-                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
-            }
-            bar.set_length(progress.budget);
-            bar.set_position(progress.evaluations.min(progress.budget));
-            bar.set_message(words.beside_the_bar());
-            return;
-        }
-        let Ok(mut last) = self.last_line.lock() else { return };
-        if last.elapsed() >= LINE_EVERY {
-            *last = Instant::now();
-            super::terminal::tell(&words.line(&self.name, progress));
-        }
-    }
-
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
-}
-
-/// Shows in plain lines how far a certificate is.
-pub struct Proving {
-    name: String,
-    start: Instant,
-    last: Instant,
-    silent: bool,
-}
-
-impl Proving {
-    /// Progress of the certificate of a problem.
-    pub fn new(name: &str, silent: bool) -> Self {
-        let now = Instant::now();
-        Proving { name: crate::report::text::clean(name), start: now, last: now, silent }
-    }
-
-    /// Takes a word from it.
-    pub fn update(&mut self, progress: &certificate::Progress) {
-        if !self.silent && self.last.elapsed() >= LINE_EVERY {
-            self.last = Instant::now();
-            super::terminal::tell(&proved(&self.name, self.start.elapsed(), progress));
-        }
     }
 }
 
@@ -255,7 +190,7 @@ impl Words {
         let rate = progress.evaluations.saturating_sub(before) as f64 / elapsed.as_secs_f64();
         let left_s = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
         let left = left_s.is_finite().then(|| duration(left_s));
-        Words { best, rate: format!("{}/s", crate::report::text::grouped(rate as u64)), left }
+        Words { best, rate: format!("{}/s", grouped(rate as u64)), left }
     }
 
     /// The bar itself shows the share and the time left.
@@ -267,7 +202,7 @@ impl Words {
     fn line(&self, name: &str, progress: &Progress) -> String {
         let left = self.left.as_ref().map_or(String::new(), |left| format!("at most {left} left, "));
         let Progress { phase, evaluations, budget, .. } = progress;
-        let (name, Words { best, rate, .. }) = (crate::report::text::clean(name), self);
+        let (name, Words { best, rate, .. }) = (clean(name), self);
         format!("{name}: {phase} {evaluations} of {budget} evaluations, {rate}, {left}{best}")
     }
 }

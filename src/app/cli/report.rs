@@ -3,7 +3,7 @@
 use super::arguments::Report;
 use super::output::Output;
 use super::result::{Run, Which, read_run_of};
-use super::{Ended, terminal};
+use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::report::html::report_html;
@@ -13,14 +13,9 @@ use std::path::{Path, PathBuf};
 const NAMED: usize = 5;
 
 /// Runs the command.
-pub fn run(options: &Report) -> Ended {
-    let run = match read_run_of(&options.result, "report") {
-        Ok(run) => run,
-        Err(ended) => return ended,
-    };
-    if let Err(ended) = is_true(&run) {
-        return ended;
-    }
+pub fn run(options: &Report) -> Result<Ended, Ended> {
+    let run = read_run_of(&options.result, "report")?;
+    is_true(&run)?;
     let first = match run.which {
         Which::All => 0,
         Which::Rank(rank) => rank - 1,
@@ -33,20 +28,16 @@ pub fn run(options: &Report) -> Ended {
     let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
     let page = report_html(&run.record, first);
     let output = Output::new([&options.result], options.force);
-    if let Err(ended) = output.write(&[(&place, FileKind::Html, page.as_bytes())]) {
-        return ended;
-    }
+    output.write(&[(&place, FileKind::Html, page.as_bytes())])?;
     terminal::answer(&format!("{}\n", escaped(&place.display().to_string())));
-    Ended::Good
+    Ok(Ended::Good)
 }
 
 /// A report shows figures as they were proved by the record: one that is not true gets none.
 fn is_true(run: &Run) -> Result<(), Ended> {
     let shown = escaped(&run.named);
-    let mismatches = crate::judge::verify::verify(&run.record).map_err(|e| {
-        terminal::complain(&format!("{shown}: the recorded problem is none: {e}"));
-        Ended::Refused
-    })?;
+    let mismatches = crate::judge::verify::verify(&run.record)
+        .map_err(|e| refuse(format!("{shown}: the recorded problem is none: {e}")))?;
     if mismatches.is_empty() {
         return Ok(());
     }

@@ -1,15 +1,14 @@
 //! RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate,
 //! or a linkage file. Every command that takes one reads it here.
 
-use super::{Ended, terminal};
+use super::{Ended, refuse, refuse_at, terminal};
 pub use crate::app::given::{Given, NoCandidate, Run, Which};
-use crate::app::result_files;
-use crate::app::results_folder::{BUILDABLE, RECORD, read_record};
+use crate::app::job::files;
+use crate::app::job::folder::{BUILDABLE, RECORD, read_record};
 use crate::files::diagnostic::escaped;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::mechanism::Linkage;
-use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
 
 impl From<NoCandidate> for Ended {
@@ -19,21 +18,13 @@ impl From<NoCandidate> for Ended {
     }
 }
 
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
-}
-
 /// Reads what was given.
 ///
 /// # Errors
 /// [`Ended::Refused`]; what is wrong has been told.
 pub fn read(argument: &Path) -> Result<Given, Ended> {
     if is_linkage_file(argument) {
-        let file = linkage_file::load(argument).map_err(|diagnostic| {
-            terminal::diagnose(ReportKind::Error, &diagnostic);
-            Ended::Refused
-        })?;
+        let file = linkage_file::load(argument).map_err(refuse_at)?;
         return Ok(Given::Linkage(Box::new(file)));
     }
     read_run(argument).map(|run| Given::Run(Box::new(run)))
@@ -46,7 +37,7 @@ pub fn read(argument: &Path) -> Result<Given, Ended> {
 pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
     match read(argument)? {
         Given::Run(run) => Ok(*run),
-        Given::Linkage(_) => Err(refuse(&format!(
+        Given::Linkage(_) => Err(refuse(format!(
             "{} is a linkage without a run; {command} needs a result: a folder such as results/my-path, or its record.json",
             argument.display()
         ))),
@@ -60,17 +51,14 @@ pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
 /// [`Ended::Refused`]; what is wrong has been told. [`Ended::Bad`] for a result without any candidate.
 pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
     if is_linkage_file(argument) {
-        return linkage_file::load_any(argument).map_err(|diagnostic| {
-            terminal::diagnose(ReportKind::Error, &diagnostic);
-            Ended::Refused
-        });
+        return linkage_file::load_any(argument).map_err(refuse_at);
     }
     let run = read_run(argument)?;
     let chosen = run.one()?;
     let problem = &run.record.problem;
     Ok(AnyLinkageFile {
         // The name that its linkage file has.
-        name: result_files::linkage_name(&run.record, &chosen.suffix),
+        name: files::linkage_name(&run.record, &chosen.suffix),
         unit: problem.unit,
         linkage: Linkage::FourBar(chosen.candidate.linkage),
     })
@@ -97,21 +85,21 @@ fn read_run(argument: &Path) -> Result<Run, Ended> {
             Ok(rank) if rank >= 1 => (Path::new(folder), Which::Rank(rank)),
             _ if name == BUILDABLE => (Path::new(folder), Which::Buildable),
             _ => {
-                return Err(refuse(&format!(
+                return Err(refuse(format!(
                     "{shown}: after the colon stands a candidate's rank, from 1, or the word {BUILDABLE}"
                 )));
             }
         },
         _ => (argument, Which::All),
     };
-    let record = read_record(folder).map_err(|e| refuse(&e.to_string()))?;
+    let record = read_record(folder).map_err(refuse)?;
     let n = record.candidates.len();
     match which {
         Which::Rank(rank) if rank > n => {
-            return Err(refuse(&format!("{shown}: there is no candidate {rank}, the result has {n}")));
+            return Err(refuse(format!("{shown}: there is no candidate {rank}, the result has {n}")));
         }
         Which::Buildable if record.buildable.is_none() => {
-            return Err(refuse(&format!(
+            return Err(refuse(format!(
                 "{shown}: the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
             )));
         }

@@ -4,8 +4,9 @@ use super::arguments::Snap as Options;
 use super::output::Output;
 use super::result;
 use super::result::Given;
-use super::{Ended, build, interrupt, synth, terminal};
-use crate::app::results_folder::ResultsFolder;
+use super::{Ended, build, interrupt, refuse, refuse_at, terminal};
+use crate::app::job::files::{Timing, files};
+use crate::app::job::folder::ResultsFolder;
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
@@ -18,9 +19,8 @@ use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
 use crate::report::text::clean;
 use crate::synthesis::Budget;
-use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, StockError, own_curve, record, snap};
+use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, own_curve, record, snap};
 use crate::task::Problem;
-use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -28,16 +28,6 @@ use std::time::Instant;
 const MAX_PITCHES: u64 = 1 << 20;
 /// What is added to the name of what was snapped.
 const SUFFIX: &str = "-snapped";
-
-/// Runs the command.
-pub fn run(options: &Options) -> Ended {
-    inner(options).unwrap_or_else(|ended| ended)
-}
-
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
-}
 
 /// What is to be snapped, with its problem.
 struct Subject {
@@ -49,7 +39,8 @@ struct Subject {
     candidate: Candidate,
 }
 
-fn inner(options: &Options) -> Result<Ended, Ended> {
+/// Runs the command.
+pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
     let subject = subject(&options.result)?;
@@ -75,13 +66,13 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
             terminal::complain(&format!("{e}: nothing was written"));
             return Err(Ended::Interrupted);
         }
-        Err(e) => return Err(refuse(&e.to_string())),
+        Err(e) => return Err(refuse(e)),
     };
     let Some(best) = snapped.candidates.first() else { return Err(Ended::Bad) };
     let name = name::with_suffix(&name::legal(&subject.name, "linkage"), SUFFIX);
     let search_s = begun.elapsed().as_secs_f64();
-    let record = record(&subject.problem, &name, subject.source, subject.unit, &request, &snapped)
-        .map_err(|e| refuse(&e.to_string()))?;
+    let record =
+        record(&subject.problem, &name, subject.source, subject.unit, &request, &snapped).map_err(refuse)?;
     let written = write(options, &record, begun, search_s)?;
     terminal::answer(&format!("{}\n", subject.label));
     terminal::answer(&snap_text(&subject.candidate, &request, &snapped, subject.unit, terminal::colour()));
@@ -100,31 +91,27 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
 }
 
 fn stock(options: &Options) -> Result<Stock, Ended> {
-    let flag = |e: StockError| refuse(&e.to_string());
     if let Some(step) = options.grid {
-        return Stock::grid(step).map_err(flag);
+        return Stock::grid(step).map_err(refuse);
     }
     if let Some(lengths) = &options.lengths {
-        return Stock::list(lengths).map_err(flag);
+        return Stock::list(lengths).map_err(refuse);
     }
     let Some(path) = &options.pitches else { return Err(refuse("give --grid, --lengths or --pitches")) };
     let shown = path.display().to_string();
-    let unread = |e: &dyn std::fmt::Display| refuse(&format!("{}: {e}", escaped(&shown)));
+    let unread = |e: &dyn std::fmt::Display| refuse(format!("{}: {e}", escaped(&shown)));
     if std::fs::metadata(path).map_err(|e| unread(&e))?.len() > MAX_PITCHES {
         return Err(unread(&"a list of lengths of more than 1 MB is refused"));
     }
     let text = std::fs::read_to_string(path).map_err(|e| unread(&e))?;
-    Stock::parse(&text).map_err(|e| {
-        terminal::diagnose(ReportKind::Error, &Diagnostic::new(shown.clone(), "", e.to_string()));
-        Ended::Refused
-    })
+    Stock::parse(&text).map_err(|e| refuse_at(Box::new(Diagnostic::new(shown.clone(), "", e.to_string()))))
 }
 
 fn subject(path: &Path) -> Result<Subject, Ended> {
     match result::read(path)? {
         Given::Linkage(file) => {
             let (problem, candidate) = own_curve(&file.linkage).ok_or_else(|| {
-                refuse(&format!(
+                refuse(format!(
                     "{} cannot be assembled, so it has no curve to keep",
                     escaped(&path.display().to_string())
                 ))
@@ -136,11 +123,11 @@ fn subject(path: &Path) -> Result<Subject, Ended> {
             let chosen = run.one()?;
             let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
             let asked = run.record.problem;
-            let problem = Problem::new(asked.resolved).map_err(|e| refuse(&e.to_string()))?;
+            let problem = Problem::new(asked.resolved).map_err(refuse)?;
             if candidate.crank_deg.len() != problem.task().len()
                 || candidate.t1_at.len() != problem.task().len()
             {
-                return Err(refuse(&format!("{label} has no position for each of the target's points")));
+                return Err(refuse(format!("{label} has no position for each of the target's points")));
             }
             Ok(Subject {
                 label,
@@ -185,7 +172,6 @@ fn output(options: &Options) -> Output {
 
 /// Writes the record with everything that stands beside it, or the best linkage alone; where it is now.
 fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
-    let told = |e: &dyn std::fmt::Display| refuse(&e.to_string());
     if let Some(path) = linkage_place(options) {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
         let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
@@ -193,16 +179,16 @@ fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> R
         return Ok(path.to_path_buf());
     }
     let place = options.out.clone().unwrap_or_else(|| Path::new("results").join(&record.problem.name));
-    let mut folder = ResultsFolder::take(&place).map_err(|e| told(&e))?;
+    let mut folder = ResultsFolder::take(&place).map_err(refuse)?;
     let total_s = begun.elapsed().as_secs_f64();
-    let timing = synth::Timing {
+    let timing = Timing {
         search_s,
         beside_s: total_s - search_s,
         advice_s: None,
         total_s,
         threads: rayon::current_num_threads(),
     };
-    let files = synth::files(record, &timing).map_err(|e| told(&e))?;
-    folder.replace(&files).map_err(|e| told(&e))?;
+    let files = files(record, &timing).map_err(refuse)?;
+    folder.replace(&files).map_err(refuse)?;
     Ok(place)
 }

@@ -2,13 +2,11 @@
 
 use super::arguments::Studio;
 use super::inputs::RESULTS;
-use super::{Ended, interrupt, terminal};
+use super::{Ended, interrupt, refuse, refuse_at, terminal};
 use crate::app::studio;
 use crate::app::studio::StudioError;
 use crate::app::studio::messages::Ask;
-use crate::files::diagnostic::escaped;
 use crate::files::problem_file::load_any;
-use ariadne::ReportKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -16,21 +14,8 @@ use std::process::{Command, Stdio};
 const PORT: u16 = 8017;
 
 /// Runs the command.
-pub fn run(options: &Studio) -> Ended {
-    let beginning = match options.problem.as_deref().map(|path| (path, load_any(path, &[]))) {
-        None => None,
-        Some((_, Err(diagnostic))) => {
-            terminal::diagnose(ReportKind::Error, &diagnostic);
-            return Ended::Refused;
-        }
-        Some((path, Ok(problem))) => match Ask::of(&problem) {
-            Ok(ask) => Some(ask),
-            Err(why) => {
-                terminal::complain(&escaped(&format!("{}: {why}", path.display())));
-                return Ended::Refused;
-            }
-        },
-    };
+pub fn run(options: &Studio) -> Result<Ended, Ended> {
+    let beginning = options.problem.as_deref().map(beginning).transpose()?;
     let beginning = beginning.as_ref();
     let results = options.out.as_deref().unwrap_or(Path::new(RESULTS));
     let bound = match options.port {
@@ -41,26 +26,21 @@ pub fn run(options: &Studio) -> Ended {
             bound => bound,
         },
     };
-    let studio = match bound {
-        Ok(studio) => studio,
-        Err(e) => {
-            terminal::complain(&e.to_string());
-            return Ended::Refused;
-        }
-    };
+    let studio = bound.map_err(refuse)?;
     let address = studio.address();
     terminal::answer(&format!("{address}\n"));
     terminal::tell("The studio answers there until Ctrl-C ends it.");
     if !options.no_open {
         open(&address);
     }
-    match studio.serve(interrupt::watch("closing the studio")) {
-        Ok(()) => Ended::Good,
-        Err(e) => {
-            terminal::complain(&escaped(&e.to_string()));
-            Ended::Refused
-        }
-    }
+    studio.serve(interrupt::watch("closing the studio")).map_err(refuse)?;
+    Ok(Ended::Good)
+}
+
+/// Reads the problem that the page begins with.
+fn beginning(path: &Path) -> Result<Ask, Ended> {
+    let problem = load_any(path, &[]).map_err(refuse_at)?;
+    Ask::of(&problem).map_err(|why| refuse(format!("{}: {why}", path.display())))
 }
 
 /// Opens the address in the usual browser. Where there is none, the address is on the terminal.

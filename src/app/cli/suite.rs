@@ -1,9 +1,10 @@
 //! `suite`: problems whose answer is known, from many seeds.
 
 use super::arguments::Suite as Asked;
-use super::progress::SuiteShown;
-use super::{Ended, interrupt, terminal};
-use crate::app::results_folder::{OutputFile, Replace, check_files, write_files};
+use super::error::CommandError;
+use super::progress::Shown;
+use super::{Ended, interrupt, refuse, refuse_at, terminal};
+use crate::app::job::folder::{OutputFile, Replace, check_files, write_files};
 use crate::app::suite::{Options, Step, literature, suite};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
@@ -23,36 +24,28 @@ const PAGE: &str = "literature.md";
 const DATA: &str = "literature.json";
 
 /// Runs the command.
-pub fn run(asked: &Asked) -> Ended {
-    let Some(problems) = problems(asked) else { return Ended::Refused };
+pub fn run(asked: &Asked) -> Result<Ended, Ended> {
+    let problems = problems(asked)?;
     // The place is looked at before anything runs: one that cannot be written to costs no search.
-    let place = match asked.write.then(|| Place::take(Path::new(RESULTS), asked.force)).transpose() {
-        Ok(place) => place,
-        Err(e) => return refuse(&e),
-    };
+    let place = asked.write.then(|| Place::take(Path::new(RESULTS), asked.force)).transpose();
+    let place = place.map_err(refuse)?;
     let certify = asked.certify.then(CertifySpec::default);
     let options = Options { seeds: asked.seeds, command: command(asked), certify, ..Options::default() };
     let cancel = interrupt::watch("showing the runs that are over");
-    let shown = SuiteShown::new();
-    let outcome = suite(&problems, &options, cancel, &|step: &Step<'_>| shown.update(step));
+    let shown = Shown::of_suite();
+    let outcome = suite(&problems, &options, cancel, &|step: &Step<'_>| shown.suite(step));
     shown.finish();
-    let suite = match outcome {
-        Ok(suite) => suite,
-        Err(e) => return refuse(&e.to_string()),
-    };
-    let json = match serde_json::to_string_pretty(&suite) {
-        Ok(json) => json + "\n",
-        Err(e) => return refuse(&format!("the suite cannot be written as JSON: {e}")),
-    };
+    let suite = outcome.map_err(refuse)?;
+    let json = serde_json::to_string_pretty(&suite)
+        .map_err(|e| refuse(format!("the suite cannot be written as JSON: {e}")))?
+        + "\n";
     if asked.json {
         terminal::answer(&json);
     } else {
         terminal::answer(&suite_text(&suite, terminal::colour()));
     }
     if let Some(place) = place.filter(|_| suite.complete) {
-        if let Err(e) = place.write(&suite, &json) {
-            return refuse(&e);
-        }
+        place.write(&suite, &json).map_err(refuse)?;
         if !asked.json {
             terminal::answer(&format!("\n  Written to {RESULTS}/{PAGE} and {RESULTS}/{DATA}\n"));
         }
@@ -60,14 +53,9 @@ pub fn run(asked: &Asked) -> Ended {
     if !suite.complete {
         let more = if asked.write { "; nothing was written" } else { "" };
         terminal::tell(&format!("{}{more}", done(&suite, &options, problems.len())));
-        return Ended::Interrupted;
+        return Err(Ended::Interrupted);
     }
-    if suite.is_accepted() { Ended::Good } else { Ended::Bad }
-}
-
-fn refuse(text: &str) -> Ended {
-    terminal::complain(text);
-    Ended::Refused
+    Ok(if suite.is_accepted() { Ended::Good } else { Ended::Bad })
 }
 
 /// How far an interrupted suite came.
@@ -119,51 +107,36 @@ fn folder(asked: &Asked) -> Option<&Path> {
     asked.problems.as_deref().or_else(|| here.is_dir().then_some(here))
 }
 
-/// The problems of a folder, by file name; `None` after saying why there is none.
-fn of_folder(folder: &Path) -> Option<Named> {
-    let shown = escaped(&folder.display().to_string());
-    let files = match files(folder) {
-        Ok(files) => files,
-        Err(e) => {
-            let remedy =
-                "name another with --problems, or leave it out for the problems that linkwright has in it";
-            terminal::complain(&format!("the folder of problems {shown} cannot be read: {e}; {remedy}"));
-            return None;
-        }
-    };
+/// The problems of a folder, by file name.
+fn of_folder(folder: &Path) -> Result<Named, Ended> {
+    let files = files(folder).map_err(|e| {
+        let shown = escaped(&folder.display().to_string());
+        let remedy =
+            "name another with --problems, or leave it out for the problems that linkwright has in it";
+        refuse(format!("the folder of problems {shown} cannot be read: {e}; {remedy}"))
+    })?;
     let mut found = Vec::new();
-    let mut refused = false;
+    let mut refused = None;
     for path in files {
         match problem_file::load(&path, &[]) {
             Ok(problem) => {
                 let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
                 found.push((stem.unwrap_or_default(), problem));
             }
-            Err(diagnostic) => {
-                terminal::diagnose(ReportKind::Error, &diagnostic);
-                refused = true;
-            }
+            Err(diagnostic) => refused = Some(refuse_at(diagnostic)),
         }
     }
-    (!refused).then_some(found)
+    refused.map_or(Ok(found), Err)
 }
 
 /// The problems of the literature, which the program holds.
-fn built_in() -> Option<Named> {
-    match literature::problems() {
-        Ok(problems) => {
-            let stem = |name: &str| name.trim_end_matches(".toml").to_owned();
-            Some(problems.into_iter().map(|(name, problem)| (stem(name), problem)).collect())
-        }
-        Err(diagnostic) => {
-            terminal::diagnose(ReportKind::Error, &diagnostic);
-            None
-        }
-    }
+fn built_in() -> Result<Named, Ended> {
+    let problems = literature::problems().map_err(refuse_at)?.into_iter();
+    Ok(problems.map(|(name, problem)| (name.trim_end_matches(".toml").to_owned(), problem)).collect())
 }
 
-/// The problems that are asked for, by file name; `None` after saying why there is none.
-fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
+/// The problems that are asked for, by file name.
+fn problems(asked: &Asked) -> Result<Vec<ProblemFile>, Ended> {
     let folder = folder(asked);
     let shown = match folder {
         Some(folder) => escaped(&folder.display().to_string()),
@@ -172,25 +145,19 @@ fn problems(asked: &Asked) -> Option<Vec<ProblemFile>> {
     let mut known = folder.map_or_else(built_in, of_folder)?;
     known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
     if known.is_empty() {
-        terminal::complain(&format!("no problem in {shown} has an [expect] table with best_known_sum_sq"));
-        return None;
+        return Err(refuse(format!("no problem in {shown} has an [expect] table with best_known_sum_sq")));
     }
     let names: Vec<String> = known.iter().map(|(_, problem)| problem.name.clone()).collect();
     let filter = asked.filter.as_deref().unwrap_or_default();
     known.retain(|(stem, problem)| problem.name.contains(filter) || stem.contains(filter));
     if known.is_empty() {
         let names = names.join(", ");
-        terminal::complain(&format!("no problem in {shown} has {filter:?} in its name; there are {names}"));
-        return None;
+        return Err(refuse(format!("no problem in {shown} has {filter:?} in its name; there are {names}")));
     }
-    let mut problems = Vec::new();
-    for (_, problem) in known {
-        for warning in &problem.warnings {
-            terminal::diagnose(ReportKind::Warning, warning);
-        }
-        problems.push(problem);
+    for warning in known.iter().flat_map(|(_, problem)| &problem.warnings) {
+        terminal::diagnose(ReportKind::Warning, warning);
     }
-    Some(problems)
+    Ok(known.into_iter().map(|(_, problem)| problem).collect())
 }
 
 /// The TOML files of a folder, sorted.
@@ -216,22 +183,22 @@ struct Place {
 }
 
 impl Place {
-    fn take(folder: &Path, force: bool) -> Result<Self, String> {
+    fn take(folder: &Path, force: bool) -> Result<Self, CommandError> {
         let made = !folder.exists();
-        let shown = folder.display();
-        std::fs::create_dir_all(folder).map_err(|e| format!("{shown}: {e}"))?;
+        let path = || folder.display().to_string();
+        std::fs::create_dir_all(folder).map_err(|source| CommandError::Io { path: path(), source })?;
         let replace = if force { Replace::Anything } else { Replace::Ours(&[]) };
         let place = Place { folder: folder.into(), made, replace };
         let [data, page] = [DATA, PAGE].map(|name| folder.join(name));
-        check_files(&outputs((&data, ""), (&page, "")), replace).map_err(|e| e.to_string())?;
-        tempfile::tempfile_in(folder).map_err(|e| format!("{shown} cannot be written to: {e}"))?;
+        check_files(&outputs((&data, ""), (&page, "")), replace)?;
+        tempfile::tempfile_in(folder).map_err(|source| CommandError::NotWritable { path: path(), source })?;
         Ok(place)
     }
 
-    fn write(&self, suite: &Suite, json: &str) -> Result<(), String> {
+    fn write(&self, suite: &Suite, json: &str) -> Result<(), CommandError> {
         let page = suite_markdown(suite);
         let [data_at, page_at] = [DATA, PAGE].map(|name| self.folder.join(name));
-        write_files(&outputs((&data_at, json), (&page_at, &page)), self.replace).map_err(|e| e.to_string())
+        Ok(write_files(&outputs((&data_at, json), (&page_at, &page)), self.replace)?)
     }
 }
 

@@ -1,116 +1,94 @@
 //! `verify`: recompute a result.
 
 use super::arguments::Verify;
-use super::progress::{LINE_EVERY, Proving};
+use super::progress::Shown;
 use super::result;
 use super::result::Which;
-use super::{Ended, interrupt, terminal};
-use crate::app::results_folder::LEAVES;
+use super::{Ended, interrupt, refuse, terminal};
+use crate::app::job::folder::{LEAVES, read_at_most};
 use crate::files::diagnostic::escaped;
 use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
-use crate::judge::verify::{Checked, unchecked};
+use crate::judge::verify::{Checked, Mismatch, unchecked, verify, verify_certificate};
 use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
 use crate::report::table::COLUMNS;
 use crate::report::text::wrapped;
-use std::fs::File;
-use std::io::{self, Read};
+use std::fmt::Display;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 /// Runs the command: every record is looked at, whatever is wrong with those before it, and the gravest end is that of
 /// all. Ctrl-C ends it.
-pub fn run(options: &Verify) -> Ended {
+pub fn run(options: &Verify) -> Result<Ended, Ended> {
     let mut ended = Ended::Good;
     for path in &options.results {
-        let shown = escaped(&path.display().to_string());
-        let record = match result::read_run_of(path, "verify") {
-            Ok(run) if run.which == Which::All => run.record,
-            Ok(run) => {
-                terminal::complain(&format!(
-                    "{shown}: a record is verified as a whole; give {} alone",
-                    run.named
-                ));
-                ended = ended.max(Ended::Refused);
-                continue;
-            }
-            Err(refused) => {
-                ended = ended.max(refused);
-                continue;
-            }
-        };
-        let mut verified = crate::judge::verify::verify(&record);
-        if let (Ok(mismatches), true) = (&mut verified, options.certificate) {
-            if record.certificate.is_none() {
-                terminal::complain(&format!("{shown}: the record has no certificate; run certify first"));
-                ended = ended.max(Ended::Refused);
-                continue;
-            }
-            let mut proving = Proving::new(&record.problem.name, false);
-            let cancel = interrupt::watch("ending the check");
-            match crate::judge::verify::verify_certificate(&record, cancel, &mut |progress| {
-                proving.update(progress)
-            }) {
-                Ok(Some(more)) => mismatches.extend(more),
-                Ok(None) => return Ended::Interrupted,
-                Err(e) => {
-                    terminal::complain(&format!("{shown}: {e}"));
-                    ended = ended.max(Ended::Refused);
-                    continue;
-                }
-            }
-        }
-        let mut leaves = Ok(None);
-        if let (Ok(_), true) = (&verified, options.leaves) {
-            leaves = match check_leaves(path, &record) {
-                Ok(checked) => Ok(Some(checked)),
-                Err(Wrong::Told(Ended::Interrupted)) => return Ended::Interrupted,
-                Err(Wrong::Told(told)) => {
-                    ended = ended.max(told);
-                    continue;
-                }
-                Err(Wrong::Not(why)) => Err(why),
-            };
-        }
-        match verified {
-            Ok(mismatches) if mismatches.is_empty() && leaves.is_ok() => {
-                let n = record.candidates.len();
-                let word = if n == 1 { "candidate" } else { "candidates" };
-                terminal::answer(&format!(
-                    "{shown}: true. The figures and verdicts of {n} {word} were recomputed and agree.\n"
-                ));
-                terminal::answer(&limits_of(&record, options));
-                if options.certificate {
-                    terminal::answer(
-                        "  The certificate was worked out again: the same boxes, the same bound.\n",
-                    );
-                }
-                if let Ok(Some(CheckedLeaves { leaves, boxes })) = leaves {
-                    terminal::answer(&format!(
-                        "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, \
-                         {boxes} boxes.\n"
-                    ));
-                }
-            }
-            Ok(mismatches) => {
-                ended = ended.max(Ended::Bad);
-                let untrue = !mismatches.is_empty() || leaves.as_ref().is_err_and(CheckError::is_refuted);
-                terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
-                for mismatch in mismatches {
-                    terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
-                }
-                if let Err(why) = leaves {
-                    let file = escaped(&leaves_of(path).display().to_string());
-                    terminal::answer(&format!("  {file}: {}\n", escaped(&why.to_string())));
-                }
-            }
-            Err(e) => {
-                terminal::complain(&format!("{shown}: the recorded problem is none: {e}"));
-                ended = ended.max(Ended::Refused);
-            }
+        ended = ended.max(one(path, options).unwrap_or_else(|ended| ended));
+        if ended == Ended::Interrupted {
+            break;
         }
     }
-    ended
+    Ok(ended)
+}
+
+/// Recomputes one record and says how true it is.
+fn one(path: &Path, options: &Verify) -> Result<Ended, Ended> {
+    let shown = escaped(&path.display().to_string());
+    let run = result::read_run_of(path, "verify")?;
+    if run.which != Which::All {
+        return Err(refuse(format!("{shown}: a record is verified as a whole; give {} alone", run.named)));
+    }
+    let record = run.record;
+    let mut mismatches =
+        verify(&record).map_err(|e| refuse(format!("{shown}: the recorded problem is none: {e}")))?;
+    if options.certificate {
+        mismatches.extend(certificate_of(&shown, &record)?);
+    }
+    let leaves = if options.leaves { Some(check_leaves(path, &record)?) } else { None };
+    if mismatches.is_empty() && !matches!(leaves, Some(Err(_))) {
+        say_true(&shown, &record, options, leaves.and_then(Result::ok));
+        return Ok(Ended::Good);
+    }
+    let wrong = leaves.and_then(Result::err);
+    let untrue = !mismatches.is_empty() || wrong.as_ref().is_some_and(CheckError::is_refuted);
+    terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
+    for mismatch in mismatches {
+        terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
+    }
+    if let Some(why) = wrong {
+        let file = escaped(&leaves_of(path).display().to_string());
+        terminal::answer(&format!("  {file}: {}\n", escaped(&why.to_string())));
+    }
+    Ok(Ended::Bad)
+}
+
+/// Works out the certificate of a record again.
+fn certificate_of(shown: &str, record: &Record) -> Result<Vec<Mismatch>, Ended> {
+    if record.certificate.is_none() {
+        return Err(refuse(format!("{shown}: the record has no certificate; run certify first")));
+    }
+    let proving = Shown::of_proof(&record.problem.name, false);
+    let cancel = interrupt::watch("ending the check");
+    let found = verify_certificate(record, cancel, &mut |progress| proving.proof(progress));
+    found.map_err(|e| refuse(format!("{shown}: {e}")))?.ok_or(Ended::Interrupted)
+}
+
+/// Says of a true record how much of it was recomputed.
+fn say_true(shown: &str, record: &Record, options: &Verify, leaves: Option<CheckedLeaves>) {
+    let n = record.candidates.len();
+    let word = if n == 1 { "candidate" } else { "candidates" };
+    terminal::answer(&format!(
+        "{shown}: true. The figures and verdicts of {n} {word} were recomputed and agree.\n"
+    ));
+    terminal::answer(&limits_of(record, options));
+    if options.certificate {
+        terminal::answer("  The certificate was worked out again: the same boxes, the same bound.\n");
+    }
+    if let Some(CheckedLeaves { leaves, boxes }) = leaves {
+        terminal::answer(&format!(
+            "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, {boxes} \
+             boxes.\n"
+        ));
+    }
 }
 
 /// The keys of a record that were not recomputed, in words.
@@ -140,59 +118,33 @@ fn limits_of(record: &Record, options: &Verify) -> String {
     text
 }
 
-/// Why leaves prove nothing.
-enum Wrong {
-    /// It has been told.
-    Told(Ended),
-    /// They do not prove the certificate.
-    Not(CheckError),
-}
-
 /// The file of leaves beside a record.
 fn leaves_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) }
 }
 
-/// Checks the leaves of a record's certificate, which lie beside it.
-fn check_leaves(path: &Path, record: &Record) -> Result<CheckedLeaves, Wrong> {
-    let refuse = |file: &Path, text: &str| {
-        terminal::complain(&format!("{}: {text}", escaped(&file.display().to_string())));
-        Wrong::Told(Ended::Refused)
-    };
+/// Checks the leaves of a record's certificate, which lie beside it; the inner error is that they do not prove it.
+fn check_leaves(path: &Path, record: &Record) -> Result<Result<CheckedLeaves, CheckError>, Ended> {
+    let refused =
+        |file: &Path, why: &dyn Display| refuse(format!("{}: {why}", escaped(&file.display().to_string())));
     let recorded = record
         .certificate
         .as_ref()
-        .ok_or_else(|| refuse(path, "the record has no certificate; run certify with --leaves first"))?;
+        .ok_or_else(|| refused(path, &"the record has no certificate; run certify with --leaves first"))?;
     let file = leaves_of(path);
-    let mut bytes = Vec::new();
-    let read = File::open(&file).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
-    read.map_err(|e| match e.kind() {
-        io::ErrorKind::NotFound => refuse(&file, "there are no leaves; run certify with --leaves first"),
-        _ => refuse(&file, &e.to_string()),
+    let read = read_at_most(&file, MAX_BYTES).map_err(|e| match e.kind() {
+        io::ErrorKind::NotFound => refused(&file, &"there are no leaves; run certify with --leaves first"),
+        _ => refused(&file, &e),
     })?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(refuse(&file, &format!("leaves have at most {MAX_BYTES} bytes")));
-    }
+    let bytes = read.ok_or_else(|| refused(&file, &format!("leaves have at most {MAX_BYTES} bytes")))?;
     let cancel = interrupt::watch("ending the check");
-    let begun = Instant::now();
-    let mut last = begun;
-    let mut tell = |checked: &CheckedLeaves| {
-        if last.elapsed() >= LINE_EVERY {
-            last = Instant::now();
-            let seconds = begun.elapsed().as_secs_f64();
-            terminal::tell(&format!(
-                "{}: {seconds:.0} s: {} leaves checked",
-                escaped(&file.display().to_string()),
-                checked.leaves
-            ));
+    let (shown, named) = (Shown::of_proof("", false), escaped(&file.display().to_string()));
+    match check(record, recorded, &bytes, cancel, &mut |checked| shown.leaves(&named, checked.leaves)) {
+        Err(CheckError::NoCertificate(e)) => Err(refused(path, &e)),
+        Err(CheckError::Leaves(e @ (LeavesError::Foreign | LeavesError::Version { .. }))) => {
+            Err(refused(&file, &e))
         }
-    };
-    check(record, recorded, &bytes, cancel, &mut tell).map_err(|e| match e {
-        CheckError::NoCertificate(e) => refuse(path, &e.to_string()),
-        CheckError::Leaves(e @ (LeavesError::Foreign | LeavesError::Version { .. })) => {
-            refuse(&file, &e.to_string())
-        }
-        CheckError::Stopped => Wrong::Told(Ended::Interrupted),
-        wrong => Wrong::Not(wrong),
-    })
+        Err(CheckError::Stopped) => Err(Ended::Interrupted),
+        checked => Ok(checked),
+    }
 }

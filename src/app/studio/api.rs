@@ -2,13 +2,13 @@
 //! and checked here and answered by the room that knows; the work is done on threads of its own, few at once.
 
 use super::details::{CompareAsk, DetailsAsk, ExportAsk, Handed, Sources};
-use super::job_messages::JobAsk;
-use super::jobs::{Refusal, absent};
+use super::house::{House, json, refused};
+use super::job_messages::{JobAsk, Opened};
+use super::jobs::Refusal;
 use super::messages::{Ask, Shown};
 use super::openapi::document;
-use super::server::{House, json, refused};
+use super::shelf::ShelfError;
 use crate::files::problem_file::ProblemFile;
-use crate::mechanism::Unit;
 use crate::record::Record;
 use axum::Router;
 use axum::body::Bytes;
@@ -16,37 +16,13 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
-use schemars::JsonSchema;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use std::fmt::Display;
 use std::sync::Arc;
 
 /// Requests that are worked on at once; more wait, and not for long.
 pub(super) const AT_ONCE: usize = 2;
-
-/// A saved result, opened.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Opened {
-    /// What to ask for the same in a tab, where a tab can hold it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ask: Option<Ask>,
-    /// Why it cannot, in words.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub why_not: Option<String>,
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
-    /// The candidates, better first.
-    pub candidates: Vec<Shown>,
-    /// The names of the result's files.
-    pub files: Vec<String>,
-}
 
 pub(super) fn routes() -> Router<Arc<House>> {
     Router::new()
@@ -85,26 +61,43 @@ fn written(what: &impl Serialize) -> Response {
     }
 }
 
-fn read<T: DeserializeOwned>(body: &[u8]) -> Result<T, Box<Response>> {
-    serde_json::from_slice(body).map_err(|e| Box::new(refused(format!("this cannot be read: {e}"))))
+/// Answers what the body of a request asks.
+async fn asked<T: DeserializeOwned>(
+    house: Arc<House>,
+    body: Bytes,
+    answer: impl FnOnce(&House, T) -> Response + Send + 'static,
+) -> Response {
+    worked(house, move |house| match serde_json::from_slice(&body) {
+        Err(e) => refused(format!("this cannot be read: {e}")),
+        Ok(ask) => answer(house, ask),
+    })
+    .await
 }
 
 impl IntoResponse for Refusal {
     fn into_response(self) -> Response {
-        let (status, why) = match self {
-            Refusal::Absent(why) => (StatusCode::NOT_FOUND, why),
-            Refusal::Conflict(why) => (StatusCode::CONFLICT, why),
-            Refusal::Bad(why) => (StatusCode::UNPROCESSABLE_ENTITY, why),
-            Refusal::Busy(why) => (StatusCode::SERVICE_UNAVAILABLE, why),
+        let status = match self {
+            Refusal::Absent(_) | Refusal::NotRunning(_) | Refusal::Name(_) => StatusCode::NOT_FOUND,
+            Refusal::Taken(_)
+            | Refusal::OtherResult { .. }
+            | Refusal::Unreadable(_)
+            | Refusal::Running(_)
+            | Refusal::InUse(_) => StatusCode::CONFLICT,
+            Refusal::Ask(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            Refusal::Closing | Refusal::TooMany | Refusal::NotBegun(_) => StatusCode::SERVICE_UNAVAILABLE,
         };
-        (status, why + "\n").into_response()
+        (status, format!("{self}\n")).into_response()
     }
+}
+
+fn no_such(why: impl Display) -> Response {
+    (StatusCode::NOT_FOUND, format!("{why}\n")).into_response()
 }
 
 /// A file, to be saved: nothing that stands in it is shown or run as a part of the studio.
 fn handed(file: Handed) -> Response {
     let name = format!("attachment; filename=\"linkage.{}\"", file.ending);
-    let mut response = ([(header::CONTENT_TYPE, file.kind)], file.bytes).into_response();
+    let mut response = ([(header::CONTENT_TYPE, file.media_type())], file.bytes).into_response();
     if let Ok(value) = HeaderValue::from_str(&name) {
         response.headers_mut().insert(header::CONTENT_DISPOSITION, value);
     }
@@ -119,7 +112,7 @@ async fn list(State(house): State<Arc<House>>) -> Response {
 fn told(house: &House, name: &str, status: StatusCode) -> Response {
     match house.jobs.one(name) {
         Some(job) => (status, written(&job)).into_response(),
-        None => absent(name).into_response(),
+        None => Refusal::Absent(name.to_owned()).into_response(),
     }
 }
 
@@ -128,12 +121,9 @@ async fn one(State(house): State<Arc<House>>, Path(name): Path<String>) -> Respo
 }
 
 async fn start(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<JobAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => match house.jobs.start(&ask) {
-            Ok(name) => told(house, &name, StatusCode::CREATED),
-            Err(refusal) => refusal.into_response(),
-        },
+    asked(house, body, |house, ask: JobAsk| match house.jobs.start(&ask) {
+        Ok(name) => told(house, &name, StatusCode::CREATED),
+        Err(refusal) => refusal.into_response(),
     })
     .await
 }
@@ -158,7 +148,7 @@ async fn opened(State(house): State<Arc<House>>, Path(name): Path<String>) -> Re
     worked(house, move |house| {
         let shelf = house.jobs.shelf();
         match shelf.record(&name) {
-            Err(why) if shelf.place(&name).is_none() => Refusal::Absent(why).into_response(),
+            Err(why @ ShelfError::Absent(_)) => no_such(why),
             Err(why) => refused(why),
             Ok(record) => written(&opened_of(record, shelf.files(&name))),
         }
@@ -187,48 +177,32 @@ fn opened_of(record: Record, files: Vec<String>) -> Opened {
 
 async fn file(State(house): State<Arc<House>>, Path((name, file)): Path<(String, String)>) -> Response {
     worked(house, move |house| match house.jobs.shelf().file(&name, &file) {
-        None => Refusal::Absent(format!("there is no file {file} of a result named {name}")).into_response(),
+        None => no_such(format!("there is no file {file} of a result named {name}")),
         Some(bytes) => {
-            let (kind, ending) = match file.rsplit_once('.').map_or("", |(_, ending)| ending) {
-                "json" => ("application/json", "json"),
-                "csv" => ("text/csv; charset=utf-8", "csv"),
-                "svg" => ("image/svg+xml", "svg"),
-                "toml" => ("application/toml; charset=utf-8", "toml"),
-                "html" => ("text/html; charset=utf-8", "html"),
-                _ => ("application/octet-stream", "bin"),
-            };
-            handed(Handed { kind, ending, bytes })
+            let given = file.rsplit_once('.').map_or("", |(_, ending)| ending);
+            let ending = ["json", "csv", "svg", "toml", "html"].into_iter().find(|ending| *ending == given);
+            handed(Handed { ending: ending.unwrap_or("bin"), bytes })
         }
     })
     .await
 }
 
 async fn details(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<DetailsAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => house.sources().details(&ask).map_or_else(refused, |details| written(&details)),
-    })
-    .await
+    let answer = |house: &House, ask: DetailsAsk| {
+        house.sources().details(&ask).map_or_else(refused, |details| written(&details))
+    };
+    asked(house, body, answer).await
 }
 
 async fn export(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<ExportAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => house.sources().file(&ask).map_or_else(refused, handed),
-    })
-    .await
+    asked(house, body, |house, ask: ExportAsk| house.sources().file(&ask).map_or_else(refused, handed)).await
 }
 
 async fn compare(State(house): State<Arc<House>>, body: Bytes) -> Response {
-    worked(house, move |house| match read::<CompareAsk>(&body) {
-        Err(response) => *response,
-        Ok(ask) => match house.sources().compared(&ask) {
-            Ok(Handed { kind: "application/json", bytes, .. }) => {
-                json(String::from_utf8_lossy(&bytes).into_owned())
-            }
-            Ok(file) => handed(file),
-            Err(why) => refused(why),
-        },
+    asked(house, body, |house, ask: CompareAsk| match house.sources().compared(&ask) {
+        Ok(Handed { ending: "json", bytes }) => json(String::from_utf8_lossy(&bytes).into_owned()),
+        Ok(file) => handed(file),
+        Err(why) => refused(why),
     })
     .await
 }

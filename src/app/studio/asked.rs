@@ -1,14 +1,16 @@
 //! What a tab asks as the text of a problem file, and a problem file as what a tab asks.
 
 use super::messages::{Ask, Known};
+use crate::files::diagnostic::Diagnostic;
 use crate::files::problem_file;
-use crate::files::problem_file::{Expect, ProblemFile};
+use crate::files::problem_file::ProblemFile;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
+use crate::task::{AngleOffset, TaskError};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::{self, Display, Write};
+use std::fmt::{self, Display};
 
 /// The most points of a target in the studio.
 pub const MOST_POINTS: usize = 1000;
@@ -31,110 +33,208 @@ pub enum NotHere {
     Other(String),
 }
 
-/// A number as problem files have it.
-struct Typed(f64);
+/// The reason why a message or a text asks no problem.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AskError {
+    /// Too few points or too many in an edit.
+    #[error("a target has {FEWEST_POINTS} to {MOST_POINTS} points here, and this one has {0}")]
+    Points(usize),
+    /// Too many points in the text of a problem.
+    #[error("at most {MOST_POINTS} points: this target has more")]
+    TooManyPoints,
+    /// Too few samples along a drawing or too many.
+    #[error("{0} points along a drawing: 3 to {MOST_POINTS} can be taken")]
+    Samples(usize),
+    /// The seed is too large for a problem file.
+    #[error("the seed is at most {}", i64::MAX)]
+    Seed,
+    /// A key is kept that is under none of `design`, `require` and `solve`.
+    #[error("{0:.60} cannot be kept: keys under design, require and solve can")]
+    KeptKey(String),
+    /// A key is kept with a text that is no single value.
+    #[error("{key} is kept with a value that is none of a problem file: {text:.60}")]
+    KeptValue {
+        /// The key.
+        key: String,
+        /// The text.
+        text: String,
+    },
+    /// The edit cannot be written as a problem file.
+    #[error(transparent)]
+    NotWritten(#[from] toml::ser::Error),
+    /// The problem of an edit is invalid; it has no lines.
+    #[error("{}", without_line(.0))]
+    Problem(Box<Diagnostic>),
+    /// A text is invalid.
+    #[error("{}", said(.0))]
+    Text(Box<Diagnostic>),
+    /// The task is invalid.
+    #[error(transparent)]
+    Task(#[from] TaskError),
+    /// The studio cannot hold the problem of a text.
+    #[error(transparent)]
+    NotHere(#[from] NotHere),
+    /// A job is asked for by an edit and by a text, or by neither.
+    #[error("give either `ask` or `problem`")]
+    NotOne,
+    /// A key is set that is not under `solve`.
+    #[error("`set` takes keys of [solve] such as solve.evaluations, not {0:?}")]
+    Set(String),
+}
 
-impl Display for Typed {
+/// `line 3: the cell of y is empty: give its value or leave the row out`
+pub(super) fn said(diagnostic: &Diagnostic) -> String {
+    let line = diagnostic.line_column().map_or(String::new(), |(line, _)| format!("line {line}: "));
+    line + &without_line(diagnostic)
+}
+
+fn without_line(Diagnostic { message, help, .. }: &Diagnostic) -> String {
+    help.as_ref().map_or_else(|| message.clone(), |help| format!("{message}: {help}"))
+}
+
+/// The tables of a problem file in the order in which they are written, each with its keys: the key of an [`Ask`] and that
+/// of the file.
+const TABLES: [(&str, &[(&str, &str)]); 6] = [
+    ("", &[("name", "name"), ("source", "source"), ("unit", "unit")]),
+    (
+        "task.path",
+        &[
+            ("points", "points"),
+            ("closed", "closed"),
+            ("raw.smooth", "smooth"),
+            ("raw.samples", "samples"),
+            ("tolerances", "tolerance"),
+            ("tolerance", "tolerance"),
+            ("weights", "weight"),
+        ],
+    ),
+    ("task.path.timing", &[("timing.crank_deg", "crank_deg"), ("timing.offset", "offset")]),
+    ("design", &[]),
+    (
+        "require",
+        &[
+            ("types", "type"),
+            ("transmission_deg_min", "transmission_deg_min"),
+            ("link_ratio_max", "link_ratio_max"),
+            ("pivots_in", "pivots_in"),
+            ("footprint_in", "footprint_in"),
+            ("transmission_over", "transmission_over"),
+            ("order", "order"),
+            ("direction", "direction"),
+            ("circuit", "circuit"),
+            ("branch", "branch"),
+            ("closing", "closing"),
+        ],
+    ),
+    ("solve", &[("seed", "seed"), ("method", "method"), ("objective", "objective")]),
+];
+
+/// A value as it is typed in problem files, points one a line.
+struct Typed<'a>(&'a toml::Value);
+
+impl Display for Typed<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let size = self.0.abs();
-        // Long whole numbers are integers to TOML, and do not fit.
-        if size != 0.0 && !(1e-6..1e15).contains(&size) {
-            write!(f, "{:e}", self.0)
-        } else {
-            write!(f, "{}", self.0)
+        match self.0 {
+            // Long whole numbers are integers to TOML, and do not fit.
+            toml::Value::Float(number) if *number != 0.0 && !(1e-6..1e15).contains(&number.abs()) => {
+                write!(f, "{number:e}")
+            }
+            toml::Value::Float(number) => write!(f, "{number}"),
+            toml::Value::Array(list) if list.iter().any(toml::Value::is_array) => {
+                let lines: String = list.iter().map(|item| format!("    {},\n", Typed(item))).collect();
+                write!(f, "[\n{lines}]")
+            }
+            toml::Value::Array(list) => {
+                let items: Vec<String> = list.iter().map(|item| Typed(item).to_string()).collect();
+                write!(f, "[{}]", items.join(", "))
+            }
+            other => write!(f, "{other}"),
         }
     }
 }
 
-/// `[1, 2]`
-fn list(values: &[f64]) -> String {
-    let values: Vec<String> = values.iter().map(|value| Typed(*value).to_string()).collect();
-    format!("[{}]", values.join(", "))
-}
-
-fn quoted(text: &str) -> String {
-    toml::Value::String(text.to_owned()).to_string()
-}
-
-/// A value that is not the default, as it is typed.
-fn typed<T: Serialize + PartialEq>(value: &T, default: &T) -> Option<String> {
-    let value = (value != default).then(|| toml::Value::try_from(value).ok())?;
-    value.map(|value| value.to_string())
-}
-
 /// One value of TOML, written anew: a text that holds more than one, or none, is refused.
-fn one_value(key: &str, text: &str) -> Result<String, String> {
+fn one_value(key: &str, text: &str) -> Result<String, AskError> {
     let parsed: Result<toml::Table, _> = format!("value = {text}").parse();
-    match parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value")) {
-        Some(value) => Ok(value.to_string()),
-        None => Err(format!("{key} is kept with a value that is none of a problem file: {text:.60}")),
-    }
+    let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
+    let refused = || AskError::KeptValue { key: key.to_owned(), text: text.to_owned() };
+    value.map(|value| value.to_string()).ok_or_else(refused)
 }
 
 impl Ask {
     /// The text of the problem file that asks the same.
     ///
     /// # Errors
-    /// What of [`kept`](Ask::kept) is no key and value under `design`, `require` or `solve`, in words.
-    pub fn problem_text(&self) -> Result<String, String> {
-        let mut text =
-            format!("# Drawn in linkwright's studio.\nformat = 1\nname = {}\n", quoted(&self.name));
-        let [design, require, solve] = self.kept_lines()?;
-        // Writing to a String cannot fail.
-        let _ = self.write_head(&mut text);
-        let _ = self.write_path(&mut text);
-        if !design.is_empty() {
-            text.push_str(&format!("\n[design]\n{design}"));
+    /// [`AskError`] where a part of it cannot be written there, as of [`kept`](Ask::kept) any but keys and values under
+    /// `design`, `require` and `solve`.
+    pub fn problem_text(&self) -> Result<String, AskError> {
+        let kept = self.kept_lines()?;
+        let given = self.as_table()?;
+        let mut text = String::from("# Drawn in linkwright's studio.\nformat = 1\n");
+        for (table, keys) in TABLES {
+            let typed = keys.iter().filter_map(|(asked, key)| {
+                let mut parts = asked.split('.');
+                let first = given.get(parts.next()?)?;
+                let value = parts.try_fold(first, |value, part| value.get(part))?;
+                Some(format!("{key} = {}\n", Typed(value)))
+            });
+            let kept = kept.iter().filter(|(place, _)| *place == table).map(|(_, line)| line.clone());
+            let lines: String = typed.chain(kept).collect();
+            if !table.is_empty() && (!lines.is_empty() || table == "require") {
+                text.push_str(&format!("\n[{table}]\n"));
+            }
+            text.push_str(&lines);
         }
-        let _ = self.write_require(&mut text);
-        text.push_str(&require);
-        let _ = self.write_solve(&mut text);
-        text.push_str(&solve);
         if let Some(expect) = self.expect_text(&text) {
             text.push_str(&expect);
         }
         Ok(text)
     }
 
+    /// The edit as data, without values that a problem file need not give.
+    fn as_table(&self) -> Result<toml::Table, toml::ser::Error> {
+        let raw = self.raw_of_points();
+        let asked = Ask {
+            version: 0,
+            points: raw.map_or(&self.points, |raw| &raw.points).clone(),
+            raw: raw.cloned(),
+            tolerance: self.tolerance.filter(|_| self.tolerances.is_none()),
+            ..self.clone()
+        };
+        let mut table = toml::Table::try_from(&asked)?;
+        if asked.types.is_empty() {
+            table.remove("types");
+        }
+        if asked.timing.is_some_and(|timing| timing.offset == AngleOffset::default())
+            && let Some(timing) = table.get_mut("timing").and_then(toml::Value::as_table_mut)
+        {
+            timing.remove("offset");
+        }
+        Ok(table)
+    }
+
     /// What is known of the answer, where `text` asks the problem that it is known of.
     fn expect_text(&self, text: &str) -> Option<String> {
-        #[derive(Serialize)]
-        struct Table<'a> {
-            expect: &'a Expect,
-        }
         let known = self.expect.as_ref()?;
         let asked = problem_file::parse("drawing", text, None, &[]).ok()?;
-        let table = Table { expect: &known.answer };
+        let table = BTreeMap::from([("expect", &known.answer)]);
         let text = (told(&asked.spec) == known.of).then(|| toml::to_string(&table).ok())??;
         Some(format!("\n{text}"))
     }
 
-    /// The lines of what is kept, under `design`, under `require` and under `solve`.
-    fn kept_lines(&self) -> Result<[String; 3], String> {
-        let mut lines = [const { String::new() }; 3];
-        for (key, value) in &self.kept {
-            let plain = |key: &str| {
-                !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
-            };
-            let tables = [(0, "design."), (1, "require."), (2, "solve.")];
-            let mut within =
-                tables.iter().filter_map(|(place, table)| Some((*place, key.strip_prefix(table)?)));
-            let Some((place, rest)) = within.next().filter(|(_, rest)| plain(rest)) else {
-                return Err(format!("{key:.60} cannot be kept: keys under design, require and solve can"));
-            };
-            lines[place].push_str(&format!("{rest} = {}\n", one_value(key, value)?));
-        }
-        Ok(lines)
-    }
-
-    fn write_head(&self, text: &mut String) -> fmt::Result {
-        if let Some(source) = &self.source {
-            writeln!(text, "source = {}", quoted(source))?;
-        }
-        if let Some(unit) = self.unit {
-            writeln!(text, "unit = \"{}\"", unit.label())?;
-        }
-        Ok(())
+    /// The lines of what is kept, each with its table.
+    fn kept_lines(&self) -> Result<Vec<(&'static str, String)>, AskError> {
+        let plain = |key: &&str| {
+            !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
+        };
+        let line = |(key, value): (&String, &String)| {
+            let mut places = ["design", "require", "solve"].into_iter();
+            let found = places.find_map(|table| Some((table, key.strip_prefix(table)?.strip_prefix('.')?)));
+            let (table, rest) =
+                found.filter(|(_, rest)| plain(rest)).ok_or_else(|| AskError::KeptKey(key.clone()))?;
+            Ok((table, format!("{rest} = {}\n", one_value(key, value)?)))
+        };
+        self.kept.iter().map(line).collect()
     }
 
     /// What the points were made from, where they still are.
@@ -148,99 +248,29 @@ impl Ask {
         self.raw.as_ref().filter(within).filter(|raw| raw.target(self.closed) == self.points)
     }
 
-    fn write_path(&self, text: &mut String) -> fmt::Result {
-        let raw = self.raw_of_points();
-        writeln!(text, "\n[task.path]\npoints = [")?;
-        for point in raw.map_or(&self.points, |raw| &raw.points) {
-            writeln!(text, "    {},", list(point))?;
-        }
-        writeln!(text, "]\nclosed = {}", self.closed)?;
-        if let Some(smooth) = raw.and_then(|raw| raw.smooth) {
-            writeln!(text, "smooth = {}", Typed(smooth))?;
-        }
-        if let Some(samples) = raw.and_then(|raw| raw.samples) {
-            writeln!(text, "samples = {samples}")?;
-        }
-        match (&self.tolerances, self.tolerance) {
-            (Some(each), _) => writeln!(text, "tolerance = {}", list(each))?,
-            (None, Some(tolerance)) => writeln!(text, "tolerance = {}", Typed(tolerance))?,
-            (None, None) => {}
-        }
-        if let Some(weights) = &self.weights {
-            writeln!(text, "weight = {}", list(weights))?;
-        }
-        if let Some(timing) = &self.timing {
-            writeln!(text, "\n[task.path.timing]\ncrank_deg = {}", list(&timing.crank_deg))?;
-            if let Some(offset) = typed(&timing.offset, &Default::default()) {
-                writeln!(text, "offset = {offset}")?;
-            }
-        }
-        Ok(())
-    }
-
-    fn write_require(&self, text: &mut String) -> fmt::Result {
-        writeln!(text, "\n[require]")?;
-        if !self.types.is_empty() {
-            let names: Vec<_> = self.types.iter().map(|t| format!("\"{}\"", t.name())).collect();
-            writeln!(text, "type = [{}]", names.join(", "))?;
-        }
-        let numbers =
-            [("transmission_deg_min", self.transmission_deg_min), ("link_ratio_max", self.link_ratio_max)];
-        for (key, value) in numbers {
-            if let Some(value) = value {
-                writeln!(text, "{key} = {}", Typed(value))?;
-            }
-        }
-        for (key, corners) in [("pivots_in", self.pivots_in), ("footprint_in", self.footprint_in)] {
-            if let Some(corners) = corners {
-                writeln!(text, "{key} = {}", list(&corners))?;
-            }
-        }
-        let words = [
-            ("transmission_over", typed(&self.transmission_over, &None)),
-            ("order", typed(&self.order, &Default::default())),
-            ("direction", typed(&self.direction, &Default::default())),
-            ("circuit", typed(&self.circuit, &Default::default())),
-            ("branch", typed(&self.branch, &Default::default())),
-            ("closing", typed(&self.closing, &Default::default())),
-        ];
-        for (key, word) in words {
-            if let Some(word) = word {
-                writeln!(text, "{key} = {word}")?;
-            }
-        }
-        Ok(())
-    }
-
-    fn write_solve(&self, text: &mut String) -> fmt::Result {
-        writeln!(text, "\n[solve]\nseed = {}", self.seed)?;
-        if let Some(method) = typed(&self.method, &Default::default()) {
-            writeln!(text, "method = {method}")?;
-        }
-        if let Some(objective) = typed(&self.objective, &Default::default()) {
-            writeln!(text, "objective = {objective}")?;
-        }
-        Ok(())
-    }
-
     /// The problem that is asked, read as every problem file is.
     ///
     /// # Errors
-    /// What is wrong with it, in words.
-    pub fn problem(&self) -> Result<ProblemFile, String> {
+    /// [`AskError`].
+    pub fn problem(&self) -> Result<ProblemFile, AskError> {
+        self.problem_with_text().map(|(problem, _)| problem)
+    }
+
+    /// The problem that is asked, with the text of its file.
+    ///
+    /// # Errors
+    /// [`AskError`].
+    pub fn problem_with_text(&self) -> Result<(ProblemFile, String), AskError> {
         let n = self.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
-            return Err(format!(
-                "a target has {FEWEST_POINTS} to {MOST_POINTS} points here, and this one has {n}"
-            ));
+            return Err(AskError::Points(n));
         }
         if self.seed > i64::MAX as u64 {
-            return Err(format!("the seed is at most {}", i64::MAX));
+            return Err(AskError::Seed);
         }
-        problem_file::parse("drawing", &self.problem_text()?, None, &[]).map_err(|e| match &e.help {
-            Some(help) => format!("{}: {help}", e.message),
-            None => e.message.clone(),
-        })
+        let text = self.problem_text()?;
+        let problem = problem_file::parse("drawing", &text, None, &[]).map_err(AskError::Problem)?;
+        Ok((problem, text))
     }
 
     /// What to ask for a problem: everything that its file says.
@@ -299,7 +329,7 @@ impl Ask {
             // Digitised points that are too many to be carried along: what was made of them is the target all the same.
             Ok(again) if without_raw(&again.spec) == without_raw(&problem.spec) => Ok(ask),
             Ok(_) => Err(NotHere::Other("it is another when it is read back".into())),
-            Err(why) => Err(NotHere::Other(why)),
+            Err(why) => Err(NotHere::Other(why.to_string())),
         }
     }
 }
@@ -516,7 +546,7 @@ mod tests {
     #[test]
     fn numbers_of_any_size_come_back() {
         for value in [0.0, -0.0, 1.5, 1e-7, -3e11, 1e12 / 3.0, 5e-324, 123_456_789.125] {
-            let text = format!("x = {}", Typed(value));
+            let text = format!("x = {}", Typed(&value.into()));
             let table: toml::Table = text.parse().expect("TOML");
             let again = table["x"].as_float().or_else(|| table["x"].as_integer().map(|i| i as f64));
             assert_eq!(again, Some(value), "{text}");

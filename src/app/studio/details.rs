@@ -1,20 +1,20 @@
 //! Everything that is known of one linkage: of a saved result, or as it stands under the hand. Details, files and
 //! comparisons are made from the record that it belongs to, by the functions that the command line calls.
 
+use super::asked::AskError;
 use super::messages::{Ask, Shown};
+use super::shelf::{Shelf, ShelfError};
 use crate::app::given::{Given, Run, Which};
+use crate::app::job::run::Job;
 use crate::app::measured::{NotCompared, compared};
-use crate::app::studio::shelf::Shelf;
-use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::{assess, to_raw};
-use crate::judge::verify::verify;
+use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::Unit;
-use crate::mechanism::{AssemblyMode, FourBar, NaturalCoordinates};
-use crate::record::digest::digest;
-use crate::record::{Candidate, Evaluations, FORMAT, MethodRecord, ProblemRecord, Reason, Record};
-use crate::record::{Termination, Tool};
-use crate::report::compare::SortKey;
-use crate::report::export::{Format, Settings, Subject, export};
+use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
+use crate::record::digest::ProblemError;
+use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
+use crate::report::compare::{SortKey, UnknownKey};
+use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, export};
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
 use crate::synthesis::errors_without;
@@ -151,12 +151,30 @@ pub enum Form {
 
 /// A file to hand out.
 pub(super) struct Handed {
-    /// Its media type.
-    pub(super) kind: &'static str,
     /// What stands after the dot of its name.
     pub(super) ending: &'static str,
     /// Its bytes.
     pub(super) bytes: Vec<u8>,
+}
+
+impl Handed {
+    /// Its media type.
+    pub(super) fn media_type(&self) -> &'static str {
+        match self.ending {
+            "csv" => "text/csv; charset=utf-8",
+            "dxf" => "image/vnd.dxf",
+            "gif" => "image/gif",
+            "html" => "text/html; charset=utf-8",
+            "json" => "application/json",
+            "png" => "image/png",
+            "scad" => "application/x-openscad",
+            "stl" => "model/stl",
+            "svg" => "image/svg+xml",
+            "toml" => "application/toml; charset=utf-8",
+            "txt" => "text/plain; charset=utf-8",
+            _ => "application/octet-stream",
+        }
+    }
 }
 
 /// The records of the latest searches of all tabs.
@@ -180,6 +198,44 @@ impl Finished {
     }
 }
 
+/// Why nothing is said of a linkage.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum DetailsError {
+    #[error(transparent)]
+    Ask(#[from] AskError),
+    #[error(transparent)]
+    Shelf(#[from] ShelfError),
+    /// The recorded problem is invalid.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    #[error("the record of {name} is not true: {first}")]
+    Untrue { name: String, first: Mismatch },
+    #[error("{name} has no candidate {rank}: it has {n}")]
+    NoRank { name: String, rank: usize, n: usize },
+    #[error("there is no such candidate")]
+    NoCandidate,
+    #[error(transparent)]
+    Linkage(#[from] LinkageError),
+    #[error("`crank_deg` and `t1_at` have one value for each of the {0} points")]
+    Positions(usize),
+    #[error("`t1_at` holds 1 and -1 alone")]
+    Assembly,
+    #[error("this linkage cannot be assembled at every point")]
+    NotAssembled,
+    #[error("{0} takes no settings")]
+    NoSettings(String),
+    #[error("{0}, html, sheet or points")]
+    Format(#[from] UnknownFormat),
+    #[error("{}: {}", .0.message, .0.help)]
+    Export(Refusal),
+    #[error("compare 1 to {MOST_COMPARED} linkages")]
+    HowMany,
+    #[error(transparent)]
+    Sort(#[from] UnknownKey),
+    #[error(transparent)]
+    NotCompared(#[from] NotCompared),
+}
+
 /// A record and one of its candidates, counted from 0.
 struct Found {
     record: Record,
@@ -194,16 +250,16 @@ pub(super) struct Sources<'a> {
 }
 
 impl Sources<'_> {
-    fn find(self, source: &Source, with_costs: bool) -> Result<Found, String> {
+    fn find(self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
         match source {
             Source::Job(OfJob { name, rank }) => {
                 let record = self.shelf.record(name)?;
-                if let Some(first) = verify(&record).map_err(|e| e.to_string())?.first() {
-                    return Err(format!("the record of {name} is not true: {first}"));
+                if let Some(first) = verify(&record)?.into_iter().next() {
+                    return Err(DetailsError::Untrue { name: name.clone(), first });
                 }
                 let n = record.candidates.len();
                 if *rank == 0 || *rank > n {
-                    return Err(format!("{name} has no candidate {rank}: it has {n}"));
+                    return Err(DetailsError::NoRank { name: name.clone(), rank: *rank, n });
                 }
                 Ok(Found { record, index: rank - 1 })
             }
@@ -211,45 +267,45 @@ impl Sources<'_> {
         }
     }
 
-    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, String> {
+    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
-        let problem = Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
-        let linkage = FourBar::new(drawn.linkage).map_err(|e| e.to_string())?;
+        let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
+        let linkage = FourBar::new(drawn.linkage)?;
         let n = problem.task().len();
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
-            return Err(format!("`crank_deg` and `t1_at` have one value for each of the {n} points"));
+            return Err(DetailsError::Positions(n));
         }
         let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
-        let t1_at = t1_at.ok_or("`t1_at` holds 1 and -1 alone")?;
-        let digest = digest(&file.spec).map_err(|e| e.to_string())?;
-        if let Some(record) = self.finished.of(&digest) {
+        let t1_at = t1_at.ok_or(DetailsError::Assembly)?;
+        let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
+        if let Some(record) = self.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
-                (record.problem.name, record.problem.unit) = (file.name, file.unit);
+                (record.problem.name, record.problem.unit) = (asked.name, asked.unit);
                 return Ok(Found { record, index });
             }
         }
-        let mut candidate = assess(&problem, &linkage, &drawn.crank_deg, &t1_at)
-            .ok_or("this linkage cannot be assembled at every point")?;
+        let mut candidate =
+            assess(&problem, &linkage, &drawn.crank_deg, &t1_at).ok_or(DetailsError::NotAssembled)?;
         candidate.rank = 1;
         let mut candidates = if with_costs { priced(&problem, candidate) } else { vec![candidate] };
         for candidate in &mut candidates {
             annotate(&problem, candidate);
             candidate.error.to_raw = to_raw(&problem, candidate);
         }
-        Ok(Found { record: by_hand(file, digest, candidates), index: 0 })
+        Ok(Found { record: by_hand(asked, candidates), index: 0 })
     }
 
     /// What is known of a linkage.
     ///
     /// # Errors
-    /// Why nothing is, in words.
-    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, String> {
+    /// [`DetailsError`].
+    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
         let Found { record, index } = self.find(&ask.of, true)?;
         let words = html::candidate_markup(&record, index).unwrap_or_default();
         let summary = html::summary_markup(&record);
-        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
+        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
         let path = &record.problem.resolved.task.path;
         Ok(Details {
             name: record.problem.name.clone(),
@@ -268,28 +324,26 @@ impl Sources<'_> {
     /// A linkage as a file.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, String> {
+    /// [`DetailsError`].
+    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
         let plain = ["html", "sheet", "points"].contains(&ask.format.as_str());
         if plain && !ask.set.is_empty() {
-            return Err(format!("{} takes no settings", ask.format));
+            return Err(DetailsError::NoSettings(ask.format.clone()));
         }
         let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
-        let candidate = record.candidates.get(index).ok_or("there is no such candidate")?;
-        let text = |kind, ending, text: String| Ok(Handed { kind, ending, bytes: text.into_bytes() });
+        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
+        let text = |ending, text: String| Ok(Handed { ending, bytes: text.into_bytes() });
         match ask.format.as_str() {
-            "html" => text("text/html; charset=utf-8", "html", html::report_html(&record, index)),
-            "sheet" => text("image/svg+xml", "svg", svg::candidate_svg(&record, index)),
-            "points" => text("text/csv; charset=utf-8", "csv", csv::candidate_curve_csv(candidate)),
+            "html" => text("html", html::report_html(&record, index)),
+            "sheet" => text("svg", svg::candidate_svg(&record, index)),
+            "points" => text("csv", csv::candidate_curve_csv(candidate)),
             other => {
-                let format: Format = other.parse().map_err(|e| format!("{e}, html, sheet or points"))?;
+                let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
-                let said = |e: crate::report::export::Refusal| format!("{}: {}", e.message, e.help);
-                let settings = Settings::parse(format, &set).map_err(said)?;
+                let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
                 let subject = Subject::of_candidate(&record, candidate);
-                let bytes = export(&subject, format, &settings).map_err(said)?.bytes;
-                let (kind, ending) = kind_of(format);
-                Ok(Handed { kind, ending, bytes })
+                let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
+                Ok(Handed { ending: ending_of(format), bytes })
             }
         }
     }
@@ -297,13 +351,12 @@ impl Sources<'_> {
     /// Linkages side by side.
     ///
     /// # Errors
-    /// Why there is no comparison, in words.
-    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, String> {
+    /// [`DetailsError`].
+    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
         if ask.of.is_empty() || ask.of.len() > MOST_COMPARED {
-            return Err(format!("compare 1 to {MOST_COMPARED} linkages"));
+            return Err(DetailsError::HowMany);
         }
-        let keys: Result<Vec<SortKey>, _> = ask.sort.iter().map(|key| key.parse()).collect();
-        let keys = keys.map_err(|e| e.to_string())?;
+        let keys = ask.sort.iter().map(|key| key.parse()).collect::<Result<Vec<SortKey>, _>>()?;
         let mut given = Vec::new();
         for (i, source) in ask.of.iter().enumerate() {
             // With costs: they are worked out again where the record is proved.
@@ -315,17 +368,14 @@ impl Sources<'_> {
             let run = Run { named, record, which: Which::Rank(index + 1) };
             given.push((Path::new(""), Given::Run(Box::new(run))));
         }
-        let comparison = compared(&given, None, &keys, None).map_err(|e| match e {
-            NotCompared::Refused(why) => why,
-            NotCompared::Nothing(_) => "none of these can be compared".to_owned(),
-        })?;
-        let (kind, ending, text) = match ask.form {
-            Form::Json => ("application/json", "json", comparison.json()),
-            Form::Html => ("text/html; charset=utf-8", "html", comparison.html()),
-            Form::Csv => ("text/csv; charset=utf-8", "csv", comparison.csv()),
-            Form::Svg => ("image/svg+xml", "svg", comparison.svg()),
+        let comparison = compared(&given, None, &keys, None)?;
+        let (ending, text) = match ask.form {
+            Form::Json => ("json", comparison.json()),
+            Form::Html => ("html", comparison.html()),
+            Form::Csv => ("csv", comparison.csv()),
+            Form::Svg => ("svg", comparison.svg()),
         };
-        Ok(Handed { kind, ending, bytes: text.into_bytes() })
+        Ok(Handed { ending, bytes: text.into_bytes() })
     }
 }
 
@@ -349,47 +399,18 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
 }
 
 /// The record of a linkage that no search ended with: it was fitted under the hand, and that was ended by hand.
-fn by_hand(file: ProblemFile, digest: String, candidates: Vec<Candidate>) -> Record {
-    Record {
-        format: FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
-        seed: file.spec.solve.seed,
-        method: MethodRecord { asked: file.spec.solve.method, used: vec!["following-the-hand".into()] },
-        problem: ProblemRecord {
-            name: file.name,
-            source: file.source,
-            unit: file.unit,
-            digest,
-            resolved: file.spec,
-        },
-        termination: Termination { reason: Reason::ByHand, reproducible: Reason::ByHand.is_repeatable() },
-        evaluations: Evaluations::default(),
-        family: None,
-        buildable: None,
-        exact: None,
-        candidates,
-        conflict: None,
-        relaxations: Vec::new(),
-        certificate: None,
-        no_certificate: None,
-        repeats: None,
-    }
+fn by_hand(problem: ProblemRecord, candidates: Vec<Candidate>) -> Record {
+    let used = vec!["following-the-hand".into()];
+    Record::new(problem, used, Reason::ByHand, Evaluations::default(), candidates)
 }
 
-/// The media type of a format, and the ending of its files.
-fn kind_of(format: Format) -> (&'static str, &'static str) {
+/// The ending of the files of a format.
+fn ending_of(format: Format) -> &'static str {
     match format {
-        Format::Svg | Format::SvgPlates => ("image/svg+xml", "svg"),
-        Format::Dxf | Format::DxfPlates => ("image/vnd.dxf", "dxf"),
-        Format::Stl => ("model/stl", "stl"),
-        Format::Scad => ("application/x-openscad", "scad"),
-        Format::Csv | Format::CutListCsv => ("text/csv; charset=utf-8", "csv"),
-        Format::Toml => ("application/toml; charset=utf-8", "toml"),
-        Format::Json => ("application/json", "json"),
-        Format::CutList => ("text/plain; charset=utf-8", "txt"),
-        #[cfg(feature = "images")]
-        Format::Png => ("image/png", "png"),
-        #[cfg(feature = "images")]
-        Format::Gif => ("image/gif", "gif"),
+        Format::SvgPlates => "svg",
+        Format::DxfPlates => "dxf",
+        Format::CutListCsv => "csv",
+        Format::CutList => "txt",
+        other => other.name(),
     }
 }

@@ -17,6 +17,8 @@ const BURST: f64 = 300.0;
 /// The longest time that a request may take, its body included.
 const PATIENCE: Duration = Duration::from_secs(10);
 
+/// Where a tab's WebSocket is.
+pub(super) const LIVE: &str = "/live";
 /// The largest body and the largest message, bytes.
 pub(super) const MOST_BYTES: usize = 256 * 1024;
 
@@ -141,7 +143,7 @@ impl Guard {
     /// Why a request is refused before anything is done for it.
     fn refusal(&self, request: &Request) -> Option<(StatusCode, &'static str)> {
         let headers = request.headers();
-        let upgrade = request.uri().path() == super::server::LIVE;
+        let upgrade = request.uri().path() == LIVE;
         let bucket = if self.knows(headers) { &self.known } else { &self.strangers };
         if !self.is_for_us(headers) {
             Some((StatusCode::MISDIRECTED_REQUEST, "the studio answers to 127.0.0.1 alone\n"))

@@ -1,6 +1,6 @@
 //! What is said of jobs, as JSON; the schemas are made from these types.
 
-use super::messages::Ask;
+use super::messages::{Ask, Shown};
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Record};
 use schemars::JsonSchema;
@@ -62,6 +62,13 @@ pub struct JobShown {
     /// What its folder holds.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub result: Option<JobResult>,
+}
+
+impl JobShown {
+    /// Returns a job without progress and result.
+    pub(super) fn new(name: &str, state: JobState, said: String, resumable: bool) -> Self {
+        JobShown { name: name.to_owned(), state, said, resumable, progress: None, result: None }
+    }
 }
 
 /// How far a search is.
@@ -168,4 +175,28 @@ pub struct JobList {
     pub jobs: Vec<JobShown>,
     /// How many more there are than are listed.
     pub more: usize,
+}
+
+/// A saved result, opened.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Opened {
+    /// What to ask for the same in a tab, where a tab can hold it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ask: Option<Ask>,
+    /// Why it cannot, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
+    /// The problem's name.
+    pub name: String,
+    /// The label of lengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+    /// The candidates, better first.
+    pub candidates: Vec<Shown>,
+    /// The names of the result's files.
+    pub files: Vec<String>,
 }

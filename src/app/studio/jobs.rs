@@ -1,26 +1,27 @@
 //! Long searches: begun, watched, stopped, taken up again. Each runs as `linkwright synth` runs it, by
-//! [`saved_run`], into a folder of its own.
+//! [`save`], into a folder of its own.
 //!
 //! Every job has as many threads as there are cores, all of low priority, so that jobs share the cores evenly, one
 //! that is alone has them all, and the hand's own answers come first. What is kept of a job in memory is where it
 //! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
 //! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
-use super::asked::MOST_POINTS;
+use super::asked::{AskError, MOST_POINTS};
 use super::job_messages::{JobAsk, JobProgress};
-use super::reading::said;
-use super::shelf::Shelf;
-use crate::app::results_folder::{is_in_use, replace_file};
-use crate::app::run::Job;
-use crate::app::saved_run;
-use crate::app::saved_run::{Listener, Options, Ran};
+use super::shelf::{Shelf, ShelfError};
+use crate::app::job::folder::{FolderError, is_in_use, replace_file};
+use crate::app::job::run::Job;
+use crate::app::job::save;
+use crate::app::job::save::{Listener, Options, Ran, SaveError};
 use crate::files::name;
+use crate::files::name::NameError;
 use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use crate::report::text::at_most;
 use crate::synthesis::Progress;
 use crate::task::Problem;
 use std::collections::BTreeMap;
+use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -37,16 +38,51 @@ const STARTED: &str = ".studio";
 const NICE: i32 = 10;
 
 /// Why something is not done with a job.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Debug, thiserror::Error)]
 pub(super) enum Refusal {
     /// There is none of this name.
+    #[error("there is no job named {0}")]
     Absent(String),
-    /// The name is taken, or the job is not in a state for it.
-    Conflict(String),
-    /// It makes no problem.
-    Bad(String),
-    /// Too many run.
-    Busy(String),
+    #[error("no job named {0} is running")]
+    NotRunning(String),
+    #[error(transparent)]
+    Name(#[from] NameError),
+    /// Its request makes no problem.
+    #[error(transparent)]
+    Ask(#[from] AskError),
+    #[error("there is a result named {0} already: take another name, or replace it")]
+    Taken(String),
+    #[error("the folder {folder} holds the result of {other}: run it with `linkwright synth`")]
+    OtherResult { folder: String, other: String },
+    #[error(transparent)]
+    Unreadable(#[from] ShelfError),
+    #[error("a job named {0} is running")]
+    Running(String),
+    #[error("another program works in the folder {0}: wait for it")]
+    InUse(String),
+    #[error("the studio is closing")]
+    Closing,
+    #[error("{MOST_JOBS} jobs are running: wait for one or stop it")]
+    TooMany,
+    #[error("the job cannot begin: {0}")]
+    NotBegun(#[from] JobError),
+}
+
+/// Why a job failed.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum JobError {
+    #[error("no threads to search with: {0}")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    #[error(transparent)]
+    System(#[from] io::Error),
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    #[error("this is a bug of linkwright: please report it")]
+    Bug,
 }
 
 /// All jobs of a studio.
@@ -129,23 +165,23 @@ impl JobAsk {
     /// The problem that is asked.
     ///
     /// # Errors
-    /// Why it is none, in words.
-    pub fn problem(&self) -> Result<ProblemFile, String> {
+    /// [`AskError`].
+    pub fn problem(&self) -> Result<ProblemFile, AskError> {
         let text = match (&self.ask, &self.problem) {
             // Read as every edit is, so that its limits hold.
-            (Some(ask), None) => ask.problem().and_then(|_| ask.problem_text())?,
+            (Some(ask), None) => ask.problem_with_text()?.1,
             (None, Some(text)) => text.clone(),
-            _ => return Err("give either `ask` or `problem`".to_owned()),
+            _ => return Err(AskError::NotOne),
         };
         if let Some(other) = self.set.keys().find(|key| !key.starts_with("solve.")) {
-            return Err(format!("`set` takes keys of [solve] such as solve.evaluations, not {other:?}"));
+            return Err(AskError::Set(other.clone()));
         }
         let set: Vec<_> = self.set.iter().map(|(key, value)| (key.clone(), value.clone())).collect();
-        let file = problem_file::parse("problem", &text, None, &set).map_err(|e| said(&e))?;
+        let file = problem_file::parse("problem", &text, None, &set).map_err(AskError::Text)?;
         if file.spec.task.path.points.len() > MOST_POINTS {
-            return Err(format!("at most {MOST_POINTS} points: this target has more"));
+            return Err(AskError::TooManyPoints);
         }
-        Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
+        Problem::new(file.spec.clone())?;
         Ok(file)
     }
 }
@@ -187,12 +223,10 @@ impl Jobs {
     /// # Errors
     /// [`Refusal`].
     pub(super) fn start(self: &Arc<Self>, ask: &JobAsk) -> Result<String, Refusal> {
-        let file = ask.problem().map_err(Refusal::Bad)?;
+        let file = ask.problem()?;
         let name = file.name.clone();
         if !ask.replace && (self.shelf.holds(&name) || self.begun(&name).is_some()) {
-            return Err(Refusal::Conflict(format!(
-                "there is a result named {name} already: take another name, or replace it"
-            )));
+            return Err(Refusal::Taken(name));
         }
         self.begin(Job::from(file), Options::default(), Some(ask))?;
         Ok(name)
@@ -203,24 +237,20 @@ impl Jobs {
     /// # Errors
     /// [`Refusal`].
     pub(super) fn resume(self: &Arc<Self>, name: &str) -> Result<(), Refusal> {
-        name::check(name).map_err(|e| Refusal::Absent(e.to_string()))?;
+        name::check(name)?;
         let how = Options { resume: true, ..Options::default() };
         if let Some(ask) = self.begun(name) {
-            let file = ask.problem().map_err(Refusal::Bad)?;
+            let file = ask.problem()?;
             return self.begin(Job::from(file), how, Some(&ask));
         }
         if self.shelf.place(name).is_none() {
-            return Err(absent(name));
+            return Err(Refusal::Absent(name.to_owned()));
         }
-        let asked = self.shelf.record(name).map_err(Refusal::Conflict)?.problem;
+        let asked = self.shelf.record(name)?.problem;
         if asked.name != name {
-            let other = asked.name;
-            return Err(Refusal::Conflict(format!(
-                "the folder {name} holds the result of {other}: run it with `linkwright synth`"
-            )));
+            return Err(Refusal::OtherResult { folder: name.to_owned(), other: asked.name });
         }
-        let job = Job { name: asked.name, source: asked.source, unit: asked.unit, spec: asked.resolved };
-        self.begin(job, how, None)
+        self.begin(Job::from(asked), how, None)
     }
 
     /// Stops a job: its threads end at once, its best so far is saved.
@@ -229,8 +259,7 @@ impl Jobs {
     /// [`Refusal::Absent`] where no such job runs.
     pub(super) fn cancel(&self, name: &str) -> Result<(), Refusal> {
         let job = self.running().jobs.get(name).cloned();
-        let Some(job) = job else { return Err(Refusal::Absent(format!("no job named {name} is running"))) };
-        job.cancel.store(true, Ordering::SeqCst);
+        job.ok_or_else(|| Refusal::NotRunning(name.to_owned()))?.cancel.store(true, Ordering::SeqCst);
         Ok(())
     }
 
@@ -241,18 +270,16 @@ impl Jobs {
         {
             let mut running = self.running();
             if running.closed {
-                return Err(Refusal::Busy("the studio is closing".to_owned()));
+                return Err(Refusal::Closing);
             }
             if running.jobs.contains_key(&name) {
-                return Err(Refusal::Conflict(format!("a job named {name} is running")));
+                return Err(Refusal::Running(name));
             }
             if is_in_use(&self.shelf.folder().join(&name)) {
-                return Err(Refusal::Conflict(format!(
-                    "another program works in the folder {name}: wait for it"
-                )));
+                return Err(Refusal::InUse(name));
             }
             if running.jobs.len() >= MOST_JOBS {
-                return Err(Refusal::Busy(format!("{MOST_JOBS} jobs are running: wait for one or stop it")));
+                return Err(Refusal::TooMany);
             }
             running.failed.remove(&name);
             running.jobs.insert(name.clone(), Arc::clone(&one));
@@ -260,37 +287,31 @@ impl Jobs {
         let begun = self.keep(&name, ask).and_then(|()| {
             let (jobs, one) = (Arc::clone(self), Arc::clone(&one));
             let work = move || jobs.work(&job, options, &one);
-            std::thread::Builder::new().name("job".into()).spawn(work).map_err(|e| e.to_string())
+            Ok(std::thread::Builder::new().name("job".into()).spawn(work)?)
         });
         if let Err(why) = begun {
-            self.over(&name, Some(why.clone()));
-            return Err(Refusal::Busy(format!("the job cannot begin: {why}")));
+            self.over(&name, Some(&why));
+            return Err(why.into());
         }
         Ok(())
     }
 
-    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), String> {
+    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), JobError> {
         let Some(ask) = ask else { return Ok(()) };
         let (folder, file) = self.started(name);
-        std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
-        let text = serde_json::to_vec(ask).map_err(|e| e.to_string())?;
-        replace_file(&folder, &file, &text).map_err(|e| e.to_string())
+        std::fs::create_dir_all(&folder)?;
+        Ok(replace_file(&folder, &file, &serde_json::to_vec(ask)?)?)
     }
 
     fn work(&self, job: &Job, options: Options, one: &OneJob) {
         let ran = catch_unwind(AssertUnwindSafe(|| self.run(job, options, one)));
-        let failed = match ran {
-            Ok(Ok(())) => None,
-            Ok(Err(why)) => Some(why),
-            Err(_) => Some("this is a bug of linkwright: please report it".to_owned()),
-        };
-        self.over(&job.name, failed);
+        self.over(&job.name, ran.unwrap_or(Err(JobError::Bug)).err().as_ref());
     }
 
-    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), String> {
+    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), JobError> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| stand_back());
-        let pool = pool.build().map_err(|e| format!("no threads to search with: {e}"))?;
+        let pool = pool.build()?;
         let listener = Listener {
             observer: &|progress| one.note(progress),
             proving: &|progress| {
@@ -299,9 +320,9 @@ impl Jobs {
             tell: &|text| one.told().said = text.into(),
         };
         let place = self.shelf.folder().join(&job.name);
-        let run = || saved_run::run(job, &place, options, listener, &one.cancel, one.begun);
+        let run = || save::run(job, &place, options, listener, &one.cancel, one.begun);
         if let Ran::Written(written) = pool.install(run)? {
-            for put in saved_run::put_in_place(vec![written]) {
+            for put in save::put_in_place(vec![written]) {
                 put?;
             }
         }
@@ -309,7 +330,7 @@ impl Jobs {
     }
 
     /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
-    fn over(&self, name: &str, failed: Option<String>) {
+    fn over(&self, name: &str, failed: Option<&JobError>) {
         if failed.is_none() {
             let (folder, file) = self.started(name);
             // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
@@ -321,7 +342,7 @@ impl Jobs {
             if running.failed.len() >= MOST_FAILED {
                 running.failed.pop_first();
             }
-            running.failed.insert(name.to_owned(), why);
+            running.failed.insert(name.to_owned(), why.to_string());
         }
         drop(running);
         self.ended.notify_all();
@@ -340,10 +361,6 @@ impl Jobs {
         let waited = self.ended.wait_timeout_while(running, longest, |running| !running.jobs.is_empty());
         drop(waited.unwrap_or_else(PoisonError::into_inner));
     }
-}
-
-pub(super) fn absent(name: &str) -> Refusal {
-    Refusal::Absent(format!("there is no job named {name}"))
 }
 
 /// Lowers the priority of the thread that asks, where threads have one of their own.

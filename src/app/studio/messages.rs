@@ -1,6 +1,5 @@
 //! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
 
-use super::reading::{Reading, Text};
 use crate::files::problem_file::Expect;
 use crate::judge::assess::assess;
 use crate::mechanism::Unit;
@@ -102,10 +101,10 @@ pub struct Ask {
     #[serde(default = "one")]
     pub seed: u64,
     /// The hand is still moving: the search waits until it rests.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub moving: bool,
     /// The target has nothing to do with the one before: nothing is to follow it.
-    #[serde(default, skip_serializing_if = "is_false")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub fresh: bool,
 }
 
@@ -129,11 +128,6 @@ fn one() -> u64 {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
-}
-
-#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
-fn is_false(value: &bool) -> bool {
-    !value
 }
 
 /// What the studio is doing for a tab.
@@ -295,6 +289,52 @@ pub struct LinkageAsk {
     pub unit: Option<Unit>,
     /// The linkage.
     pub linkage: NaturalCoordinates,
+}
+
+/// What a text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A points file: a header row with x,y and optionally `crank_deg`, `weight`, `tolerance`.
+    Csv,
+    /// A drawing.
+    Svg,
+    /// A problem file.
+    Problem,
+}
+
+/// A text to be read.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Text {
+    /// What it is.
+    pub kind: Kind,
+    /// What to call it in messages; a problem without a name takes this one's.
+    #[serde(default)]
+    pub name: String,
+    /// The text itself.
+    pub text: String,
+    /// The id of a drawing's shape; absent: the first.
+    #[serde(default)]
+    pub svg_id: Option<String>,
+    /// How many points are taken along a drawing; absent: 60.
+    #[serde(default)]
+    pub samples: Option<usize>,
+    /// What a drawing's physical lengths are to be given in; absent: mm.
+    #[serde(default)]
+    pub unit: Option<Unit>,
+}
+
+/// What was read.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct Reading {
+    /// What to ask for it. Where it is not whole, only the points with what stands beside them, `closed` and `unit`
+    /// were in the text.
+    pub ask: Ask,
+    /// Whether it is a whole problem, with its requirements.
+    pub whole: bool,
+    /// What was ignored or cannot succeed.
+    pub warnings: Vec<String>,
 }
 
 /// The schemas of all messages, each under the name of its type.

@@ -5,11 +5,12 @@
 //! asked.rs        what a tab asks as a problem file, and a problem file as what a tab asks
 //! reading.rs      texts that are pasted or dropped, read by the readers of files
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
-//! jobs.rs         long searches that are saved; shelf.rs: what the folder of results holds; job_messages.rs
+//! jobs.rs         long searches that are saved; shelf.rs: what the folder of results holds; listing.rs: both shown
 //! details.rs      one linkage: what the report says of it, files, comparisons
 //! api.rs          requests of other programs; openapi.rs: the same described
 //! status.rs       how a search ended, in words
 //! server.rs       routes, the page, the WebSocket
+//! house.rs        what all requests share
 //! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
 //! connection.rs   how many connections there may be, and for how long a silent one stays
 //! page/           the page, its style and its script: built from studio/
@@ -17,15 +18,17 @@
 //!
 //! The studio listens on 127.0.0.1 alone and reads no file but results in the folder that it was given: targets come
 //! as points. It does no mathematics: what follows the hand is [`live`](crate::synthesis::live), what is searched is
-//! [`run`](mod@crate::app::run), what is saved is saved by [`saved_run`](crate::app::saved_run), as on the command line.
+//! [`run`](mod@crate::app::job::run), what is saved is saved by [`save`](crate::app::job::save), as on the command line.
 
 mod api;
 mod asked;
 mod connection;
 mod details;
 mod guard;
+mod house;
 pub mod job_messages;
 mod jobs;
+mod listing;
 pub mod messages;
 pub mod openapi;
 pub mod reading;
@@ -34,5 +37,5 @@ mod shelf;
 mod status;
 mod tab;
 
-pub use asked::{MOST_POINTS, NotHere};
+pub use asked::{AskError, MOST_POINTS, NotHere};
 pub use server::{Studio, StudioError};

@@ -3,20 +3,18 @@
 //! OpenAPI 3.1 describes what is asked over HTTP; the WebSocket's messages are described by their JSON Schemas alone
 //! ([`schemas`](super::messages::schemas)). A test compares the paths here with the routes of the server.
 
-use super::api::Opened;
 use super::details::{CompareAsk, Details, DetailsAsk, ExportAsk};
-use super::job_messages::{JobAsk, JobList, JobShown};
-use super::messages::{Ask, LinkageAsk};
-use super::reading::{Reading, Text};
+use super::job_messages::{JobAsk, JobList, JobShown, Opened};
+use super::messages::{Ask, LinkageAsk, Reading, Text};
 use schemars::generate::SchemaSettings;
-use schemars::{JsonSchema, SchemaGenerator};
-use serde_json::{Map, Value, json};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde_json::{Value, json};
 
 /// A body.
 enum Body {
     Nothing,
-    /// JSON of a type of this name.
-    Json(&'static str),
+    /// JSON of a type, whose schema this notes and refers to.
+    Json(fn(&mut SchemaGenerator) -> Schema),
     /// Something else.
     Other(&'static str),
 }
@@ -37,6 +35,17 @@ const fn get(path: &'static str, gives: Body, summary: &'static str) -> Route {
 
 const fn post(path: &'static str, takes: Body, gives: Body, summary: &'static str) -> Route {
     Route { method: "post", path, summary, takes, status: 200, gives }
+}
+
+const fn json<T: JsonSchema>() -> Body {
+    Body::Json(|generator| generator.subschema_for::<T>())
+}
+
+impl Route {
+    /// The route with another status of success than 200.
+    const fn giving(self, status: u16) -> Route {
+        Route { status, ..self }
+    }
 }
 
 const ROUTES: [Route; 20] = [
@@ -61,55 +70,52 @@ const ROUTES: [Route; 20] = [
     ),
     post(
         "/problem.toml",
-        Body::Json("Ask"),
+        json::<Ask>(),
         Body::Other("application/toml"),
         "The problem file that asks the same.",
     ),
     post(
         "/linkage.toml",
-        Body::Json("LinkageAsk"),
+        json::<LinkageAsk>(),
         Body::Other("application/toml"),
         "The linkage file of a linkage.",
     ),
     post(
         "/read",
-        Body::Json("Text"),
-        Body::Json("Reading"),
+        json::<Text>(),
+        json::<Reading>(),
         "What to ask for a text that was pasted or dropped: a points file, a drawing or a problem file.",
     ),
     get(
         "/jobs",
-        Body::Json("JobList"),
+        json::<JobList>(),
         "All jobs: those that run and all results of the folder, whoever made them.",
     ),
-    Route {
-        method: "post",
-        path: "/jobs",
-        summary: "Begins a search whose result is saved, the same to the byte as that of `linkwright synth`.",
-        takes: Body::Json("JobAsk"),
-        status: 201,
-        gives: Body::Json("JobShown"),
-    },
-    get("/jobs/{name}", Body::Json("JobShown"), "One job as it stands now."),
-    Route {
-        method: "post",
-        path: "/jobs/{name}/cancel",
-        summary: "Stops a job: its threads end at once, its best so far is saved.",
-        takes: Body::Nothing,
-        status: 202,
-        gives: Body::Other("text/plain"),
-    },
-    Route {
-        method: "post",
-        path: "/jobs/{name}/resume",
-        summary: "Takes up a job that was stopped or broken off, from its checkpoint where there is one.",
-        takes: Body::Nothing,
-        status: 202,
-        gives: Body::Json("JobShown"),
-    },
+    post(
+        "/jobs",
+        json::<JobAsk>(),
+        json::<JobShown>(),
+        "Begins a search whose result is saved, the same to the byte as that of `linkwright synth`.",
+    )
+    .giving(201),
+    get("/jobs/{name}", json::<JobShown>(), "One job as it stands now."),
+    post(
+        "/jobs/{name}/cancel",
+        Body::Nothing,
+        Body::Other("text/plain"),
+        "Stops a job: its threads end at once, its best so far is saved.",
+    )
+    .giving(202),
+    post(
+        "/jobs/{name}/resume",
+        Body::Nothing,
+        json::<JobShown>(),
+        "Takes up a job that was stopped or broken off, from its checkpoint where there is one.",
+    )
+    .giving(202),
     get(
         "/jobs/{name}/opened",
-        Body::Json("Opened"),
+        json::<Opened>(),
         "A saved result: its problem as a tab asks it, its candidates.",
     ),
     get(
@@ -119,19 +125,19 @@ const ROUTES: [Route; 20] = [
     ),
     post(
         "/details",
-        Body::Json("DetailsAsk"),
-        Body::Json("Details"),
+        json::<DetailsAsk>(),
+        json::<Details>(),
         "Everything that the report says of a linkage.",
     ),
     post(
         "/export",
-        Body::Json("ExportAsk"),
+        json::<ExportAsk>(),
         Body::Other("application/octet-stream"),
         "A linkage as a file, as `linkwright export` and `linkwright report` write it.",
     ),
     post(
         "/compare",
-        Body::Json("CompareAsk"),
+        json::<CompareAsk>(),
         Body::Other("application/json"),
         "Linkages side by side, as `linkwright compare` puts them.",
     ),
@@ -152,44 +158,37 @@ const REFUSALS: [(u16, &str); 11] = [
     (503, "Too much is going on: as many jobs run, or tabs are open, as may."),
 ];
 
-fn reference(name: &str) -> Value {
-    json!({ "$ref": format!("#/components/schemas/{name}") })
-}
-
-fn content(body: &Body) -> Option<Value> {
+fn content(body: &Body, generator: &mut SchemaGenerator) -> Option<Value> {
     match body {
         Body::Nothing => None,
-        Body::Json(name) => Some(json!({ "application/json": { "schema": reference(name) } })),
+        Body::Json(schema) => Some(json!({ "application/json": { "schema": schema(generator) } })),
         Body::Other(kind) => Some(json!({ *kind: {} })),
     }
 }
 
 impl Route {
-    fn operation(&self) -> Value {
+    fn operation(&self, generator: &mut SchemaGenerator) -> Value {
         let names = self.path.split('/').filter_map(|part| part.strip_prefix('{')?.strip_suffix('}'));
         let parameters: Vec<Value> = names
             .map(|name| json!({ "name": name, "in": "path", "required": true, "schema": { "type": "string" } }))
             .collect();
-        let mut good = Map::new();
-        good.insert("description".into(), "Done.".into());
-        good.extend(content(&self.gives).map(|content| ("content".to_owned(), content)));
-        let mut responses = Map::new();
-        responses.insert(self.status.to_string(), Value::Object(good));
-        responses.insert("default".into(), json!({ "$ref": "#/components/responses/Refused" }));
-        let mut operation = Map::new();
-        operation.insert("summary".into(), self.summary.into());
-        if !parameters.is_empty() {
-            operation.insert("parameters".into(), parameters.into());
+        let mut good = json!({ "description": "Done." });
+        if let Some(content) = content(&self.gives, generator) {
+            good["content"] = content;
         }
-        let takes = content(&self.takes).map(|content| json!({ "required": true, "content": content }));
-        operation.extend(takes.map(|takes| ("requestBody".to_owned(), takes)));
-        operation.insert("responses".into(), responses.into());
-        Value::Object(operation)
+        let refused = json!({ "$ref": "#/components/responses/Refused" });
+        let mut operation = json!({
+            "summary": self.summary,
+            "responses": { self.status.to_string(): good, "default": refused },
+        });
+        if !parameters.is_empty() {
+            operation["parameters"] = parameters.into();
+        }
+        if let Some(content) = content(&self.takes, generator) {
+            operation["requestBody"] = json!({ "required": true, "content": content });
+        }
+        operation
     }
-}
-
-fn note<T: JsonSchema>(generator: &mut SchemaGenerator) {
-    generator.subschema_for::<T>();
 }
 
 /// The OpenAPI document.
@@ -198,24 +197,11 @@ pub fn document() -> Value {
     settings.definitions_path = "/components/schemas".into();
     settings.meta_schema = None;
     let mut generator = settings.into_generator();
-    note::<Ask>(&mut generator);
-    note::<LinkageAsk>(&mut generator);
-    note::<Text>(&mut generator);
-    note::<Reading>(&mut generator);
-    note::<JobAsk>(&mut generator);
-    note::<JobList>(&mut generator);
-    note::<JobShown>(&mut generator);
-    note::<Opened>(&mut generator);
-    note::<DetailsAsk>(&mut generator);
-    note::<Details>(&mut generator);
-    note::<ExportAsk>(&mut generator);
-    note::<CompareAsk>(&mut generator);
-    let schemas = generator.take_definitions(true);
-    let mut paths = Map::new();
+    let mut paths = json!({});
     for route in &ROUTES {
-        let path = paths.entry(route.path).or_insert_with(|| json!({}));
-        path[route.method] = route.operation();
+        paths[route.path][route.method] = route.operation(&mut generator);
     }
+    let schemas = generator.take_definitions(true);
     let refusals: Vec<String> = REFUSALS.iter().map(|(status, why)| format!("{status}: {why}")).collect();
     json!({
         "openapi": "3.1.0",
@@ -252,7 +238,7 @@ mod tests {
                 let mut words = part.splitn(3, '"');
                 let path = match words.nth(1) {
                     Some(path) if part.starts_with('"') => path,
-                    _ if part.starts_with("LIVE") => crate::app::studio::server::LIVE,
+                    _ if part.starts_with("LIVE") => crate::app::studio::guard::LIVE,
                     _ => panic!("a route without a path: {}", &part[..40]),
                 };
                 let line = part.split(".route(").next().unwrap_or(part).lines().next().unwrap_or("");

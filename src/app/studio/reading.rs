@@ -1,84 +1,23 @@
 //! Texts that are pasted or dropped, read by the readers of files: points (CSV), drawings (SVG), problems (TOML).
 
-use super::asked::{MOST_POINTS, NotHere};
-use super::messages::Ask;
-use crate::files::diagnostic::Diagnostic;
+use super::asked::{AskError, MOST_POINTS, NotHere, said};
+use super::messages::{Ask, Kind, Reading, Text};
 use crate::files::problem_file;
 use crate::files::svg_file;
 use crate::files::svg_file::SvgOptions;
 use crate::files::{name, points_file};
-use crate::mechanism::Unit;
 use crate::task::spec::TimingSpec;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// What a text is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// A points file: a header row with x,y and optionally `crank_deg`, `weight`, `tolerance`.
-    Csv,
-    /// A drawing.
-    Svg,
-    /// A problem file.
-    Problem,
-}
-
-/// A text to be read.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Text {
-    /// What it is.
-    pub kind: Kind,
-    /// What to call it in messages; a problem without a name takes this one's.
-    #[serde(default)]
-    pub name: String,
-    /// The text itself.
-    pub text: String,
-    /// The id of a drawing's shape; absent: the first.
-    #[serde(default)]
-    pub svg_id: Option<String>,
-    /// How many points are taken along a drawing; absent: 60.
-    #[serde(default)]
-    pub samples: Option<usize>,
-    /// What a drawing's physical lengths are to be given in; absent: mm.
-    #[serde(default)]
-    pub unit: Option<Unit>,
-}
-
-/// What was read.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Reading {
-    /// What to ask for it. Where it is not whole, only the points with what stands beside them, `closed` and `unit`
-    /// were in the text.
-    pub ask: Ask,
-    /// Whether it is a whole problem, with its requirements.
-    pub whole: bool,
-    /// What was ignored or cannot succeed.
-    pub warnings: Vec<String>,
-}
-
-/// `line 3: the cell of y is empty: give its value or leave the row out`
-pub(super) fn said(diagnostic: &Diagnostic) -> String {
-    let mut said = diagnostic.line_column().map_or(String::new(), |(line, _)| format!("line {line}: "));
-    said.push_str(&diagnostic.message);
-    if let Some(help) = &diagnostic.help {
-        said.push_str(&format!(": {help}"));
-    }
-    said
-}
 
 /// Reads a text as the file that it would be. No other file is opened.
 ///
 /// # Errors
-/// What is wrong with it and what to do, in words.
-pub fn read(text: &Text) -> Result<Reading, String> {
+/// [`AskError`].
+pub fn read(text: &Text) -> Result<Reading, AskError> {
     let file = if text.name.trim().is_empty() { "text" } else { text.name.as_str() };
-    let refused = |e: Box<Diagnostic>| said(&e);
     let blank = || Ask { name: name::from_file(file, "drawing"), seed: 1, ..Ask::default() };
     let (ask, whole, warnings) = match text.kind {
         Kind::Csv => {
-            let csv = points_file::parse(file, &text.text).map_err(refused)?;
+            let csv = points_file::parse(file, &text.text).map_err(AskError::Text)?;
             let timing = csv.crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset: Default::default() });
             let tolerances = csv.tolerance;
             let ask = Ask { points: csv.points, weights: csv.weight, tolerances, timing, ..blank() };
@@ -87,21 +26,21 @@ pub fn read(text: &Text) -> Result<Reading, String> {
         Kind::Svg => {
             let samples = text.samples.unwrap_or(svg_file::DEFAULT_SAMPLES);
             if !(3..=MOST_POINTS).contains(&samples) {
-                return Err(format!("{samples} points along a drawing: 3 to {MOST_POINTS} can be taken"));
+                return Err(AskError::Samples(samples));
             }
             let options = SvgOptions { id: text.svg_id.as_deref(), samples, closed: None, unit: text.unit };
-            let svg = svg_file::parse(file, &text.text, &options).map_err(refused)?;
+            let svg = svg_file::parse(file, &text.text, &options).map_err(AskError::Text)?;
             let ask = Ask { points: svg.points, closed: svg.closed, unit: svg.unit, ..blank() };
             (ask, false, svg.warnings)
         }
         Kind::Problem => {
-            let problem = problem_file::parse(file, &text.text, None, &[]).map_err(refused)?;
-            let ask = Ask::of(&problem).map_err(|e| e.to_string())?;
+            let problem = problem_file::parse(file, &text.text, None, &[]).map_err(AskError::Text)?;
+            let ask = Ask::of(&problem)?;
             (ask, true, problem.warnings)
         }
     };
     if ask.points.len() > MOST_POINTS {
-        return Err(NotHere::Points(ask.points.len()).to_string());
+        return Err(NotHere::Points(ask.points.len()).into());
     }
     Ok(Reading { ask, whole, warnings: warnings.iter().map(said).collect() })
 }
@@ -109,6 +48,7 @@ pub fn read(text: &Text) -> Result<Reading, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanism::Unit;
 
     fn text(kind: Kind, text: &str) -> Text {
         Text { kind, name: String::new(), text: text.into(), svg_id: None, samples: None, unit: None }
@@ -145,12 +85,12 @@ mod tests {
             (Kind::Problem, "format = 1\n[task.path]\nsvg = \"../x.svg\"\n", "cannot be read here"),
             (Kind::Problem, "format = 1\n[task.path]\npoints = [[0, 0], [1, 1]]\n", "3 to 1000"),
         ] {
-            let refusal = read(&text(kind, what)).expect_err(what);
+            let refusal = read(&text(kind, what)).expect_err(what).to_string();
             assert!(refusal.contains(says) && refusal.len() > 10, "{what}: {refusal}");
         }
         let many = format!("x,y\n{}", "1,2\n3,4\n".repeat(501));
-        assert!(read(&text(Kind::Csv, &many)).expect_err("too many").contains("1002 points"));
+        assert!(read(&text(Kind::Csv, &many)).expect_err("too many").to_string().contains("1002 points"));
         let samples = Text { samples: Some(1_000_000), ..text(Kind::Svg, "<svg/>") };
-        assert!(read(&samples).expect_err("too many").contains("3 to 1000"));
+        assert!(read(&samples).expect_err("too many").to_string().contains("3 to 1000"));
     }
 }

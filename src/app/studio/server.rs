@@ -2,12 +2,12 @@
 
 use super::api;
 use super::connection::Limited;
-use super::guard::{Guard, MOST_BYTES, guarded};
+use super::guard::{Guard, LIVE, MOST_BYTES, guarded};
+use super::house::{House, json, refused};
 use super::jobs::Jobs;
-use super::messages::{Ask, LinkageAsk, schemas};
+use super::messages::{Ask, LinkageAsk, Text, schemas};
 use super::reading;
-use super::reading::Text;
-use super::tab::{Mailbox, Searches, Told, work};
+use super::tab::{Mailbox, Told, work};
 use crate::files::{linkage_file, name};
 use crate::mechanism::FourBar;
 use axum::Router;
@@ -29,8 +29,6 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::time::{interval, sleep, timeout};
 
-/// Where a tab's WebSocket is.
-pub(super) const LIVE: &str = "/live";
 /// Tabs at once.
 const MOST_TABS: usize = 16;
 /// A tab that takes no answer for so long is closed.
@@ -67,19 +65,6 @@ pub struct Studio {
     listener: TcpListener,
     port: u16,
     house: Arc<House>,
-}
-
-/// What all requests share.
-pub(super) struct House {
-    guard: Arc<Guard>,
-    /// What the page begins with, as JSON; `null`: with what it remembers.
-    beginning: String,
-    pub(super) searches: Arc<Searches>,
-    pub(super) jobs: Arc<Jobs>,
-    /// Places for requests that take work.
-    pub(super) work: Arc<Semaphore>,
-    tabs: Arc<Semaphore>,
-    closing: watch::Sender<bool>,
 }
 
 impl Studio {
@@ -199,10 +184,6 @@ async fn file(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind)], text).into_response()
 }
 
-pub(super) fn json(text: String) -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
-}
-
 /// The page; with the token in the address, the cookie and the way to the address without it.
 async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> Response {
     let token = uri.query().and_then(|query| query.strip_prefix("token="));
@@ -222,10 +203,6 @@ async fn beginning(State(house): State<Arc<House>>) -> Response {
     json(house.beginning.clone())
 }
 
-pub(super) fn refused(why: impl Into<String>) -> Response {
-    (StatusCode::UNPROCESSABLE_ENTITY, why.into() + "\n").into_response()
-}
-
 fn toml(text: String) -> Response {
     ([(header::CONTENT_TYPE, "application/toml; charset=utf-8")], text).into_response()
 }
@@ -234,10 +211,7 @@ fn toml(text: String) -> Response {
 async fn problem(body: Bytes) -> Response {
     match serde_json::from_slice::<Ask>(&body) {
         Err(e) => refused(format!("this is no edit: {e}")),
-        Ok(ask) => match ask.problem().and_then(|_| ask.problem_text()) {
-            Err(why) => refused(why),
-            Ok(text) => toml(text),
-        },
+        Ok(ask) => ask.problem_with_text().map_or_else(refused, |(_, text)| toml(text)),
     }
 }
 
@@ -249,7 +223,7 @@ async fn read(body: Bytes) -> Response {
     };
     // A drawing may take its time: the tabs' messages do not wait for it.
     match tokio::task::spawn_blocking(move || reading::read(&text)).await {
-        Ok(Ok(reading)) => serde_json::to_string(&reading).map_or_else(|e| refused(e.to_string()), json),
+        Ok(Ok(reading)) => serde_json::to_string(&reading).map_or_else(refused, json),
         Ok(Err(why)) => refused(why),
         Err(_) => refused("this text cannot be read: please report it as a bug of linkwright"),
     }
@@ -262,10 +236,10 @@ async fn linkage(body: Bytes) -> Response {
         Ok(ask) => ask,
     };
     if let Err(e) = name::check(&ask.name) {
-        return refused(e.to_string());
+        return refused(e);
     }
     match FourBar::new(ask.linkage) {
-        Err(e) => refused(e.to_string()),
+        Err(e) => refused(e),
         Ok(linkage) => toml(linkage_file::to_toml(&ask.name, ask.unit, &linkage)),
     }
 }

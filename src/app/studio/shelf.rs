@@ -1,21 +1,20 @@
 //! What the folder of results holds: read anew for every list, whoever made it. Nothing outside of it is read, links
 //! lead nowhere.
 
-use super::job_messages::{JobList, JobResult, JobShown, JobState};
-use super::jobs::Jobs;
-use crate::app::results_folder::{CHECKPOINT, MAX_RECORD_BYTES, is_in_use, is_result_file, read_record};
+use super::job_messages::{JobResult, JobShown, JobState};
+use crate::app::job::folder::{
+    CHECKPOINT, FolderError, MAX_RECORD_BYTES, RECORD, is_in_use, is_result_file, read_record,
+};
 use crate::files::name;
 use crate::record::{Reason, Record};
 use crate::report::table;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
-/// The most jobs in a list.
-const MOST_LISTED: usize = 500;
 /// The largest file of a result that is handed out.
 const MOST_BYTES: u64 = 64 << 20;
 
@@ -24,6 +23,17 @@ pub(super) struct Shelf {
     folder: PathBuf,
     /// What was read of each record, as long as its file is the same.
     read: Mutex<BTreeMap<String, (Stamp, Reading)>>,
+}
+
+/// Why a result has no record that can be read.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum ShelfError {
+    #[error("there is no result named {0}")]
+    Absent(String),
+    #[error("the record of {0} is a link, which the studio does not follow")]
+    Link(String),
+    #[error(transparent)]
+    Folder(#[from] FolderError),
 }
 
 /// Tells whether a file is the one that was read.
@@ -65,13 +75,13 @@ impl Shelf {
     /// The record of a result.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    pub(super) fn record(&self, name: &str) -> Result<Record, String> {
-        let place = self.place(name).ok_or_else(|| format!("there is no result named {name}"))?;
-        if is_link(&place.join("record.json")) {
-            return Err(format!("the record of {name} is a link, which the studio does not follow"));
+    /// [`ShelfError`].
+    pub(super) fn record(&self, name: &str) -> Result<Record, ShelfError> {
+        let place = self.place(name).ok_or_else(|| ShelfError::Absent(name.to_owned()))?;
+        if is_link(&place.join(RECORD)) {
+            return Err(ShelfError::Link(name.to_owned()));
         }
-        read_record(&place).map_err(|e| e.to_string())
+        Ok(read_record(&place)?)
     }
 
     /// A file of a result; `None` where it has none of that name.
@@ -96,7 +106,7 @@ impl Shelf {
     }
 
     fn reading(&self, name: &str, place: &Path) -> Option<Reading> {
-        let file = place.join("record.json");
+        let file = place.join(RECORD);
         let found = fs::symlink_metadata(&file).ok()?;
         let stamp = Stamp { bytes: found.len(), changed: found.modified().ok() };
         let mut read = self.read.lock().unwrap_or_else(PoisonError::into_inner);
@@ -108,7 +118,7 @@ impl Shelf {
         drop(read);
         let reading = match self.record(name) {
             _ if found.len() > MAX_RECORD_BYTES => Reading::Unreadable("its record is too large".to_owned()),
-            Err(why) => Reading::Unreadable(why),
+            Err(why) => Reading::Unreadable(why.to_string()),
             Ok(record) => Reading::Whole {
                 result: Box::new(JobResult::from(&record)),
                 stopped: matches!(record.termination.reason, Reason::Cancelled | Reason::TimeLimit),
@@ -122,12 +132,12 @@ impl Shelf {
     }
 
     /// A result as its folder shows it; `None` where it holds nothing of ours.
-    fn shown(&self, name: &str, begun: bool) -> Option<JobShown> {
+    pub(super) fn shown(&self, name: &str, begun: bool) -> Option<JobShown> {
         let place = self.place(name)?;
         let half_done = place.join(CHECKPOINT).is_file();
         let reading = self.reading(name, &place);
         let shown = |state, said: String, resumable, result| {
-            Some(JobShown { name: name.to_owned(), state, said, resumable, progress: None, result })
+            Some(JobShown { result, ..JobShown::new(name, state, said, resumable) })
         };
         let result = |reading: &Option<Reading>| match reading {
             Some(Reading::Whole { result, .. }) => Some(result.as_ref().clone()),
@@ -169,84 +179,10 @@ impl Shelf {
     }
 }
 
-impl Jobs {
-    /// All jobs and results, by name.
-    pub(super) fn list(&self) -> JobList {
-        let (running, failed) = self.now();
-        let mut names: BTreeSet<String> = running.keys().chain(failed.keys()).cloned().collect();
-        names.extend(names_in(self.shelf().folder()));
-        names.extend(
-            names_in(&self.shelf().folder().join(".studio"))
-                .iter()
-                .filter_map(|name| name.strip_suffix(".json").map(str::to_owned)),
-        );
-        names.retain(|name| name::check(name).is_ok());
-        let mut jobs = Vec::new();
-        let mut more = 0;
-        for name in names {
-            if jobs.len() >= MOST_LISTED && !running.contains_key(&name) {
-                more += 1;
-            } else {
-                jobs.extend(self.one(&name));
-            }
-        }
-        JobList { folder: self.shelf().folder().display().to_string(), jobs, more }
-    }
-
-    /// One job; `None` where there is none of that name.
-    pub(super) fn one(&self, name: &str) -> Option<JobShown> {
-        let (running, failed) = self.now();
-        if let Some(job) = running.get(name) {
-            let said = match (job.is_stopping(), job.said()) {
-                (true, _) => "Stopping; what was found is being saved.".to_owned(),
-                (false, said) if said.is_empty() => "Searching.".to_owned(),
-                (false, said) => said,
-            };
-            let progress = job.progress();
-            let name = name.to_owned();
-            return Some(JobShown {
-                name,
-                state: JobState::Running,
-                said,
-                resumable: false,
-                progress,
-                result: None,
-            });
-        }
-        let begun = self.begun(name).is_some();
-        let shown = self.shelf().shown(name, begun).or_else(|| {
-            begun.then(|| JobShown {
-                name: name.to_owned(),
-                state: JobState::BrokenOff,
-                said: "The studio ended before it did. It can go on from the beginning.".to_owned(),
-                resumable: true,
-                progress: None,
-                result: None,
-            })
-        });
-        match failed.get(name) {
-            None => shown,
-            Some(why) => Some(JobShown {
-                name: name.to_owned(),
-                state: JobState::Failed,
-                said: why.clone(),
-                resumable: begun,
-                progress: None,
-                result: shown.and_then(|shown| shown.result),
-            }),
-        }
-    }
-}
-
 fn is_folder(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
 }
 
 fn is_link(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink())
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
 }

@@ -123,7 +123,7 @@ pub(super) fn census(record: &ExactRecord) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::run::{Context, Job, run};
+    use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
     use std::sync::atomic::AtomicBool;
 
@@ -131,8 +131,7 @@ mod tests {
     fn a_budget_that_ends_after_the_best_came_often_enough_is_told_as_that() {
         let text = "format = 1\n[task.path]\npoints = [[0, 0], [1, 1], [2, 1.2], [3, 1], [2, -1], [1, -1]]\nclosed = true\n\
             [solve]\nevaluations = 300\n";
-        let spec = parse("egg", text, None, &[]).expect("a problem").spec;
-        let job = Job { name: "egg".into(), source: None, unit: None, spec };
+        let job = Job::from(parse("egg", text, None, &[]).expect("a problem"));
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let record = run(&job, &context).expect("it runs").record;
         assert_eq!(record.termination.reason, Reason::EvaluationLimit);

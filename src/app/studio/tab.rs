@@ -6,8 +6,7 @@
 use super::details::Finished;
 use super::messages::{Answer, Ask, Counted, Doing, Shown};
 use super::status::{ended, under_way};
-use crate::app::run::{Context, Job, run};
-use crate::files::problem_file::ProblemFile;
+use crate::app::job::run::{Context, Job, run};
 use crate::record::{Candidate, ExactRecord, Record, Relaxation};
 use crate::synthesis::continuation::Exact;
 use crate::synthesis::live::nine::Nine;
@@ -151,7 +150,7 @@ impl Drop for OneSearch {
 /// What is asked now.
 struct Current {
     version: u64,
-    file: ProblemFile,
+    job: Job,
     problem: Problem,
 }
 
@@ -256,11 +255,11 @@ impl Tab {
             }
         };
         let read = ask.problem().and_then(|file| {
-            let problem = Problem::new(file.spec.clone()).map_err(|e| e.to_string())?;
-            Ok(Current { version: ask.version, file, problem })
+            let problem = Problem::new(file.spec.clone())?;
+            Ok(Current { version: ask.version, job: Job::from(file), problem })
         });
         match read {
-            Err(why) => self.refuse(ask.version, why),
+            Err(why) => self.refuse(ask.version, why.to_string()),
             Ok(current) => {
                 if ask.fresh {
                     self.session.clear();
@@ -313,13 +312,7 @@ impl Tab {
             return;
         }
         let cancel = Arc::new(AtomicBool::new(false));
-        let file = &current.file;
-        let job = Job {
-            name: file.name.clone(),
-            source: file.source.clone(),
-            unit: file.unit,
-            spec: file.spec.clone(),
-        };
+        let job = current.job.clone();
         let (one, threads) = OneSearch::new(&self.searches);
         let (mail, token, edit) = (Arc::clone(&self.mail), Arc::clone(&cancel), self.edits);
         let problem = current.problem.clone();

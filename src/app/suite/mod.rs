@@ -7,8 +7,8 @@
 
 pub mod literature;
 
+use crate::app::job::run::{Context, Job, RunError, prove, run};
 use crate::app::published;
-use crate::app::run::{Context, Job, RunError, prove, run};
 use crate::files::problem_file::{ProblemFile, Published};
 use crate::judge::rank::exact_sum_sq;
 use crate::record::statistics::{Bar, Summary};
@@ -120,7 +120,7 @@ pub fn suite(
     }
     Ok(Suite {
         format: FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+        tool: Tool::this(),
         command: options.command.clone(),
         seeds: options.seeds,
         threads: 1,

@@ -116,7 +116,7 @@ fn placed(problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::run::{Context, Job, run};
+    use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
     use std::sync::atomic::AtomicBool;
 

@@ -45,7 +45,7 @@ impl Nine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::run::{Context, Job, run};
+    use crate::app::job::run::{Context, Job, run};
     use crate::files::problem_file::parse;
     use crate::judge::certified::same;
     use crate::record::Census;

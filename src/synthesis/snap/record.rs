@@ -8,8 +8,8 @@ use crate::judge::practicality::Sweep;
 use crate::judge::practicality::sensitivity::along;
 use crate::mechanism::Unit;
 use crate::mechanism::{FourBar, xy};
-use crate::record::digest::{ProblemError, digest};
-use crate::record::{Candidate, MethodRecord, ProblemRecord, Record, Termination, Tool};
+use crate::record::digest::NotWritten;
+use crate::record::{Candidate, ProblemRecord, Record};
 use crate::synthesis::answers::annotate;
 use crate::task::Problem;
 use crate::task::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec};
@@ -21,7 +21,7 @@ const OWN_POINTS: usize = 36;
 /// puts it beside the run that it came from.
 ///
 /// # Errors
-/// As [`digest`].
+/// As [`ProblemRecord::new`].
 pub fn record(
     problem: &Problem,
     name: &str,
@@ -29,8 +29,7 @@ pub fn record(
     unit: Option<Unit>,
     request: &Request,
     snapped: &Snapped,
-) -> Result<Record, ProblemError> {
-    let spec = problem.spec().clone();
+) -> Result<Record, NotWritten> {
     let mut candidates = snapped.candidates.clone();
     for candidate in &mut candidates {
         candidate.costs = marginal(problem, candidate);
@@ -38,33 +37,11 @@ pub fn record(
         annotate(problem, candidate);
     }
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
-    Ok(Record {
-        format: crate::record::FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
-        problem: ProblemRecord {
-            name: name.into(),
-            source,
-            unit,
-            digest: digest(&spec)?,
-            resolved: spec.clone(),
-        },
-        seed: spec.solve.seed,
-        method: MethodRecord {
-            asked: spec.solve.method,
-            used: vec![format!("snap {} to {}", keys.join(", "), request.stock.words())],
-        },
-        termination: Termination { reason: snapped.reason, reproducible: snapped.reason.is_repeatable() },
-        evaluations: snapped.evaluations,
-        family: candidates.first().and_then(|best| family(problem, best)),
-        buildable: None,
-        exact: None,
-        candidates,
-        conflict: None,
-        relaxations: Vec::new(),
-        certificate: None,
-        no_certificate: None,
-        repeats: None,
-    })
+    let used = vec![format!("snap {} to {}", keys.join(", "), request.stock.words())];
+    let asked = ProblemRecord::new(name.into(), source, unit, problem.spec().clone())?;
+    let family = candidates.first().and_then(|best| family(problem, best));
+    let record = Record::new(asked, used, snapped.reason, snapped.evaluations, candidates);
+    Ok(Record { family, ..record })
 }
 
 /// Returns the problem that a linkage solves by itself: points of its own coupler curve over its whole range of motion,

@@ -10,7 +10,7 @@ type Shown = BTreeMap<String, Vec<u8>>;
 
 /// Returns a valid record, as small as possible.
 fn record(name: &str) -> Vec<u8> {
-    let text = include_str!("../../../tests/corpora/record/accepted.json");
+    let text = include_str!("../../../../tests/corpora/record/accepted.json");
     let mut record: Record = serde_json::from_str(text).expect("it is a record");
     record.problem.name = name.into();
     serde_json::to_vec_pretty(&record).expect("it is data")

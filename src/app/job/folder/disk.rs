@@ -129,13 +129,13 @@ pub(super) mod faults {
     }
 
     /// Lets the steps of this thread with these numbers, counted from 0 from now on, fail as on a full disk.
-    pub(in crate::app::results_folder) fn fail(steps: Range<usize>) {
+    pub(in crate::app::job::folder) fn fail(steps: Range<usize>) {
         COUNT.set(0);
         FAILING.set((steps.start, steps.end));
     }
 
     /// Returns the number of steps since [`fail`] was called.
-    pub(in crate::app::results_folder) fn steps() -> usize {
+    pub(in crate::app::job::folder) fn steps() -> usize {
         COUNT.get()
     }
 

@@ -1,7 +1,7 @@
 //! The files of a result's folder, as bytes: pure functions of the record, apart from its times.
 
-use crate::app::results_folder::BUILDABLE;
-use crate::app::run::AdviceSeconds;
+use crate::app::job::folder::BUILDABLE;
+use crate::app::job::run::AdviceSeconds;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::record::Record;
@@ -29,8 +29,8 @@ impl Timing {
     /// words.
     ///
     /// ```
-    /// use linkwright::internals::app::result_files::Timing;
-    /// use linkwright::internals::app::run::AdviceSeconds;
+    /// use linkwright::internals::app::job::files::Timing;
+    /// use linkwright::internals::app::job::run::AdviceSeconds;
     /// let advice_s = AdviceSeconds { conflicts: 85.5, ..AdviceSeconds::default() };
     /// let timing = Timing { search_s: 13.189, beside_s: 85.5, advice_s: Some(advice_s), total_s: 98.9, threads: 2 };
     /// let words = "98.900 s in all: 13.189 s of search, 85.500 s for what conflicts, 0.211 s for reading and writing";
@@ -56,17 +56,25 @@ impl Timing {
 /// The shortest time of a part that is mentioned in words, in seconds.
 const WORTH_SAYING_S: f64 = 1e-3;
 
+/// The error of a record that cannot be written as data.
+#[derive(Debug, thiserror::Error)]
+#[error("the record cannot be written as JSON: {0}")]
+pub struct NotJson(#[from] serde_json::Error);
+
 /// Returns the name and the contents of every file of a result's folder.
-pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, String> {
+///
+/// # Errors
+/// [`NotJson`] if the record cannot be written as data.
+pub fn files(record: &Record, timing: &Timing) -> Result<Vec<(String, Vec<u8>)>, NotJson> {
     files_of(record, timing, Extent::Full)
 }
 
 /// Returns the files as [`files`] does, with a page of this extent.
-pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let json = |text: Result<String, serde_json::Error>| {
-        text.map(|t| (t + "\n").into_bytes())
-            .map_err(|e| format!("the record cannot be written as JSON: {e}"))
-    };
+///
+/// # Errors
+/// As [`files`].
+pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<(String, Vec<u8>)>, NotJson> {
+    let json = |text: Result<String, serde_json::Error>| text.map(|text| (text + "\n").into_bytes());
     let mut files = vec![
         ("record.json".to_string(), json(serde_json::to_string_pretty(record))?),
         ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),

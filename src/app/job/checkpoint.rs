@@ -10,14 +10,14 @@
 //! The digest does not cover the number of candidates and the budget ([`digest`]): a search for another number of
 //! candidates, or with a smaller budget, would not have reached this state and begins anew ([`Checkpoint::leads_to`]).
 
-use crate::app::run::{Job, RunError};
+use crate::app::job::folder::read_at_most;
+use crate::app::job::run::Job;
 use crate::record::Tool;
-use crate::record::digest::digest;
+use crate::record::digest::{NotWritten, digest};
 use crate::synthesis::keeper::SearchState;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// The largest checkpoint that is written or read.
@@ -79,7 +79,7 @@ pub enum CheckpointError {
     },
     /// The problem has no digest.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Digest(#[from] NotWritten),
 }
 
 const REMEDY: &str = "run without --resume to begin anew";
@@ -122,11 +122,11 @@ struct AnyVersion {
 }
 
 impl Header {
-    fn of(job: &Job) -> Result<Self, RunError> {
+    fn of(job: &Job) -> Result<Self, NotWritten> {
         let solve = &job.spec.solve;
         Ok(Header {
             format: FORMAT,
-            tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
+            tool: Tool::this(),
             digest: digest(&job.spec)?,
             candidates: solve.candidates,
             evaluations: solve.evaluations,
@@ -149,8 +149,8 @@ impl Writer {
     /// Creates a writer for the search of `job`.
     ///
     /// # Errors
-    /// [`RunError::NotWritten`] if the problem cannot be written as data.
-    pub fn new(job: &Job) -> Result<Self, RunError> {
+    /// [`NotWritten`] if the problem cannot be written as data.
+    pub fn new(job: &Job) -> Result<Self, NotWritten> {
         Ok(Writer { header: Header::of(job)? })
     }
 
@@ -174,19 +174,14 @@ impl Checkpoint {
     /// [`CheckpointError`].
     pub fn read(path: &Path, job: &Job) -> Result<Option<Self>, CheckpointError> {
         let shown = path.display().to_string();
-        let failed = |source| CheckpointError::Io { path: shown.clone(), source };
-        let file = match File::open(path) {
-            Ok(file) => file,
+        let bytes = match read_at_most(path, MAX_BYTES) {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return Err(CheckpointError::TooLarge { path: shown }),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(e) => return Err(failed(e)),
+            Err(source) => return Err(CheckpointError::Io { path: shown, source }),
         };
-        let mut bytes = Vec::new();
-        file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(failed)?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(CheckpointError::TooLarge { path: shown });
-        }
         let checkpoint = parse(&shown, &bytes)?;
-        if checkpoint.header.digest != digest(&job.spec).map_err(RunError::from)? {
+        if checkpoint.header.digest != digest(&job.spec)? {
             return Err(CheckpointError::OtherProblem { path: shown, name: job.name.clone() });
         }
         Ok(Some(checkpoint))
@@ -225,7 +220,7 @@ pub fn parse(path: &str, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let none =
         |e: serde_json::Error| CheckpointError::NotACheckpoint { path: path(), message: e.to_string() };
     let AnyVersion { format, tool } = serde_json::from_slice(bytes).map_err(none)?;
-    let us = Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() };
+    let us = Tool::this();
     if format != u64::from(FORMAT) || tool != us {
         let shown = |tool: &Tool, format: u64| format!("{} {} (format {format})", tool.name, tool.version);
         let (by, us) = (shown(&tool, format), shown(&us, FORMAT.into()));

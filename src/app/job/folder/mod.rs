@@ -19,7 +19,7 @@ pub use output_file::{OutputFile, Replace, check_files, write_files};
 pub use together::put_together;
 
 use lock::Lock;
-use replacement::Wait;
+use replacement::{Failure, Wait};
 
 const LOCK: &str = ".lock";
 /// The name of the file with the record.
@@ -160,6 +160,12 @@ impl FolderError {
     }
 }
 
+impl From<Failure> for FolderError {
+    fn from((path, source): Failure) -> Self {
+        FolderError::io(&path, source)
+    }
+}
+
 /// A results folder that is locked for this run until it is dropped.
 #[derive(Debug)]
 pub struct ResultsFolder {
@@ -282,7 +288,7 @@ impl ResultsFolder {
         let lock = Lock::take(path)?;
         // An interrupted replacement may belong to an unfinished search: its checkpoint is kept here.
         if names.iter().any(|name| name.starts_with(TEMPORARY)) {
-            replacement::finish(path, &[LOCK, CHECKPOINT]).map_err(|(path, e)| FolderError::io(&path, e))?;
+            replacement::finish(path, &[LOCK, CHECKPOINT])?;
         }
         Ok(ResultsFolder { path: path.to_path_buf(), lock, created, half_done: false })
     }
@@ -336,11 +342,11 @@ impl ResultsFolder {
             disk::create_folders(&self.path).map_err(|e| FolderError::io(&self.path, e))?;
             self.lock = Lock::take(&self.path)?;
         }
-        replacement::write(&self.path, files, self.kept()).map_err(|(path, e)| FolderError::io(&path, e))
+        Ok(replacement::write(&self.path, files, self.kept())?)
     }
 
     fn sync(&self) -> Result<(), FolderError> {
-        replacement::sync(&self.path).map_err(|(path, e)| FolderError::io(&path, e))
+        Ok(replacement::sync(&self.path)?)
     }
 
     /// Waits until the names in the folder are on the disk.
@@ -349,7 +355,7 @@ impl ResultsFolder {
     }
 
     fn put(&mut self, names: Wait) -> Result<(), FolderError> {
-        replacement::put(&self.path, self.kept(), names).map_err(|(path, e)| FolderError::io(&path, e))?;
+        replacement::put(&self.path, self.kept(), names)?;
         self.created.clear();
         Ok(())
     }
@@ -413,25 +419,30 @@ pub fn read_record(path: &Path) -> Result<Record, FolderError> {
 }
 
 fn read_record_file(file: &Path) -> Result<Record, FolderError> {
+    let path = file.display().to_string();
     let bytes = match fs::metadata(file) {
         Ok(metadata) => metadata.len(),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => {
-            return Err(FolderError::NoRecord { path: file.display().to_string() });
-        }
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Err(FolderError::NoRecord { path }),
         Err(e) => return Err(FolderError::io(file, e)),
     };
     if bytes > MAX_RECORD_BYTES {
-        return Err(FolderError::TooLarge { path: file.display().to_string(), bytes });
+        return Err(FolderError::TooLarge { path, bytes });
     }
-    // A pipe or a device states no length, so the limit is also checked while reading.
-    let mut text = Vec::new();
-    File::open(file)
-        .and_then(|f| f.take(MAX_RECORD_BYTES + 1).read_to_end(&mut text))
-        .map_err(|e| FolderError::io(file, e))?;
-    if text.len() as u64 > MAX_RECORD_BYTES {
-        return Err(FolderError::TooLarge { path: file.display().to_string(), bytes: text.len() as u64 });
-    }
-    parse_record(&file.display().to_string(), &text)
+    let text = read_at_most(file, MAX_RECORD_BYTES).map_err(|e| FolderError::io(file, e))?;
+    let text =
+        text.ok_or_else(|| FolderError::TooLarge { path: path.clone(), bytes: MAX_RECORD_BYTES + 1 })?;
+    parse_record(&path, &text)
+}
+
+/// Reads a file of at most `most` bytes; `None` if it has more. A pipe or a device states no length, so bytes are counted
+/// while they are read.
+///
+/// # Errors
+/// The error of the system.
+pub fn read_at_most(file: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
+    Ok(Some(bytes).filter(|bytes| bytes.len() as u64 <= most))
 }
 
 /// Returns the record of a text; `path` is shown in errors.

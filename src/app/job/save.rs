@@ -3,14 +3,14 @@
 //! `linkwright synth` and the studio both run jobs with this module only, so that the same problem and seed give the
 //! same bytes.
 
-use crate::app::checkpoint::{Checkpoint, Writer};
-use crate::app::result_files::{Timing, files_of};
-use crate::app::results_folder::{
+use crate::app::job::checkpoint::{Checkpoint, CheckpointError, Writer};
+use crate::app::job::files::{NotJson, Timing, files_of};
+use crate::app::job::folder::{
     CHECKPOINT, FolderError, ResultsFolder, put_together, read_record, replace_file, rescue,
 };
-use crate::app::run::{Context, Finished, Job, prove, run_kept};
+use crate::app::job::run::{Context, Finished, Job, RunError, prove, run_kept};
 use crate::judge::certificate;
-use crate::record::digest::digest;
+use crate::record::digest::{NotWritten, digest};
 use crate::record::{Reason, Record};
 use crate::report::html::Extent;
 use crate::synthesis::Observer;
@@ -18,6 +18,57 @@ use crate::synthesis::keeper::{Keeper, LEAST_PAUSE, Pace, SearchState};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+
+/// The reason why a job cannot be run or its result not be saved in its folder.
+#[derive(Debug, thiserror::Error)]
+pub enum SaveError {
+    /// The folder cannot be used.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The checkpoint of an earlier run cannot be used.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// The problem cannot be written as data.
+    #[error(transparent)]
+    Problem(#[from] NotWritten),
+    /// The record cannot be written as data.
+    #[error(transparent)]
+    Record(#[from] NotJson),
+    /// The job cannot be searched.
+    #[error("{job}: {source}")]
+    Run {
+        /// The job's name.
+        job: String,
+        /// The reason.
+        source: RunError,
+    },
+    /// The folder cannot be written to; the result is in another place.
+    #[error("{source}; the result was saved in {place}")]
+    Elsewhere {
+        /// The reason.
+        source: FolderError,
+        /// The folder of the result.
+        place: String,
+    },
+    /// The folder cannot be written to, nor any other place: the result is lost.
+    #[error("{source}; nor can it be saved elsewhere: {also}")]
+    Lost {
+        /// The reason.
+        source: FolderError,
+        /// The reason why it cannot be saved elsewhere.
+        also: Box<FolderError>,
+    },
+}
+
+impl SaveError {
+    /// Saves a result that cannot be written to its folder in another place, and returns the error that says so.
+    pub(crate) fn rescued(source: FolderError, files: &[(String, Vec<u8>)]) -> Self {
+        match rescue(files) {
+            Ok(place) => SaveError::Elsewhere { source, place: place.display().to_string() },
+            Err(also) => SaveError::Lost { source, also: Box::new(also) },
+        }
+    }
+}
 
 /// Options for running a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,7 +131,7 @@ pub struct Written {
 /// result, and the checkpoint is kept.
 ///
 /// # Errors
-/// The message for the user; nothing is half written.
+/// [`SaveError`]; nothing is half written.
 pub fn run(
     job: &Job,
     place: &Path,
@@ -88,12 +139,12 @@ pub fn run(
     listener: Listener<'_>,
     cancel: &AtomicBool,
     begun: Instant,
-) -> Result<Ran, String> {
-    let mut folder = ResultsFolder::take(place).map_err(|e| e.to_string())?;
+) -> Result<Ran, SaveError> {
+    let mut folder = ResultsFolder::take(place)?;
     let mut earlier = SearchState::default();
     if options.resume {
         if let Some(record) = done_before(job, place)? {
-            folder.remove_checkpoint().map_err(|e| e.to_string())?;
+            folder.remove_checkpoint()?;
             return Ok(Ran::Before(Done {
                 record,
                 folder: place.to_path_buf(),
@@ -102,7 +153,7 @@ pub fn run(
             }));
         }
         let path = place.join(CHECKPOINT);
-        if let Some(checkpoint) = Checkpoint::read(&path, job).map_err(|e| e.to_string())? {
+        if let Some(checkpoint) = Checkpoint::read(&path, job)? {
             match checkpoint.leads_to(job) {
                 Some(why) => (listener.tell)(&format!("{} begins anew: {why}", job.name)),
                 None => earlier = checkpoint.into_state(),
@@ -114,7 +165,7 @@ pub fn run(
             "{name} begins anew; --resume would go on from the checkpoint that is there"
         ));
     }
-    let writer = Writer::new(job).map_err(|e| e.to_string())?;
+    let writer = Writer::new(job)?;
     let failed = AtomicBool::new(false);
     let sink = |state: &SearchState| {
         let Some(bytes) = writer.bytes(state) else { return };
@@ -129,7 +180,7 @@ pub fn run(
     let keeper = Keeper::new(earlier, pace, &sink);
     let outcome = run_kept(job, &Context { cancel, observer: listener.observer }, Some(&keeper));
     let Finished { mut record, search_s, beside_s, advice_s } =
-        outcome.map_err(|e| format!("{}: {e}", job.name))?;
+        outcome.map_err(|source| SaveError::Run { job: job.name.clone(), source })?;
     prove(&mut record, cancel, &mut |progress| (listener.proving)(progress));
     let interrupted =
         cancel.load(Ordering::Relaxed) && record.certificate.as_ref().is_some_and(|c| !c.closed);
@@ -141,7 +192,7 @@ pub fn run(
     let threads = rayon::current_num_threads();
     let mut timing = Timing { search_s, beside_s, advice_s, total_s, threads };
     let files = files_of(&record, &timing, options.extent)?;
-    folder.write(&files).map_err(|e| saved_elsewhere(&e, &files))?;
+    folder.write(&files).map_err(|e| SaveError::rescued(e, &files))?;
     // The file is written by now; the time that is reported includes the writing.
     timing.total_s = begun.elapsed().as_secs_f64();
     let done = Done { record, folder: place.to_path_buf(), timing: Some(timing), interrupted };
@@ -152,31 +203,23 @@ pub fn run(
 /// elsewhere.
 ///
 /// # Errors
-/// The message for the user, one for each result that failed.
-pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, String>> {
+/// [`SaveError`], one for each result that failed.
+pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, SaveError>> {
     let mut folders: Vec<_> = written.iter_mut().map(|result| &mut result.folder).collect();
     let put = put_together(&mut folders);
     let ended = |(result, put): (Written, Result<(), FolderError>)| {
-        put.map_err(|e| saved_elsewhere(&e, &result.files)).map(|()| result.done)
+        put.map_err(|e| SaveError::rescued(e, &result.files)).map(|()| result.done)
     };
     written.into_iter().zip(put).map(ended).collect()
-}
-
-/// Saves a result that cannot be written to its folder in another place, and returns a message that says so.
-pub(crate) fn saved_elsewhere(e: &FolderError, files: &[(String, Vec<u8>)]) -> String {
-    match rescue(files) {
-        Ok(place) => format!("{e}; the result was saved in {}", place.display()),
-        Err(also) => format!("{e}; nor can it be saved elsewhere: {also}"),
-    }
 }
 
 /// Returns the record of an earlier run of the same problem that has nothing left to do: of the same version, with the
 /// same number of candidates, with advice if that is asked for, neither interrupted nor ended by a time limit, nor by a
 /// budget that has been raised since.
-fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, String> {
+fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, NotWritten> {
     let Ok(record) = read_record(place) else { return Ok(None) };
     let (then, now) = (&record.problem.resolved.solve, &job.spec.solve);
-    let same = record.problem.digest == digest(&job.spec).map_err(|e| e.to_string())?
+    let same = record.problem.digest == digest(&job.spec)?
         && record.tool.version == env!("CARGO_PKG_VERSION")
         && then.candidates == now.candidates
         && then.advice == now.advice;

@@ -6,8 +6,8 @@ use crate::judge::certificate;
 use crate::judge::rank::holds_an_exact;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
-use crate::record::digest::{NotWritten, digest};
-use crate::record::{FORMAT, MethodRecord, ProblemRecord, Reason, Record, Termination, Tool};
+use crate::record::digest::NotWritten;
+use crate::record::{ProblemRecord, Reason, Record};
 use crate::synthesis::conflicts::Explained;
 use crate::synthesis::keeper::Keeper;
 use crate::synthesis::{Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
@@ -43,6 +43,20 @@ impl Job {
 impl From<ProblemFile> for Job {
     fn from(ProblemFile { name, source, unit, spec, .. }: ProblemFile) -> Self {
         Job { name, source, unit, spec }
+    }
+}
+
+impl From<ProblemRecord> for Job {
+    fn from(ProblemRecord { name, source, unit, resolved, .. }: ProblemRecord) -> Self {
+        Job { name, source, unit, spec: resolved }
+    }
+}
+
+impl TryFrom<Job> for ProblemRecord {
+    type Error = NotWritten;
+
+    fn try_from(Job { name, source, unit, spec }: Job) -> Result<Self, NotWritten> {
+        ProblemRecord::new(name, source, unit, spec)
     }
 }
 
@@ -156,30 +170,16 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     }
     outcome.reason = reached(&problem, &outcome);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
-    let reproducible = outcome.reason.is_repeatable();
+    let asked = job.clone().try_into()?;
+    let found = Record::new(asked, outcome.used, outcome.reason, outcome.evaluations, outcome.candidates);
     let record = Record {
-        format: FORMAT,
-        tool: Tool { name: env!("CARGO_PKG_NAME").into(), version: env!("CARGO_PKG_VERSION").into() },
-        problem: ProblemRecord {
-            name: job.name.clone(),
-            source: job.source.clone(),
-            unit: job.unit,
-            digest: digest(&job.spec)?,
-            resolved: job.spec.clone(),
-        },
-        seed: job.spec.solve.seed,
-        method: MethodRecord { asked: job.spec.solve.method, used: outcome.used },
-        termination: Termination { reason: outcome.reason, reproducible },
-        evaluations: outcome.evaluations,
         family: beside.family,
         buildable: beside.buildable,
-        candidates: outcome.candidates,
         conflict: explained.conflict,
         relaxations: explained.relaxations,
-        certificate: None,
-        no_certificate: None,
         repeats: outcome.repeats,
         exact: outcome.exact,
+        ..found
     };
     Ok(Finished { record, search_s, beside_s, advice_s })
 }

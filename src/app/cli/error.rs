@@ -1,0 +1,36 @@
+//! The reasons for which a command refuses its input, if no room below the command line names them.
+
+use crate::app::job::folder::FolderError;
+use crate::files::diagnostic::Diagnostic;
+use std::io;
+
+/// The reason why a command cannot be carried out.
+#[derive(Debug, thiserror::Error)]
+pub enum CommandError {
+    /// The system refuses a path.
+    #[error("{path}: {source}")]
+    Io { path: String, source: io::Error },
+    /// A folder cannot be written to.
+    #[error("{path} cannot be written to: {source}")]
+    NotWritable { path: String, source: io::Error },
+    /// A file may not be replaced or cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// The file in the place of a batch's summary is no summary; there is no `--force` for it.
+    #[error(
+        "{path} is no summary of a batch of this version: move it away, or give another folder with --out"
+    )]
+    NotASummary { path: String },
+    /// A folder holds too many problem files.
+    #[error("{folder} holds more than {most} problem files; give some of them")]
+    TooMany { folder: String, most: usize },
+    /// A folder holds no problem file.
+    #[error("the folder {0} holds no problem file (*.toml with a [task])")]
+    NoProblems(String),
+    /// Two problems have one folder for their results.
+    #[error("{one} and {other} would both write to {place}; give them different names (key `name`)")]
+    SamePlace { one: String, other: String, place: String },
+    /// A problem file is invalid.
+    #[error("{}", .0.message)]
+    Problem(Box<Diagnostic>),
+}

@@ -1,0 +1,67 @@
+//! The list of jobs: those that run and all results of the folder, as they are shown.
+
+use super::job_messages::{JobList, JobShown, JobState};
+use super::jobs::Jobs;
+use crate::files::name;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// The most jobs in a list.
+const MOST_LISTED: usize = 500;
+
+impl Jobs {
+    /// All jobs and results, by name.
+    pub(super) fn list(&self) -> JobList {
+        let (running, failed) = self.now();
+        let mut names: BTreeSet<String> = running.keys().chain(failed.keys()).cloned().collect();
+        names.extend(names_in(self.shelf().folder()));
+        names.extend(
+            names_in(&self.shelf().folder().join(".studio"))
+                .iter()
+                .filter_map(|name| name.strip_suffix(".json").map(str::to_owned)),
+        );
+        names.retain(|name| name::check(name).is_ok());
+        let mut jobs = Vec::new();
+        let mut more = 0;
+        for name in names {
+            if jobs.len() >= MOST_LISTED && !running.contains_key(&name) {
+                more += 1;
+            } else {
+                jobs.extend(self.one(&name));
+            }
+        }
+        JobList { folder: self.shelf().folder().display().to_string(), jobs, more }
+    }
+
+    /// One job; `None` where there is none of that name.
+    pub(super) fn one(&self, name: &str) -> Option<JobShown> {
+        let (running, failed) = self.now();
+        if let Some(job) = running.get(name) {
+            let said = match (job.is_stopping(), job.said()) {
+                (true, _) => "Stopping; what was found is being saved.".to_owned(),
+                (false, said) if said.is_empty() => "Searching.".to_owned(),
+                (false, said) => said,
+            };
+            let shown = JobShown::new(name, JobState::Running, said, false);
+            return Some(JobShown { progress: job.progress(), ..shown });
+        }
+        let begun = self.begun(name).is_some();
+        let shown = self.shelf().shown(name, begun).or_else(|| {
+            let said = "The studio ended before it did. It can go on from the beginning.".to_owned();
+            begun.then(|| JobShown::new(name, JobState::BrokenOff, said, true))
+        });
+        match failed.get(name) {
+            None => shown,
+            Some(why) => {
+                let result = shown.and_then(|shown| shown.result);
+                Some(JobShown { result, ..JobShown::new(name, JobState::Failed, why.clone(), begun) })
+            }
+        }
+    }
+}
+
+fn names_in(folder: &Path) -> Vec<String> {
+    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
+    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
+}
