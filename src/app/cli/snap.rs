@@ -17,8 +17,8 @@ use crate::record::{Candidate, Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
 use crate::report::text::clean;
-use crate::synthesis::Budget;
 use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, StockError, own_curve, record, snap};
+use crate::synthesis::{Budget, Context};
 use crate::task::Problem;
 use ariadne::ReportKind;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ fn inner(options: &Options) -> Result<Ended, Ended> {
     };
     let cancel = interrupt::watch("saving the best so far");
     let budget = Budget::new(cancel, None);
-    let snapped = match snap(&subject.problem, &subject.candidate, &request, &budget) {
+    let snapped = match snap(Context::new(&subject.problem, &budget), &subject.candidate, &request) {
         Ok(snapped) => snapped,
         Err(e @ SnapError::NoneFits) => {
             terminal::complain(&e.to_string());
