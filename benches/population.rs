@@ -8,7 +8,7 @@
 use linkwright::internals::files::problem_file;
 use linkwright::internals::record::Candidate;
 use linkwright::internals::synthesis::population::{Population, search};
-use linkwright::internals::synthesis::{Budget, plan};
+use linkwright::internals::synthesis::{Budget, Context, plan};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::spec::{Method, Variables};
 use std::path::Path;
@@ -54,15 +54,15 @@ fn main() {
             for which in all {
                 row(&format!("{}{word}", which.name()), evaluations, |seed| {
                     let problem = problem(seed, evaluations, Method::DifferentialEvolution, variables);
-                    let end = search(&problem, which, evaluations, &budget, &|_| {}).expect("it runs");
-                    assert!(end.evaluations <= evaluations, "the budget is kept");
+                    let end = search(Context::new(&problem, &budget), which, evaluations).expect("it runs");
+                    assert!(end.evaluations.objective <= evaluations, "the budget is kept");
                     best(&end.found)
                 });
             }
         }
         row("least-squares", evaluations, |seed| {
             let problem = problem(seed, evaluations, Method::LeastSquares, Variables::Nine);
-            best(&plan::search(&problem, &budget, &|_| {}).expect("it runs").candidates)
+            best(&plan::search(Context::new(&problem, &budget)).expect("it runs").candidates)
         });
     }
 }

@@ -15,8 +15,8 @@ use linkwright::internals::judge::assess::assess;
 use linkwright::internals::mechanism::four_bar::mobility::wrapped;
 use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar, LinkageType, Mobility};
 use linkwright::internals::record::Candidate;
-use linkwright::internals::synthesis::Budget;
-use linkwright::internals::synthesis::multistart::{LONG_ROUNDS, LONG_STEPS, polish, settle_positions};
+use linkwright::internals::synthesis::multistart::{LONG_FIT, polish, settle_positions};
+use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::forms::design_space::{Design, Shape};
 use linkwright::internals::task::forms::start::Start;
 use linkwright::internals::task::forms::torus::Positions;
@@ -90,12 +90,13 @@ fn fit(
 ) -> Option<(Design, Positions)> {
     let cancel = AtomicBool::new(false);
     let budget = Budget::new(&cancel, None);
+    let context = Context::new(problem, &budget);
     if moves {
         let start = Start { design, setting, positions };
-        let end = polish(problem, start, LONG_STEPS, LONG_ROUNDS, u64::MAX, &budget).end?;
+        let end = polish(context, start, LONG_FIT, u64::MAX).end?;
         Some((end.design, end.positions))
     } else {
-        let (positions, _) = settle_positions(problem, &design, setting, positions, &budget)?;
+        let (positions, _) = settle_positions(context, &design, setting, positions)?;
         Some((design, positions))
     }
 }

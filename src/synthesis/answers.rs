@@ -2,7 +2,7 @@
 //! candidate.
 
 use super::buildable::buildable;
-use super::{Budget, Observer, SearchOutcome};
+use super::{Context, SearchOutcome};
 use crate::judge::family::family;
 use crate::judge::symmetry::mirror_image_serves;
 use crate::judge::warnings::warnings;
@@ -30,12 +30,8 @@ pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
 /// If the first candidate has warnings, the method is `auto` and advice is asked for, a second search looks for a
 /// buildable linkage. It uses at most as many evaluations as the first search used and the budget still has; they are
 /// added to the outcome's. If the time limit or a cancellation cuts it short, that becomes the outcome's reason.
-pub fn beside(
-    problem: &Problem,
-    outcome: &mut SearchOutcome,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-) -> Beside {
+pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Beside {
+    let problem = context.problem;
     for candidate in &mut outcome.candidates {
         annotate(problem, candidate);
     }
@@ -49,13 +45,12 @@ pub fn beside(
     }
     let used = outcome.evaluations.objective;
     let allowance = used.min(solve.evaluations.saturating_sub(used));
-    let mut found = buildable(problem, &outcome.candidates, &outcome.others, allowance, budget, observer);
+    let mut found = buildable(context, &outcome.candidates, &outcome.others, allowance);
     if let Some(candidate) = &mut found.candidate {
         candidate.mirror_serves = mirror_image_serves(problem, candidate);
     }
-    outcome.evaluations.objective += found.evaluations.objective;
-    outcome.evaluations.positions += found.evaluations.positions;
-    if let Some(reason) = budget.stop_reason().filter(|_| found.searched) {
+    outcome.evaluations += found.evaluations;
+    if let Some(reason) = context.stop_reason().filter(|_| found.searched) {
         outcome.reason = reason;
     }
     Beside { family, buildable: found.candidate }

@@ -15,9 +15,25 @@ pub const HITS: usize = 4;
 /// Batches that suffice if they only come within a thousandth of it.
 pub const FLAT_HITS: usize = 16;
 /// Relative difference of objectives below which they are the same optimum.
-const SAME: f64 = 1e-6;
-/// Relative difference of objectives below which they are near the same optimum.
-const NEAR: f64 = 1e-3;
+pub(super) const SAME_OPTIMUM: f64 = 1e-6;
+/// Relative difference of objectives below which they are nearly the same optimum.
+pub(super) const NEARLY: f64 = 1e-3;
+/// Rounds in the physical parameters that have to reach the best answer before it is believed.
+pub(super) const ROUND_HITS: usize = 6;
+
+/// The number of independent rounds with free timing that have to reach the best answer before it is believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct FreeHits {
+    /// Rounds that reach it within [`SAME_OPTIMUM`].
+    pub(super) same: usize,
+    /// Rounds that reach it within [`NEARLY`].
+    pub(super) near: usize,
+}
+
+/// Hits for sparse targets: each point counts for much, so optima are many and rare ones worth waiting for.
+pub(super) const SPARSE_HITS: FreeHits = FreeHits { same: 6, near: 24 };
+/// Hits for dense targets: many points determine the linkage better, and a round costs more.
+pub(super) const DENSE_HITS: FreeHits = FreeHits { same: 4, near: 12 };
 
 /// The state of the stopping rule: the best objective and its repeated hits.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -33,6 +49,12 @@ pub struct Belief {
     near: bool,
 }
 
+impl Default for Belief {
+    fn default() -> Self {
+        Belief::new(0.0)
+    }
+}
+
 impl Belief {
     /// Creates the state before anything is found; objectives up to `exact` count as equal.
     pub fn new(exact: f64) -> Self {
@@ -46,28 +68,28 @@ impl Belief {
 
     /// Returns whether an objective would be a better optimum than the best.
     pub fn would_improve(&self, objective: f64) -> bool {
-        self.best.is_infinite() || (self.best > self.exact && objective < self.best * (1.0 - SAME))
+        self.best.is_infinite() || (self.best > self.exact && objective < self.best * (1.0 - SAME_OPTIMUM))
     }
 
     /// Records an acceptable answer of this objective in the present batch.
     pub fn came_to(&mut self, objective: f64) {
         if self.would_improve(objective) {
             (self.hits, self.hit) = (0, false);
-            if self.best.is_infinite() || objective < self.best * (1.0 - NEAR) - self.exact {
+            if self.best.is_infinite() || objective < self.best * (1.0 - NEARLY) - self.exact {
                 (self.near_hits, self.near) = (0, false);
             }
         }
         self.best = self.best.min(objective);
-        self.hit |= self.within(SAME, objective);
-        self.near |= self.within(NEAR, objective);
+        self.hit |= self.within(SAME_OPTIMUM, objective);
+        self.near |= self.within(NEARLY, objective);
     }
 
     /// Records an unjudged local optimum of this objective in the present batch. It counts at most as a repeated hit of
     /// the best, never as a better answer.
     pub fn came_back_to(&mut self, objective: f64) {
         if self.best.is_finite() && !self.would_improve(objective) {
-            self.hit |= self.within(SAME, objective);
-            self.near |= self.within(NEAR, objective);
+            self.hit |= self.within(SAME_OPTIMUM, objective);
+            self.near |= self.within(NEARLY, objective);
         }
     }
 

@@ -2,13 +2,20 @@
 //!
 //! It is first looked for among all candidates found. If the warning is of the linkage itself (transmission angle, link
 //! ratio, change point), a second search follows, of the same problem with its limits tightened to those of a buildable
-//! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached [`HITS`]
-//! times, [`QUIET`] rounds have brought nothing better, or the evaluations that the caller allows are used.
+//! linkage: from the answers found so far, then in rounds of fresh starts, until the best has been reached `HITS`
+//! times, `QUIET` rounds have brought nothing better, or the evaluations that the caller allows are used.
 
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, RoundOutcome, judged, polish, round};
+use super::belief::SAME_OPTIMUM;
+use super::constants::buildable::{
+    BATCH, HALVINGS, HITS, LAST_SHARE, MOST_FROM, QUIET, RAISES, SHORTER, STRICT_DEG, STRICT_FIT, WARM,
+    WARM_SHARE,
+};
+use super::driver::{Allowance, Standing, Strategy, drive, in_parallel};
+use super::multistart::{Fitted, LONG_FIT, RoundOutcome, fit_and_judge, judged, polish, round};
 use super::plan::{FAR, moved_back};
 use super::starts::Starts;
-use super::{Budget, Observer, Progress};
+use super::states::SearchState;
+use super::{Context, Progress};
 use crate::judge::costs::marginal;
 use crate::judge::rank::{chosen, compare};
 use crate::judge::warm::{start_at, start_beside};
@@ -17,37 +24,7 @@ use crate::mechanism::{Complex, LinkageType};
 use crate::record::{Candidate, Evaluations, WarningKind};
 use crate::task::Problem;
 use crate::task::spec::ProblemSpec;
-use rayon::prelude::*;
 
-/// Rounds that have to reach the best answer of the second search.
-pub const HITS: usize = 4;
-/// Rounds without a better answer after which the second search ends.
-pub const QUIET: usize = 24;
-/// Relative difference of errors below which they are the same optimum.
-const SAME_OPTIMUM: f64 = 1e-6;
-/// Rounds per parallel batch: the same number for any number of threads.
-const BATCH: u64 = 8;
-/// Distinct answers of the main search that the second one starts from.
-const WARM: usize = 8;
-/// Factors of the shortest link for the starts from each answer. On the boundary between two types, where the links
-/// align, there is no derivative, and a solver does not move from there.
-const SHORTER: [f64; 3] = [1.0, 0.9, 0.5];
-/// The transmission angle (degrees; or the problem's limit, if that is larger) that starts with a shorter link meet
-/// first, so that they approach the limit from inside.
-const STRICT_DEG: f64 = 30.0;
-/// Solver steps and rounds of the multipliers for that first fit.
-const STRICT_STEPS: usize = 100;
-const STRICT_ROUNDS: usize = 6;
-/// The share of the allowed evaluations for the warm starts, and the share reserved for the move away from a change
-/// point.
-const WARM_SHARE: f64 = 0.5;
-const LAST_SHARE: f64 = 0.1;
-/// Degrees by which the limit of the transmission angle is raised in that move, and the number of bisections of the
-/// least raise that suffices.
-const RAISES: [f64; 5] = [1.0, 3.0, 8.0, 18.0, 35.0];
-const HALVINGS: usize = 5;
-/// Number of the best candidates from which that move is made, until one of them needs no move.
-const MOST_FROM: usize = 3;
 /// Index of the first round of the second search: its random streams are apart from those of the main search.
 const FIRST_ROUND: u64 = 1 << 40;
 /// Margin in degrees of the transmission angle aimed at over the least: rounding must not fall below it.
@@ -72,13 +49,12 @@ pub struct Buildable {
 /// If the only warning is that the first lies on a limit of the problem, nothing is searched: a candidate that lies on
 /// none is taken if one was found.
 pub fn buildable(
-    problem: &Problem,
+    context: Context<'_>,
     ranked: &[Candidate],
     others: &[Candidate],
     allowance: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
 ) -> Buildable {
+    let problem = context.problem;
     let mut outcome = Buildable::default();
     let Some(first) = ranked.first().filter(|first| first.accepted && !first.warnings.is_empty()) else {
         return outcome;
@@ -105,12 +81,12 @@ pub fn buildable(
     let away = if centre.norm() > FAR * problem.task().size() { centre } else { Complex::new(0.0, 0.0) };
     let spec = tightened(problem.spec()).shifted([-away.re, -away.im]);
     if search
-        && !budget.stopped()
+        && !context.stopped()
         && let Ok(tight) = Problem::new(spec)
     {
         let near = |c: &Candidate| Some(Candidate { linkage: c.linkage.shifted(-away).ok()?, ..c.clone() });
         let known: Vec<Candidate> = ranked.iter().chain(others).filter_map(near).collect();
-        let (found, evaluations) = second_search(&tight, &known, allowance, budget, observer);
+        let (found, evaluations) = second_search(context.of(&tight), &known, allowance);
         outcome.evaluations = evaluations;
         let back = |c: &Candidate| moved_back(problem, c, away);
         found.iter().filter_map(back).for_each(|candidate| offer(&candidate));
@@ -157,91 +133,33 @@ fn stricter(tight: &Problem) -> Option<Problem> {
     Problem::new(spec).ok()
 }
 
+/// The second search: accepted candidates of the tightened problem, and the evaluations used.
+struct Second<'a> {
+    starts: Starts<'a>,
+    found: Vec<Candidate>,
+    spent: Evaluations,
+    hits: usize,
+    quiet: usize,
+    batch: u64,
+    draws: u64,
+}
+
 /// Returns accepted candidates of the tightened problem, and the evaluations used.
-fn second_search(
-    tight: &Problem,
-    known: &[Candidate],
-    allowance: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-) -> (Vec<Candidate>, Evaluations) {
-    let n = tight.task().len() as u64;
-    let mut spent = Evaluations::default();
-    let mut found: Vec<Candidate> = Vec::new();
-    let warm = chosen(tight, known, WARM);
+fn second_search(context: Context<'_>, known: &[Candidate], allowance: u64) -> (Vec<Candidate>, Evaluations) {
+    let tight = context.problem;
     // Evaluations: first shared evenly among the warm starts, then for fresh ones, then for the move away from a change
     // point.
-    let warm_share = (allowance as f64 * WARM_SHARE) as u64;
     let until = allowance - (allowance as f64 * LAST_SHARE) as u64;
-    let each = warm_share / (WARM * SHORTER.len()) as u64;
-    let strict = stricter(tight);
-    if each > 1 {
-        let from: Vec<(usize, f64)> = warm.iter().flat_map(|&i| SHORTER.map(|part| (i, part))).collect();
-        let fits: Vec<_> = from
-            .into_par_iter()
-            .map(|(i, part)| {
-                let mut start = start_beside(tight, &known[i], part)?;
-                let mut evaluations = 0;
-                if let Some(strict) = strict.as_ref().filter(|_| part != 1.0) {
-                    let fit = polish(strict, start, STRICT_STEPS, STRICT_ROUNDS, each / 2, budget);
-                    evaluations = fit.evaluations;
-                    match fit.end {
-                        Some(end) => start = end,
-                        None => return Some((None, evaluations)),
-                    }
-                }
-                let left = each.saturating_sub(evaluations).max(1);
-                let fit = polish(tight, start, LONG_STEPS, LONG_ROUNDS, left, budget);
-                Some((fit.end.and_then(|end| judged(tight, &end)), evaluations + fit.evaluations))
-            })
-            .collect();
-        for (candidate, evaluations) in fits.into_iter().flatten() {
-            spent.objective += evaluations;
-            spent.positions += n * evaluations;
-            found.extend(candidate.filter(|c| c.accepted));
-        }
+    let (found, spent) = from_the_known(context, known, (allowance as f64 * WARM_SHARE) as u64);
+    let mut search =
+        Second { starts: Starts::new(tight), found, spent, hits: 0, quiet: 0, batch: 0, draws: 0 };
+    search.show(context, allowance);
+    if search.spent.objective < until {
+        // It ends by its own rule or the budget; the caller asks the budget for the reason.
+        drive(context.silent(), Allowance { limit: until, patience: u64::MAX }, &mut search);
     }
-    let starts = Starts::new(tight);
-    let best = |found: &[Candidate]| found.iter().map(|c| c.error.objective).fold(f64::INFINITY, f64::min);
-    let (mut hits, mut quiet, mut batch, mut draws) = (0, 0, 0, 0);
-    let show = |found: &[Candidate], evaluations: u64| {
-        let least = found.iter().map(|c| c.error.sum_sq).min_by(f64::total_cmp);
-        let (best_sum_sq, accepted) = (least, least.is_some());
-        observer(&Progress {
-            phase: "buildable",
-            evaluations,
-            budget: allowance,
-            best_sum_sq,
-            accepted,
-            hits: None,
-        });
-    };
-    show(&found, spent.objective);
-    while hits < HITS && quiet < QUIET && spent.objective.max(draws) < until && !budget.stopped() {
-        let left = until - spent.objective;
-        let share = |index: u64| left / BATCH + u64::from(index % BATCH < left % BATCH);
-        let rounds: Vec<RoundOutcome> = (batch * BATCH..(batch + 1) * BATCH)
-            .into_par_iter()
-            .map(|index| round(tight, &starts, FIRST_ROUND + index, share(index), budget))
-            .collect();
-        batch += 1;
-        for outcome in rounds {
-            spent.objective += outcome.evaluations;
-            spent.positions += outcome.positions;
-            draws += outcome.draws;
-            let bar = best(&found);
-            let good: Vec<Candidate> = outcome.found.into_iter().filter(|c| c.accepted).collect();
-            let own = best(&good);
-            found.extend(good);
-            quiet += 1;
-            if own < bar * (1.0 - SAME_OPTIMUM) {
-                (hits, quiet) = (1, 0);
-            } else if own.is_finite() && own <= bar * (1.0 + SAME_OPTIMUM) {
-                hits += 1;
-            }
-        }
-    }
-    show(&found, spent.objective);
+    search.show(context, allowance);
+    let Second { mut found, mut spent, .. } = search;
     let mut left = allowance.saturating_sub(spent.objective);
     let each = left / MOST_FROM as u64;
     let mut moved = Vec::new();
@@ -250,14 +168,104 @@ fn second_search(
             // The candidates after it are worse.
             break;
         }
-        let (candidate, evaluations) = off_the_change_point(tight, &found[i], each.min(left), budget);
+        let (candidate, evaluations) = off_the_change_point(context, &found[i], each.min(left));
         left -= evaluations.min(left);
-        spent.objective += evaluations;
-        spent.positions += n * evaluations;
+        spent += context.cost(evaluations);
         moved.extend(candidate);
     }
     found.extend(moved);
     (found, spent)
+}
+
+/// Fits from the best known answers under the tightened limits, with at most `share` evaluations. Returns the accepted
+/// candidates and the evaluations used.
+fn from_the_known(context: Context<'_>, known: &[Candidate], share: u64) -> (Vec<Candidate>, Evaluations) {
+    let tight = context.problem;
+    let (mut found, mut spent) = (Vec::new(), Evaluations::default());
+    let warm = chosen(tight, known, WARM);
+    let each = share / (WARM * SHORTER.len()) as u64;
+    if each <= 1 {
+        return (found, spent);
+    }
+    let strict = stricter(tight);
+    let from: Vec<(usize, f64)> = warm.iter().flat_map(|&i| SHORTER.map(|part| (i, part))).collect();
+    let fit = |(i, part): (usize, f64)| {
+        let Some(mut start) = start_beside(tight, &known[i], part) else { return Fitted::NONE };
+        let mut evaluations = 0;
+        if let Some(strict) = strict.as_ref().filter(|_| part != 1.0) {
+            let fit = polish(context.of(strict), start, STRICT_FIT, each / 2);
+            evaluations = fit.evaluations;
+            match fit.end {
+                Some(end) => start = end,
+                None => return fit,
+            }
+        }
+        let fit = polish(context, start, LONG_FIT, each.saturating_sub(evaluations).max(1));
+        Fitted { evaluations: evaluations + fit.evaluations, ..fit }
+    };
+    fit_and_judge(context, from, fit, &mut found, &mut spent);
+    found.retain(|candidate| candidate.accepted);
+    (found, spent)
+}
+
+impl Second<'_> {
+    fn show(&self, context: Context<'_>, allowance: u64) {
+        let least = self.standing().best.map(|best| best.error.sum_sq);
+        (context.observer)(&Progress {
+            best_sum_sq: least,
+            accepted: least.is_some(),
+            ..Progress::of(Self::PHASE, self.spent.objective, allowance)
+        });
+    }
+}
+
+impl Strategy for Second<'_> {
+    type Batch = Vec<RoundOutcome>;
+    const PHASE: &'static str = "buildable";
+
+    /// It is short, and begins anew in a resumed run.
+    fn save(&self, _: &mut SearchState) {}
+
+    fn standing(&self) -> Standing<'_> {
+        let compare = |one: &&Candidate, other: &&Candidate| one.error.sum_sq.total_cmp(&other.error.sum_sq);
+        Standing {
+            evaluations: self.spent.objective,
+            draws: self.draws,
+            best: self.found.iter().min_by(compare),
+            nearest: None,
+            hits: None,
+        }
+    }
+
+    fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
+        let first = FIRST_ROUND + self.batch * BATCH;
+        let run = |i, share| round(context, &self.starts, first + i, share);
+        in_parallel((left, BATCH), run, |round| round.evaluations.objective)
+    }
+
+    fn read(&mut self, _: Context<'_>, batch: Self::Batch) {
+        let best =
+            |found: &[Candidate]| found.iter().map(|c| c.error.objective).fold(f64::INFINITY, f64::min);
+        self.batch += 1;
+        for outcome in batch {
+            self.spent += outcome.evaluations;
+            self.draws += outcome.draws;
+            let bar = best(&self.found);
+            let good: Vec<Candidate> = outcome.found.into_iter().filter(|c| c.accepted).collect();
+            let own = best(&good);
+            self.found.extend(good);
+            self.quiet += 1;
+            if own < bar * (1.0 - SAME_OPTIMUM) {
+                (self.hits, self.quiet) = (1, 0);
+            } else if own.is_finite() && own <= bar * (1.0 + SAME_OPTIMUM) {
+                self.hits += 1;
+            }
+        }
+    }
+
+    fn is_done(&mut self, _: Context<'_>) -> bool {
+        self.hits >= HITS || self.quiet >= QUIET
+    }
 }
 
 fn is_near_change_point(problem: &Problem, candidate: &Candidate) -> bool {
@@ -266,12 +274,8 @@ fn is_near_change_point(problem: &Problem, candidate: &Candidate) -> bool {
 
 /// Finds the nearest answer that is not almost a change point, from one that is: the Grashof margin grows with the
 /// worst transmission angle, so that limit is raised until the margin suffices, and the least such limit is bisected.
-fn off_the_change_point(
-    tight: &Problem,
-    from: &Candidate,
-    allowance: u64,
-    budget: &Budget<'_>,
-) -> (Option<Candidate>, u64) {
+fn off_the_change_point(context: Context<'_>, from: &Candidate, allowance: u64) -> (Option<Candidate>, u64) {
+    let tight = context.problem;
     let Some(asked) = tight.spec().require.transmission_deg_min else { return (None, 0) };
     let mut spent = 0;
     let mut best: Option<Candidate> = None;
@@ -281,7 +285,7 @@ fn off_the_change_point(
         spec.require.transmission_deg_min = Some(limit);
         let raised = Problem::new(spec).ok()?;
         let start = start_at(&raised, start)?;
-        let fit = polish(&raised, start, LONG_STEPS, LONG_ROUNDS, each, budget);
+        let fit = polish(context.of(&raised), start, LONG_FIT, each);
         spent += fit.evaluations;
         let candidate = judged(&raised, &fit.end?)?;
         (candidate.accepted && !is_near_change_point(&raised, &candidate)).then_some(candidate)

@@ -3,17 +3,13 @@
 //! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group has the total
 //! weight of its points. The pivots, bounds and requirements stay the problem's own.
 
+use super::constants::coarse::{DENSE, GROUPS};
 use crate::mechanism::Complex;
 use crate::task::Problem;
 use crate::task::Timing;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
 use std::ops::Range;
-
-/// The number of points above which a target is explored in groups.
-const DENSE: usize = 48;
-/// Number of groups.
-const GROUPS: usize = 32;
 
 /// The coarse problem of a dense one, with the groups of points.
 #[derive(Clone, Debug)]

@@ -14,10 +14,14 @@
 //!
 //! The results are findings, not proofs: a search that finds nothing does not prove that there is nothing to find.
 
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use super::constants::conflicts::{
+    ALLOWANCE, FIT_SHARE, LED_IN, LONGER, PROPOSALS, SEARCHED_STEP, SHORTER, SHORTEST_STEP, STEPS, TRIAL,
+    TRIAL_SHARE, WARM,
+};
+use super::multistart::{LONG_FIT, judged, polish};
 use super::offered_cognates;
 use super::relaxed::led_in;
-use super::{Budget, Observer, Progress, SearchOutcome, plan};
+use super::{Context, Progress, SearchOutcome, plan};
 use crate::judge::assess::assess;
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
@@ -29,31 +33,6 @@ use crate::record::{Candidate, Conflict, Relaxation};
 use crate::task::Problem;
 use crate::task::spec::{Method, ProblemSpec};
 
-/// Most evaluations of a trial.
-const TRIAL: u64 = 20_000;
-/// A trial also uses at most one part in this many of the problem's own budget.
-const TRIAL_SHARE: u64 = 4;
-/// Budget of all trials, in trials: no new one begins once it is spent. (A proof is the whole search, and counted
-/// apart.)
-const ALLOWANCE: u64 = 40;
-/// A fit from a known candidate gets one part in this many of a trial: one that succeeds does so soon.
-const FIT_SHARE: u64 = 16;
-/// Most evaluations of a fit that starts from a design of a trial under all requirements of the problem: each is a
-/// convex program.
-const LED_IN: u64 = 150;
-/// Number of answers of a trial from which further fits start.
-const WARM: usize = 4;
-/// Most limits tried between the asked and the attained ones.
-const STEPS: usize = 30;
-/// Relative step below which the steps inward end.
-const SHORTEST_STEP: f64 = 0.02;
-/// Least relative step at which a short search is worth its cost.
-const SEARCHED_STEP: f64 = 0.2;
-/// Factor of the next step after one that succeeded, and after one that did not.
-const LONGER: f64 = 1.5;
-const SHORTER: f64 = 0.5;
-/// Most proposals.
-const PROPOSALS: usize = 5;
 /// Distance from a bound, in parts of its scale, within which the bound is active.
 const STANDS_ON: f64 = 1e-6;
 /// The distance counted for a change that has no measure (another type, any order): one of the whole.
@@ -78,22 +57,17 @@ pub struct Explained {
 ///
 /// # Errors
 /// As [`plan::search`].
-pub fn explain(
-    problem: &Problem,
-    outcome: &mut SearchOutcome,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-) -> Result<Explained, PopulationError> {
+pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Explained, PopulationError> {
+    let problem = context.problem;
     // All exact linkages are known, each with the requirements that it does not meet.
     let listed = problem.spec().solve.method == Method::Continuation;
-    if listed || budget.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
+    if listed || context.stopped() || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
     }
     let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
     let mut inquiry = Inquiry {
+        context,
         problem,
-        budget,
-        observer,
         trial,
         spent: 0,
         allowance: ALLOWANCE * trial,
@@ -103,11 +77,11 @@ pub fn explain(
     };
     let explained = inquiry.explain()?;
     let Inquiry { met, .. } = inquiry;
-    if let Some(reason) = budget.stop_reason() {
+    if let Some(reason) = context.stop_reason() {
         outcome.reason = reason;
     }
     if met.is_empty() {
-        return Ok(if budget.stopped() { Explained::default() } else { explained });
+        return Ok(if context.stopped() { Explained::default() } else { explained });
     }
     if problem.spec().solve.method != Method::Auto {
         // The answers have to be those of the method that was asked for.
@@ -117,7 +91,7 @@ pub fn explain(
     found.append(&mut outcome.others);
     found.extend(met);
     (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-    offered_cognates::offer(problem, &mut outcome.candidates, budget);
+    offered_cognates::offer(context, &mut outcome.candidates);
     // The repeated hits were counted for another best answer.
     outcome.repeats = None;
     if !outcome.used.iter().any(|used| used == RELAXED) {
@@ -127,9 +101,8 @@ pub fn explain(
 }
 
 struct Inquiry<'a> {
+    context: Context<'a>,
     problem: &'a Problem,
-    budget: &'a Budget<'a>,
-    observer: &'a Observer<'a>,
     /// Evaluations of a trial.
     trial: u64,
     spent: u64,
@@ -144,7 +117,7 @@ struct Inquiry<'a> {
 
 impl Inquiry<'_> {
     fn exhausted(&self) -> bool {
-        self.spent >= self.allowance || self.budget.stopped() || !self.met.is_empty()
+        self.spent >= self.allowance || self.context.stopped() || !self.met.is_empty()
     }
 
     fn explain(&mut self) -> Result<Explained, PopulationError> {
@@ -244,23 +217,17 @@ impl Inquiry<'_> {
     /// by the problem itself, and `fits` of its ends are fitted under all of its requirements.
     fn outcome(&mut self, spec: ProblemSpec, fits: usize) -> Result<(Vec<Candidate>, u64), PopulationError> {
         let Ok(problem) = Problem::new(spec) else { return Ok((Vec::new(), 0)) };
-        (self.observer)(&Progress {
-            phase: "what would help",
-            evaluations: self.spent,
-            budget: self.allowance,
-            best_sum_sq: None,
-            accepted: false,
-            hits: None,
-        });
-        let mut outcome = plan::approximate(&problem, self.budget, &|_| {})?;
+        (self.context.observer)(&Progress::of("what would help", self.spent, self.allowance));
+        let context = self.context.of(&problem).silent();
+        let mut outcome = plan::approximate(context)?;
         // As a run does: a cognate may take its candidate's place.
-        offered_cognates::offer(&problem, &mut outcome.candidates, self.budget);
+        offered_cognates::offer(context, &mut outcome.candidates);
         if self.met.is_empty() {
             let mut ends = outcome.candidates.clone();
             ends.append(&mut outcome.others);
             let each = (self.trial / FIT_SHARE).clamp(1, LED_IN);
-            let (met, spent) = led_in(self.problem, &ends, (fits, each), self.budget);
-            self.spent += spent;
+            let (met, spent) = led_in(self.context, &ends, (fits, each));
+            self.spent += spent.objective;
             self.met.extend(met.into_iter().filter(|c| c.accepted));
         }
         let accepted = outcome.candidates.into_iter().filter(|c| c.accepted).collect();
@@ -376,7 +343,7 @@ impl Inquiry<'_> {
         let tries = [outer.clone(), ladder.between(1.1, &outer), outermost];
         let mut before: Option<Vec<f64>> = None;
         for limits in tries {
-            if self.budget.stopped() {
+            if self.context.stopped() {
                 break;
             }
             let limits = ladder.rounded(&limits);
@@ -410,7 +377,7 @@ impl Inquiry<'_> {
         let each = (self.trial / FIT_SHARE).max(1);
         for candidate in warm {
             let Some(start) = start_at(&problem, candidate) else { continue };
-            let fit = polish(&problem, start, LONG_STEPS, LONG_ROUNDS, each, self.budget);
+            let fit = polish(self.context.of(&problem), start, LONG_FIT, each);
             self.spent += fit.evaluations;
             let end = fit.end.and_then(|end| judged(&problem, &end)).filter(|c| c.accepted);
             if end.is_some() {

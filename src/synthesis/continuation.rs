@@ -6,7 +6,7 @@
 //! linkages that a requirement forbids are not used as starts for that: they led to no better answer than those that
 //! are drawn, at a tenth to a third more evaluations.
 
-use super::{Budget, Observer, Progress, SearchOutcome};
+use super::{Context, Progress, SearchOutcome};
 use crate::judge::certified::{certified, nearly_exact, same, target};
 use crate::judge::exact_linkages::{Class, Depth, classes};
 use crate::judge::rank::{count_distinct, divided, holds_an_exact};
@@ -115,7 +115,8 @@ impl Exact {
     }
 
     /// Returns the exact answers as the outcome of a search.
-    pub fn alone(self, problem: &Problem, budget: &Budget<'_>) -> SearchOutcome {
+    pub fn alone(self, context: Context<'_>) -> SearchOutcome {
+        let problem = context.problem;
         let (candidates, others) = divided(problem, self.candidates(), problem.spec().solve.candidates);
         let reason =
             if holds_an_exact(problem, &candidates) { Reason::TargetReached } else { Reason::Converged };
@@ -123,7 +124,7 @@ impl Exact {
             candidates,
             others,
             used: vec![NAME.into()],
-            reason: budget.stop_reason().unwrap_or(reason),
+            reason: context.stop_reason().unwrap_or(reason),
             evaluations: Evaluations::default(),
             exact: Some(self.record),
             repeats: None,
@@ -131,7 +132,8 @@ impl Exact {
     }
 
     /// Returns the exact answers together with the outcome of a search by approximation.
-    pub fn beside(self, problem: &Problem, mut outcome: SearchOutcome, budget: &Budget<'_>) -> SearchOutcome {
+    pub fn beside(self, context: Context<'_>, mut outcome: SearchOutcome) -> SearchOutcome {
+        let problem = context.problem;
         let mut found = self.candidates();
         found.append(&mut outcome.candidates);
         found.append(&mut outcome.others);
@@ -140,7 +142,7 @@ impl Exact {
         if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
             outcome.reason = Reason::TargetReached;
         }
-        outcome.reason = budget.stop_reason().unwrap_or(outcome.reason);
+        outcome.reason = context.stop_reason().unwrap_or(outcome.reason);
         outcome.used.insert(0, NAME.into());
         outcome.exact = Some(self.record);
         // The hits were counted for approximate answers.
@@ -175,23 +177,14 @@ fn of_a_cognate(target: &Target, solution: &Solution) -> Option<Certificate> {
 }
 
 /// Computes the exact answers; `None` if the points have none or the method does not ask for them.
-pub fn solve(problem: &Problem, budget: &Budget<'_>, observer: &Observer<'_>) -> Option<Exact> {
+pub fn solve(context: Context<'_>) -> Option<Exact> {
+    let problem = context.problem;
     if !matches!(problem.spec().solve.method, Method::Auto | Method::Continuation) {
         return None;
     }
     let target = target(problem)?;
-    let progress = |ended: usize, of: usize| {
-        let (evaluations, budget) = (ended as u64, of as u64);
-        observer(&Progress {
-            phase: NAME,
-            evaluations,
-            budget,
-            best_sum_sq: None,
-            accepted: false,
-            hits: None,
-        });
-    };
-    let solved = nine_point::solve(&target, &Options::default(), &progress, budget.cancel);
+    let progress = |ended: usize, of: usize| (context.observer)(&Progress::of(NAME, ended as u64, of as u64));
+    let solved = nine_point::solve(&target, &Options::default(), &progress, context.budget.cancel);
     let solutions: Vec<Solution> = solved.classes.iter().map(|class| class.solution).collect();
     let proofs: Vec<Option<Certificate>> = certify_all(&target, &solutions)
         .into_par_iter()

@@ -1,7 +1,8 @@
 //! The errors that are left without each of the requirements on which the best candidate lies.
 
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
-use super::{Budget, SearchOutcome, plan};
+use super::constants::errors_without::{SHORT_SEARCH, SHORT_SHARE};
+use super::multistart::{LONG_FIT, judged, polish};
+use super::{Context, SearchOutcome, plan};
 use crate::judge::costs::{marginal, weighted_rms};
 use crate::judge::loosen::{Demand, judged_under};
 use crate::judge::warm::start_at;
@@ -9,17 +10,13 @@ use crate::record::Candidate;
 use crate::task::Problem;
 use crate::task::spec::Method;
 
-/// Most evaluations of the search without a requirement; one part in `SHORT_SHARE` of the evaluations of the search
-/// itself.
-const SHORT_SEARCH: u64 = 20_000;
-const SHORT_SHARE: u64 = 4;
-
 /// Attaches the costs to every candidate of a search; to those of the first also the error that is left without each
 /// requirement, as far as the budget goes. `evaluations` in the outcome are those of the search itself.
 ///
 /// The error without a requirement is looked for by a fit from the candidate and by a short search, and only if the
 /// candidate comes from a search that polishes.
-pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_>) {
+pub fn attach(context: Context<'_>, outcome: &mut SearchOutcome) {
+    let problem = context.problem;
     for candidate in &mut outcome.candidates {
         candidate.costs = marginal(problem, candidate);
     }
@@ -27,7 +24,7 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     let Some(best) = outcome.candidates.first_mut().filter(|c| polishes && !c.costs.is_empty()) else {
         return;
     };
-    if let Some(reason) = budget.stop_reason() {
+    if let Some(reason) = context.stop_reason() {
         // The errors without the limits are not computed.
         outcome.reason = reason;
         return;
@@ -41,8 +38,8 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
     }
     let share = outcome.evaluations.objective / SHORT_SHARE / (distinct.len() as u64).max(1);
     for demand in distinct {
-        let without = error_without(problem, best, demand, share.min(SHORT_SEARCH), budget);
-        if let Some(reason) = budget.stop_reason() {
+        let without = error_without(context, best, demand, share.min(SHORT_SEARCH));
+        if let Some(reason) = context.stop_reason() {
             // A result cut short by the time limit cannot be repeated.
             outcome.reason = reason;
             return;
@@ -54,21 +51,16 @@ pub fn attach(problem: &Problem, outcome: &mut SearchOutcome, budget: &Budget<'_
 }
 
 /// Returns the least error found without a demand; `None` if nothing better than with it was found.
-fn error_without(
-    problem: &Problem,
-    best: &Candidate,
-    demand: Demand,
-    evaluations: u64,
-    budget: &Budget<'_>,
-) -> Option<f64> {
+fn error_without(context: Context<'_>, best: &Candidate, demand: Demand, evaluations: u64) -> Option<f64> {
+    let problem = context.problem;
     let mut spec = demand.dropped(problem, problem.spec().clone());
     spec.solve.candidates = 1;
     spec.solve.evaluations = evaluations.max(1);
     let loose = Problem::new(spec).ok()?;
-    let warm = start_at(&loose, best).and_then(|start| {
-        judged(&loose, &polish(&loose, start, LONG_STEPS, LONG_ROUNDS, evaluations.max(1), budget).end?)
-    });
-    let found = plan::approximate(&loose, budget, &|_| {}).map_or(Vec::new(), |outcome| outcome.candidates);
+    let context = context.of(&loose).silent();
+    let warm = start_at(&loose, best)
+        .and_then(|start| judged(&loose, &polish(context, start, LONG_FIT, evaluations.max(1)).end?));
+    let found = plan::approximate(context).map_or(Vec::new(), |outcome| outcome.candidates);
     // A better answer that meets the demand as well does not measure its cost.
     let costs_less = |c: &Candidate| {
         c.accepted

@@ -5,19 +5,13 @@
 //! from the state ends in the same bytes as one that was never interrupted.
 //!
 //! A state does not depend on the budget under which it was reached. The remaining budget shortens a batch only near
-//! the end, and the states after such a batch are not saved (`spared`). So a search may be resumed with a larger
+//! the end, and the states after such a batch are not saved ([`super::driver`]). So a search may be resumed with a larger
 //! budget, and ends as if it had been given that budget from the beginning.
 //!
 //! Each part of a search (least squares, then differential evolution ..) has the state of its own last boundary. A
 //! resumed search runs each part from there: a part that had ended before ends again after one batch or two.
 
-use super::free::FreeState;
-use super::plan::RoundsState;
-use super::timed::TimedState;
-use crate::numbers::optimise::argmin_bridge::RestartsState;
-use crate::record::Candidate;
-use crate::task::Problem;
-use serde::{Deserialize, Serialize};
+pub use super::states::SearchState;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -26,24 +20,6 @@ pub const LEAST_PAUSE: Duration = Duration::from_secs(1);
 /// The time between two saved states in units of the time that saving the last one took: that is half a percent of the
 /// search.
 const PAUSE: u32 = 200;
-
-/// The state of a search: the last saved boundary of each of its parts.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SearchState {
-    /// State of least squares with free timing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) free: Option<FreeState>,
-    /// State of prescribed timing in its reduced form (variable projection).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) timed: Option<TimedState>,
-    /// State of the multistart rounds of prescribed timing in the physical parameters.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) rounds: Option<RoundsState>,
-    /// State of a population search.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) population: Option<RestartsState>,
-}
 
 /// The frequency at which states are saved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,16 +78,4 @@ impl<'a> Keeper<'a> {
         kept.since = Instant::now();
         kept.pause = kept.least.max(begun.elapsed() * PAUSE);
     }
-}
-
-/// Returns whether the budget did not limit the run so far: an eighth of the evaluations allowed, and enough for steps
-/// that look a few evaluations ahead, was left.
-pub(super) fn spared(used: u64, allowed: u64) -> bool {
-    allowed >= 1000 && used <= allowed - allowed / 8
-}
-
-/// Returns whether saved candidates fit the problem: they have as many points.
-pub(super) fn of_as_many_points(problem: &Problem, found: &[Candidate], best: &Option<Candidate>) -> bool {
-    let n = problem.task().len();
-    found.iter().chain(best).all(|c| c.crank_deg.len() == n && c.t1_at.len() == n)
 }

@@ -10,23 +10,29 @@
 //! | [`buildable`] | the best buildable candidate, for a problem whose best candidate by error has warnings |
 //! | [`coarse`] | coarsening of dense targets: a search explores the problem with fewer points and fits the answer to all points |
 //! | [`conflicts`] | conflict analysis: which requirements cannot be met together, and the least relaxation after which an answer is acceptable |
+//! | [`constants`] | the tuning constants of the searches, by search |
+//! | [`context`] | the inputs that every search is given, as one value |
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
+//! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
 //! | [`errors_without`] | the errors that are left without each of the requirements on which the best candidate lies |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
 //! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
+//! | [`local`] | the local searches by least squares, chosen by the timing |
 //! | [`multistart`] | multistart: Levenberg-Marquardt fits from many starts, in rounds |
 //! | [`nearest`] | positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search |
 //! | [`offered_cognates`] | the offer of Roberts cognates beside the candidates of a search |
-//! | [`plan`] | the plan of a search: the methods that run, their order, and their stopping rules |
+//! | [`plan`] | the plan of a search: the phases of each method, in their order |
 //! | [`polish`] | polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains the last digits of answers on which a limit is active |
 //! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
 //! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
 //! | [`reduced`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
 //! | [`relaxed`] | search with one requirement left out, whose ends are then fitted under all requirements |
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
+//! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
+//! | [`states`] | the states of the searches in a checkpoint: data alone |
 //! | [`timed`] | multistart search for prescribed timing by variable projection (the reduced form) |
 
 pub mod answers;
@@ -35,12 +41,16 @@ pub mod belief;
 pub mod buildable;
 pub mod coarse;
 pub mod conflicts;
+mod constants;
+pub mod context;
 pub mod continuation;
+mod driver;
 pub mod errors_without;
 pub(crate) mod fixture;
 pub mod free;
 pub mod keeper;
 pub mod live;
+mod local;
 pub mod multistart;
 pub mod nearest;
 pub mod offered_cognates;
@@ -51,14 +61,18 @@ mod reassign;
 pub mod reduced;
 mod relaxed;
 mod repeats;
+mod rounds;
 pub mod snap;
 pub mod starts;
+mod states;
 mod stopping_tests;
 pub mod timed;
 
-use crate::mechanism::effort::is_stopped_by_a_test;
+pub use context::Context;
 
+use crate::mechanism::effort::is_stopped_by_a_test;
 use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};
+use std::ops::AddAssign;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
@@ -145,6 +159,13 @@ pub struct Progress {
     pub hits: Option<HitsSoFar>,
 }
 
+impl Progress {
+    /// Creates the progress of a phase that tracks neither a best candidate nor its hits.
+    pub(crate) fn of(phase: &'static str, evaluations: u64, budget: u64) -> Self {
+        Progress { phase, evaluations, budget, best_sum_sq: None, accepted: false, hits: None }
+    }
+}
+
 /// The number of independent rounds of starts that reached the best answer, and the number that the stopping rule
 /// wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -157,6 +178,13 @@ pub struct HitsSoFar {
 
 /// A callback that receives the progress of a search.
 pub type Observer<'a> = dyn Fn(&Progress) + Sync + 'a;
+
+impl AddAssign for Evaluations {
+    fn add_assign(&mut self, other: Self) {
+        self.objective += other.objective;
+        self.positions += other.positions;
+    }
+}
 
 /// The outcome of a search.
 #[derive(Clone, Debug)]

@@ -1,10 +1,14 @@
 //! Multistart: Levenberg-Marquardt fits from many starts, in rounds.
 //!
-//! A round draws [`SCREEN`] starts from its own stream of the seed, keeps the [`SHORT`] that promise most, fits each
-//! for a few steps and the best [`LONG`] of them to convergence. Rounds run in parallel in batches of a fixed size and
+//! A round draws `SCREEN` starts from its own stream of the seed, keeps the `SHORT` that promise most, fits each
+//! for a few steps and the best `LONG` of them to convergence. Rounds run in parallel in batches of a fixed size and
 //! are read in their order, so the number of threads changes nothing but the time.
 
-use super::Budget;
+pub use super::constants::Effort;
+pub use super::constants::multistart::{LONG_FIT, SHORT_FIT};
+
+use super::Context;
+use super::constants::multistart::{LONG, SCREEN, SETTLING, SHORT};
 use super::starts::Starts;
 use crate::judge::assess::assess;
 use crate::judge::rank::exact_cost;
@@ -15,7 +19,7 @@ use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
 };
-use crate::record::Candidate;
+use crate::record::{Candidate, Evaluations};
 use crate::task::forms::design_space::{Design, Shape};
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
@@ -23,19 +27,7 @@ use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::{Positions, TorusFit};
 use crate::task::{AngleOffset, Timing};
 use crate::task::{Problem, Setting};
-
-/// Starts drawn and screened in a round.
-pub const SCREEN: usize = 160;
-/// Starts fitted for a few steps.
-pub const SHORT: usize = 8;
-/// Starts fitted to convergence.
-pub const LONG: usize = 3;
-/// Steps of a short fit.
-const SHORT_STEPS: usize = 24;
-/// Steps of a long fit.
-pub const LONG_STEPS: usize = 300;
-/// Rounds of the multipliers in a long fit.
-pub const LONG_ROUNDS: usize = 14;
+use rayon::prelude::*;
 
 /// The candidates found in a round, and its cost.
 #[derive(Clone, Debug, Default)]
@@ -44,20 +36,18 @@ pub struct RoundOutcome {
     pub found: Vec<Candidate>,
     /// Starts drawn, also those that could not be assembled.
     pub draws: u64,
-    /// Evaluations of the objective.
-    pub evaluations: u64,
-    /// Positions of the linkage computed for them.
-    pub positions: u64,
+    /// The evaluations used.
+    pub evaluations: Evaluations,
 }
 
 /// Returns the options of a fit; `exact_cost` is the cost below which nothing is left to gain.
-fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluations: u64) -> LmOptions {
+fn options(problem: &Problem, effort: Effort, max_evaluations: u64) -> LmOptions {
     let task = problem.task();
     LmOptions {
-        max_steps,
-        max_rounds,
+        max_steps: effort.steps,
+        max_rounds: effort.rounds,
         max_evaluations,
-        relative_reduction: 1e-12,
+        relative_reduction: effort.relative_reduction,
         exact_cost: 1e-6 * exact_cost(problem),
         feasibility: 1e-9 * task.size(),
         // A mean error above a fifth of the size after half of the steps is hopeless.
@@ -66,68 +56,88 @@ fn options(problem: &Problem, max_steps: usize, max_rounds: usize, max_evaluatio
 }
 
 /// Runs round `index` of the seed with at most `allowance` evaluations.
-pub fn round(
-    problem: &Problem,
-    starts: &Starts<'_>,
-    index: u64,
-    allowance: u64,
-    budget: &Budget<'_>,
-) -> RoundOutcome {
+pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u64) -> RoundOutcome {
+    let problem = context.problem;
     let mut outcome = RoundOutcome::default();
     let mut draws = stream(problem.spec().solve.seed, index);
-    let n = problem.task().len() as u64;
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     for _ in 0..SCREEN {
-        if outcome.evaluations >= allowance || budget.stopped() {
+        if outcome.evaluations.objective >= allowance || context.stopped() {
             break;
         }
         outcome.draws += 1;
         let Some(mut start) = starts.draw(&mut draws) else { continue };
-        outcome.evaluations += 1;
-        outcome.positions += n;
+        outcome.evaluations += context.cost(1);
         if let Some(promise) = promise(problem, &mut start) {
             screened.push((promise, start));
         }
     }
-    screened.sort_by(|one, other| one.0.total_cmp(&other.0));
-    screened.truncate(SHORT);
+    by_merit(&mut screened, SHORT);
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
     for (promised, start) in screened {
-        if budget.stopped() {
+        if context.stopped() {
             return outcome;
         }
-        let left = allowance - outcome.evaluations;
+        let left = allowance - outcome.evaluations.objective;
         if left == 0 {
             // No evaluations are left for a fit: the start as it is.
             fitted.push((promised, start));
             continue;
         }
-        let fit = polish(problem, start, SHORT_STEPS, 2, left, budget);
-        outcome.evaluations += fit.evaluations;
-        outcome.positions += n * fit.evaluations;
-        if let Some(start) = fit.end {
-            fitted.push((fit.merit, start));
-        }
+        let fit = polish(context, start, SHORT_FIT, left);
+        outcome.evaluations += context.cost(fit.evaluations);
+        fitted.extend(fit.end.map(|start| (fit.merit, start)));
     }
-    fitted.sort_by(|one, other| one.0.total_cmp(&other.0));
-    fitted.truncate(LONG);
-    let judging = budget.judging(problem.task().len());
+    by_merit(&mut fitted, LONG);
+    let judging = context.judging();
     for (_, start) in fitted {
-        if budget.stopped() {
+        if context.stopped() {
             return outcome;
         }
-        let left = allowance - outcome.evaluations;
+        let left = allowance - outcome.evaluations.objective;
         if left == 0 {
             outcome.found.extend(judged(problem, &start));
             continue;
         }
-        let fit = polish(problem, start, LONG_STEPS, LONG_ROUNDS, left, budget);
-        outcome.evaluations += fit.evaluations;
-        outcome.positions += n * fit.evaluations;
+        let fit = polish(context, start, LONG_FIT, left);
+        outcome.evaluations += context.cost(fit.evaluations);
         let end = fit.end.filter(|_| judging.may_go_on());
         outcome.found.extend(end.and_then(|end| judged(problem, &end)));
     }
     outcome
+}
+
+/// Sorts ends by their merit, the least first, and keeps so many.
+pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
+    ends.truncate(keep);
+}
+
+/// Fits starts in parallel, judges the ends, and adds them to the candidates and their cost to the evaluations. Once the
+/// search is stopped, no further fit begins, and only a few ends are judged.
+pub(super) fn fit_and_judge<S: Send>(
+    context: Context<'_>,
+    starts: Vec<S>,
+    fit: impl Fn(S) -> Fitted + Sync,
+    found: &mut Vec<Candidate>,
+    evaluations: &mut Evaluations,
+) {
+    let judging = context.judging();
+    let fitted: Vec<(Option<Candidate>, u64)> = starts
+        .into_par_iter()
+        .map(|start| {
+            if context.stopped() {
+                return (None, 0);
+            }
+            let fit = fit(start);
+            let end = fit.end.filter(|_| judging.may_go_on());
+            (end.and_then(|end| judged(context.problem, &end)), fit.evaluations)
+        })
+        .collect();
+    for (candidate, used) in fitted {
+        *evaluations += context.cost(used);
+        found.extend(candidate);
+    }
 }
 
 /// Returns the promise of a start, by which starts are screened: the cost plus the squared violation of the
@@ -166,32 +176,18 @@ pub struct Fitted {
     pub evaluations: u64,
 }
 
-/// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
-pub fn polish(
-    problem: &Problem,
-    start: Start,
-    steps: usize,
-    rounds: usize,
-    evaluations: u64,
-    budget: &Budget<'_>,
-) -> Fitted {
-    fit_with(problem, start, (steps, rounds, 1e-12), evaluations, budget)
+impl Fitted {
+    /// The end of a fit that cannot start.
+    pub(super) const NONE: Fitted = Fitted { end: None, merit: f64::INFINITY, evaluations: 0 };
 }
 
-/// As [`polish`], with the relative reduction at which a fit counts as converged beside the steps and rounds.
-pub(super) fn fit_with(
-    problem: &Problem,
-    start: Start,
-    (steps, rounds, relative_reduction): (usize, usize, f64),
-    evaluations: u64,
-    budget: &Budget<'_>,
-) -> Fitted {
-    let options = LmOptions { relative_reduction, ..options(problem, steps, rounds, evaluations) };
-    let stop = || budget.stopped();
+/// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
+pub fn polish(context: Context<'_>, start: Start, effort: Effort, evaluations: u64) -> Fitted {
+    let problem = context.problem;
+    let options = options(problem, effort, evaluations);
+    let stop = || context.stopped();
     if start.positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, start.setting) else {
-            return Fitted { end: None, merit: f64::INFINITY, evaluations: 0 };
-        };
+        let Some(fit) = TimedFit::new(problem, start.setting) else { return Fitted::NONE };
         ended(problem, solve(&fit, start.design, (), &options, &stop), start.setting, |()| Vec::new())
     } else {
         let fit = TorusFit::new(problem, start.setting).in_order(&start.design, &start.positions);
@@ -215,20 +211,16 @@ fn ended<S>(
     }
 }
 
-/// Steps that bring positions to their nearest points at a fixed design.
-const SETTLING_STEPS: usize = 60;
-
 /// Returns the positions of free timing at a fixed design, each brought to its nearest point, and the evaluations used.
 pub fn settle_positions(
-    problem: &Problem,
+    context: Context<'_>,
     design: &Design,
     setting: Setting,
     positions: Positions,
-    budget: &Budget<'_>,
 ) -> Option<(Positions, u64)> {
-    let fit = TorusFit::at(problem, setting, design);
-    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(problem, SETTLING_STEPS, 1, u64::MAX) };
-    let result = solve(&fit, *design, positions, &options, &|| budget.stopped());
+    let fit = TorusFit::at(context.problem, setting, design);
+    let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(context.problem, SETTLING, u64::MAX) };
+    let result = solve(&fit, *design, positions, &options, &|| context.stopped());
     (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
 }
 

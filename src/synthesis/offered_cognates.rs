@@ -1,20 +1,20 @@
 //! The offer of Roberts cognates beside the candidates of a search.
 
-use super::Budget;
+use super::Context;
 use crate::judge::assess::assess;
 use crate::judge::cognates::{At, COGNATES, Merit, alternative, cognates, first_apart, has_error_of};
 use crate::judge::rank::sort;
 use crate::record::Candidate;
-use crate::task::Problem;
 use rayon::prelude::*;
 
 /// Adds to each candidate its cognates as alternatives; if a cognate is the better linkage (accepted, or of a better
 /// worst transmission angle, or smaller) the two change places. Ranks are given anew.
 ///
 /// Once the budget has stopped, candidates that would take long to judge stay without alternatives.
-pub fn offer(problem: &Problem, candidates: &mut Vec<Candidate>, budget: &Budget<'_>) {
-    let points = COGNATES * problem.task().len() * candidates.len();
-    candidates.par_iter_mut().filter(|_| budget.leaves_time_for(points)).for_each(|candidate| {
+pub fn offer(context: Context<'_>, candidates: &mut Vec<Candidate>) {
+    let problem = context.problem;
+    let points = COGNATES * context.points() * candidates.len();
+    candidates.par_iter_mut().filter(|_| context.budget.leaves_time_for(points)).for_each(|candidate| {
         let mut forms = cognates(problem, candidate);
         forms.insert(0, candidate.clone());
         // Equal ones keep their order: the candidate that was found comes first.

@@ -4,8 +4,12 @@
 //! From a start or a judged candidate it computes a better one of the same basin, by sequential convex programming
 //! ([`crate::numbers::optimise::convex`]) under all requirements.
 
-use super::Budget;
-use super::multistart::{Fitted, judged};
+use super::Context;
+use super::constants::polish::{
+    BASINS, EVALUATIONS, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS, QUIET_HOPS, SAME_DEVIATION,
+    SAME_START, SHARE, STEPS,
+};
+use super::multistart::{Fitted, fit_and_judge};
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
@@ -18,37 +22,11 @@ use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::{Positions, TorusFit};
 use crate::task::spec::Objective;
 use crate::task::{Problem, Setting};
-use rayon::prelude::*;
 
-/// Number of different optima of the sum of squares that are polished: the best largest deviation need not lie in the
-/// best of them.
-const BASINS: usize = 24;
-/// Least number of distinct optima to find before they are polished.
-const LEAST_BASINS: usize = 8;
-/// Most steps of a polish.
-const STEPS: usize = 150;
-/// Local random restarts (hops) for the largest deviation: the optima around which they start, starts around each,
-/// their reach (in trust boxes; for a long link a tenth of it counts), the most rounds, and the rounds without
-/// improvement that end them.
-const HOPPED: usize = 3;
-const HOPS: usize = 4;
-const HOP: f64 = 0.4;
-const MAX_HOPS: u64 = 4;
-const QUIET_HOPS: usize = 2;
-/// Relative difference of largest deviation and link ratio below which starts are the same.
-const SAME_START: f64 = 1e-2;
-/// Relative difference of largest deviations below which they are the same optimum.
-const SAME_DEVIATION: f64 = 1e-6;
 /// The random stream of the first round of hops; those of a multistart count up from 0.
 const FIRST_HOP: u64 = 1 << 62;
-/// Most evaluations of a polish.
-const EVALUATIONS: u64 = 400;
-/// One part in this many of a budget is reserved for polishing, if the objective or the tolerances need it.
-const SHARE: u64 = 5;
 /// Relative margin inside the tolerances at which a polish aims.
 const TOLERANCE_MARGIN: f64 = 1e-9;
-/// Largest deviation, in parts of the tolerances, below which least squares has enough room between them.
-const INSIDE: f64 = 0.98;
 /// Least tolerance aimed at, in parts of the target's size; used for a tolerance of zero.
 const LEAST_TOLERANCE: f64 = 1e-10;
 /// Distance of a value from its limit, in parts of max(1, |limit|), within which the limit is active.
@@ -89,30 +67,25 @@ fn measures(problem: &Problem) -> Vec<f64> {
 /// tolerances, is below `enough`.
 ///
 /// The merit is that deviation, plus the violation of the requirements in sizes of the target.
-pub fn deviation_polish(
-    problem: &Problem,
-    start: &Start,
-    enough: f64,
-    evaluations: u64,
-    budget: &Budget<'_>,
-) -> Fitted {
-    let tolerances = measures(problem);
-    convex(problem, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations, budget).0
+pub fn deviation_polish(context: Context<'_>, start: &Start, enough: f64, evaluations: u64) -> Fitted {
+    let tolerances = measures(context.problem);
+    convex(context, start, &Goal::MaxDeviation { tolerances: &tolerances }, enough, evaluations).0
 }
 
 /// Brings a start to the optimum of its basin under all requirements: the least largest deviation, or the least sum of
 /// squares within the tolerances; if these cannot be met, the least largest deviation.
-pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budget<'_>) -> Fitted {
+pub fn finish(context: Context<'_>, start: &Start, evaluations: u64) -> Fitted {
+    let problem = context.problem;
     let floor = 1e-3 * exact_objective(problem);
     match (problem.spec().solve.objective, problem.task().tolerances()) {
-        (Objective::MaxDeviation, _) => deviation_polish(problem, start, floor, evaluations, budget),
+        (Objective::MaxDeviation, _) => deviation_polish(context, start, floor, evaluations),
         (Objective::SumOfSquares, None) => {
             let exact = 1e-6 * exact_cost(problem);
-            convex(problem, start, &Goal::SumOfSquares, exact, evaluations, budget).0
+            convex(context, start, &Goal::SumOfSquares, exact, evaluations).0
         }
         (Objective::SumOfSquares, Some(_)) => {
             let tolerances = measures(problem);
-            let nearest = deviation_polish(problem, start, INSIDE, evaluations, budget);
+            let nearest = deviation_polish(context, start, INSIDE, evaluations);
             let left = evaluations.saturating_sub(nearest.evaluations);
             let Some(inside) = &nearest.end else { return nearest };
             if nearest.merit > 1.0 || left == 0 {
@@ -120,7 +93,7 @@ pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budge
             }
             let goal = Goal::SumOfSquaresWithin { tolerances: &tolerances };
             let exact = 1e-6 * exact_cost(problem);
-            let (within, deviation) = convex(problem, inside, &goal, exact, left, budget);
+            let (within, deviation) = convex(context, inside, &goal, exact, left);
             let spent = nearest.evaluations + within.evaluations;
             if within.end.is_none() || deviation > 1.0 + TOLERANCE_MARGIN {
                 return Fitted { evaluations: spent, ..nearest };
@@ -132,13 +105,13 @@ pub fn finish(problem: &Problem, start: &Start, evaluations: u64, budget: &Budge
 
 /// Fits by sequential convex programming; returns the end and its largest deviation.
 fn convex(
-    problem: &Problem,
+    context: Context<'_>,
     start: &Start,
     goal: &Goal<'_>,
     good_enough: f64,
     evaluations: u64,
-    budget: &Budget<'_>,
 ) -> (Fitted, f64) {
+    let problem = context.problem;
     let size = problem.task().size();
     let trust = problem.space(start.setting.side).trust(size);
     let options = ConvexOptions {
@@ -150,20 +123,16 @@ fn convex(
         feasibility: 1e-9 * size,
         good_enough,
     };
-    let stop = || budget.stopped();
+    let stop = || context.stopped();
     if start.positions.is_empty() {
-        match TimedFit::new(problem, start.setting) {
-            None => (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY),
-            Some(fit) => {
-                let result = run(&fit, goal, start, (), &options, &stop);
-                ended(size, start.setting, result, |()| Vec::new())
-            }
-        }
+        let Some(fit) = TimedFit::new(problem, start.setting) else { return (Fitted::NONE, f64::INFINITY) };
+        let result = run(&fit, goal, start, (), &options, &stop);
+        ended(size, start.setting, result, |()| Vec::new())
     } else {
         let fit = TorusFit::new(problem, start.setting);
         let mut positions = start.positions.clone();
         if !fit.settle(&start.design, &mut positions) {
-            return (Fitted { end: None, merit: f64::INFINITY, evaluations: 0 }, f64::INFINITY);
+            return (Fitted::NONE, f64::INFINITY);
         }
         ended(size, start.setting, run(&fit, goal, start, positions, &options, &stop), |positions| positions)
     }
@@ -217,13 +186,8 @@ fn held(candidate: &Candidate) -> bool {
 /// distinct candidates are polished in parallel, then starts around the best results, until these bring no improvement
 /// or the tolerances are met. If neither tolerances nor the largest deviation need it, only accepted candidates at an
 /// active limit are polished.
-pub fn improve(
-    problem: &Problem,
-    found: &mut Vec<Candidate>,
-    evaluations: &mut Evaluations,
-    limit: u64,
-    budget: &Budget<'_>,
-) {
+pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &mut Evaluations, limit: u64) {
+    let problem = context.problem;
     let left = limit.saturating_sub(evaluations.objective);
     if left == 0 || found.is_empty() {
         return;
@@ -248,7 +212,7 @@ pub fn improve(
         distinct(problem, held, problem.spec().solve.candidates)
     };
     let starts = worth.iter().filter_map(|candidate| start_at(problem, candidate)).collect();
-    polish_all(problem, starts, found, evaluations, limit, budget);
+    polish_all(context, starts, found, evaluations, limit);
     if !(deviation || toleranced) {
         return;
     }
@@ -264,7 +228,7 @@ pub fn improve(
         near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
         let Some(&(least, _)) = near.first() else { return };
         let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
-        if done || least <= exact_objective(problem) || budget.stopped() {
+        if done || least <= exact_objective(problem) || context.stopped() {
             return;
         }
         quiet = if least < best * (1.0 - SAME_DEVIATION) { 0 } else { quiet + 1 };
@@ -283,7 +247,7 @@ pub fn improve(
             starts.push(start);
         }
         let before = evaluations.objective;
-        polish_all(problem, starts, found, evaluations, limit, budget);
+        polish_all(context, starts, found, evaluations, limit);
         if evaluations.objective == before {
             return;
         }
@@ -333,31 +297,14 @@ fn moved(problem: &Problem, start: &Start, draws: &mut Stream) -> Start {
 
 /// Polishes starts in parallel, each with its share of the rest of `limit`, and adds the results.
 fn polish_all(
-    problem: &Problem,
+    context: Context<'_>,
     mut starts: Vec<Start>,
     found: &mut Vec<Candidate>,
     evaluations: &mut Evaluations,
     limit: u64,
-    budget: &Budget<'_>,
 ) {
     let left = limit.saturating_sub(evaluations.objective);
     starts.truncate(usize::try_from(left).unwrap_or(usize::MAX));
     let each = (left / starts.len().max(1) as u64).min(EVALUATIONS);
-    let judging = budget.judging(problem.task().len());
-    let polished: Vec<(Option<Candidate>, u64)> = starts
-        .par_iter()
-        .map(|start| {
-            if budget.stopped() {
-                return (None, 0);
-            }
-            let fit = finish(problem, start, each, budget);
-            let end = fit.end.filter(|_| judging.may_go_on());
-            (end.and_then(|end| judged(problem, &end)), fit.evaluations)
-        })
-        .collect();
-    for (candidate, used) in polished {
-        evaluations.objective += used;
-        evaluations.positions += used * problem.task().len() as u64;
-        found.extend(candidate);
-    }
+    fit_and_judge(context, starts, |start| finish(context, &start, each), found, evaluations);
 }

@@ -1,10 +1,11 @@
 //! The population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform
 //! sampling as the baseline for comparison.
 
-use super::keeper::Keeper;
+use super::constants::population::{KEPT, LONG_TARGET};
 use super::multistart::{judged, settle_positions};
 use super::reduced::{ReducedFitness, forms};
-use super::{Budget, Observer, Progress};
+use super::starts::Searched;
+use super::{Context, Progress};
 use crate::numbers::optimise::argmin_bridge::{
     Limits, PopulationProgress, RestartsState, StopReason, run_restarts_from,
 };
@@ -12,8 +13,7 @@ use crate::numbers::optimise::differential_evolution::DifferentialEvolution;
 use crate::numbers::optimise::genetic::Genetic;
 use crate::numbers::optimise::population::{Fitness, Generations, PopulationError, PopulationProblem};
 use crate::numbers::optimise::random_search::{UniformSampling, UniformSamplingParameters};
-use crate::record::{Candidate, Reason};
-use crate::task::Problem;
+use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Timing;
 use crate::task::forms::fitness::PathFitness;
 use crate::task::forms::reduced::refusal;
@@ -50,20 +50,10 @@ pub struct PopulationEnd {
     pub starts: Vec<Start>,
     /// The candidates of these starts, judged without a polish.
     pub found: Vec<Candidate>,
-    /// Evaluations of the objective.
-    pub evaluations: u64,
-    /// Positions of the linkage computed for them.
-    pub positions: u64,
+    /// The evaluations used.
+    pub evaluations: Evaluations,
     /// The reason why it ended.
     pub reason: Reason,
-}
-
-/// A fitness whose individuals become starts.
-pub(super) trait Searched: PopulationProblem {
-    /// Returns the number of positions of the linkage that one evaluation computes.
-    fn positions(&self) -> u64;
-    /// Returns the start that an individual encodes.
-    fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start>;
 }
 
 /// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
@@ -76,57 +66,35 @@ pub(super) trait Searched: PopulationProblem {
 /// # Errors
 /// [`PopulationError`] if the parameters are out of range, or if there are no reduced variables.
 pub fn search(
-    problem: &Problem,
+    context: Context<'_>,
     which: Population,
     evaluations: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
 ) -> Result<PopulationEnd, PopulationError> {
-    search_kept(problem, which, evaluations, budget, observer, None)
-}
-
-/// As [`search`], with a keeper of its state, from which it resumes.
-///
-/// # Errors
-/// As [`search`].
-pub fn search_kept(
-    problem: &Problem,
-    which: Population,
-    evaluations: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-    keeper: Option<&Keeper<'_>>,
-) -> Result<PopulationEnd, PopulationError> {
+    let problem = context.problem;
     if !problem.spec().solve.moves_reduced() {
-        let fitness = PathFitness::new(problem);
-        return search_in(problem, &fitness, which, evaluations, budget, observer, keeper);
+        return search_in(context, &PathFitness::new(problem), which, evaluations);
     }
     if let Some(refusal) = refusal(problem) {
         return Err(PopulationError::Form { why: refusal.to_string() });
     }
     let forms = forms(problem);
-    let fitness = ReducedFitness::new(problem, &forms);
-    search_in(problem, &fitness, which, evaluations, budget, observer, keeper)
+    search_in(context, &ReducedFitness::new(problem, &forms), which, evaluations)
 }
-
-/// Number of points from which a stop is checked before each evaluation. With fewer, a generation takes a fraction of a
-/// second, and a stop waits for its end.
-const LONG_TARGET: usize = 1000;
 
 /// A fitness that checks for a stop before each evaluation, if one takes long: evaluations after a stop are skipped and
 /// give [`Fitness::UNKNOWN`], which no point is worse than. The first is always computed, so that there is an answer.
 struct Stoppable<'a, F> {
     fitness: &'a F,
-    budget: &'a Budget<'a>,
+    context: Context<'a>,
     is_long: bool,
     begun: AtomicBool,
     skipped: AtomicU64,
 }
 
 impl<'a, F: Searched> Stoppable<'a, F> {
-    fn new(problem: &Problem, fitness: &'a F, budget: &'a Budget<'a>) -> Self {
-        let is_long = problem.task().len() >= LONG_TARGET;
-        Stoppable { fitness, budget, is_long, begun: AtomicBool::new(false), skipped: AtomicU64::new(0) }
+    fn new(context: Context<'a>, fitness: &'a F) -> Self {
+        let is_long = context.points() >= LONG_TARGET;
+        Stoppable { fitness, context, is_long, begun: AtomicBool::new(false), skipped: AtomicU64::new(0) }
     }
 
     fn skipped(&self) -> u64 {
@@ -140,7 +108,7 @@ impl<F: Searched> PopulationProblem for Stoppable<'_, F> {
     }
 
     fn evaluate(&self, x: &[f64]) -> Fitness {
-        if self.is_long && self.begun.swap(true, Ordering::Relaxed) && self.budget.stopped() {
+        if self.is_long && self.begun.swap(true, Ordering::Relaxed) && self.context.stopped() {
             self.skipped.fetch_add(1, Ordering::Relaxed);
             return Fitness::UNKNOWN;
         }
@@ -153,14 +121,12 @@ impl<F: Searched> PopulationProblem for Stoppable<'_, F> {
 }
 
 fn search_in<F: Searched>(
-    problem: &Problem,
+    context: Context<'_>,
     fitness: &F,
     which: Population,
     evaluations: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-    keeper: Option<&Keeper<'_>>,
 ) -> Result<PopulationEnd, PopulationError> {
+    let problem = context.problem;
     let spec = &problem.spec().solve;
     let mut algorithm: Box<dyn Generations> = match which {
         Population::Genetic => Box::new(Genetic::new(spec.genetic)?),
@@ -170,39 +136,36 @@ fn search_in<F: Searched>(
         Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
     };
     if fitness.bounds().is_empty() {
-        let starts: Vec<Start> = fitness.start(&[], budget).into_iter().collect();
+        let starts: Vec<Start> = fitness.start(&[], context).into_iter().collect();
         return Ok(PopulationEnd {
             found: starts.iter().filter_map(|start| judged(problem, start)).collect(),
             starts,
-            evaluations: 1,
-            positions: fitness.positions(),
+            evaluations: Evaluations { objective: 1, positions: fitness.positions() },
             reason: Reason::Converged,
         });
     }
     let limits = Limits { evaluations, target: Some(crate::judge::rank::exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
-    let stop = AtomicBool::new(budget.stopped());
-    let stoppable = Stoppable::new(problem, fitness, budget);
+    let stop = AtomicBool::new(context.stopped());
+    let stoppable = Stoppable::new(context, fitness);
     let mut observe = |at: PopulationProgress<'_>| {
-        if budget.stopped() {
+        if context.stopped() {
             stop.store(true, Ordering::Relaxed);
         }
-        observer(&Progress {
-            phase: which.name(),
-            evaluations: at.evaluations,
-            budget: evaluations,
-            best_sum_sq: (sums && at.best.fitness.is_feasible()).then_some(at.best.fitness.cost),
-            accepted: at.best.fitness.is_feasible(),
-            hits: None,
+        let accepted = at.best.fitness.is_feasible();
+        (context.observer)(&Progress {
+            best_sum_sq: (sums && accepted).then_some(at.best.fitness.cost),
+            accepted,
+            ..Progress::of(which.name(), at.evaluations, evaluations)
         });
     };
     let mut keep = |state: &dyn Fn() -> RestartsState| {
         // The state after a generation that was cut short is not saved.
-        if let Some(keeper) = keeper.filter(|_| stoppable.skipped() == 0) {
+        if let Some(keeper) = context.keeper.filter(|_| stoppable.skipped() == 0) {
             keeper.keep(stop.load(Ordering::Relaxed), |at| at.population = Some(state()));
         }
     };
-    let earlier = keeper.and_then(|keeper| keeper.earlier().population.clone());
+    let earlier = context.keeper.and_then(|keeper| keeper.earlier().population.clone());
     let (algorithm, seed) = (&mut *algorithm, spec.seed);
     let outcome = run_restarts_from(
         earlier,
@@ -219,7 +182,7 @@ fn search_in<F: Searched>(
     let mut found = Vec::new();
     let kept =
         [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
-    let (skipped, judging) = (stoppable.skipped(), budget.judging(problem.task().len()));
+    let (skipped, judging) = (stoppable.skipped(), context.judging());
     for individual in kept {
         if skipped > 0 && individual.fitness.violation.is_nan() {
             continue;
@@ -227,7 +190,7 @@ fn search_in<F: Searched>(
         if !judging.may_go_on() {
             break;
         }
-        let Some(start) = fitness.start(&individual.x, budget) else { continue };
+        let Some(start) = fitness.start(&individual.x, context) else { continue };
         found.extend(judged(problem, &start));
         starts.push(start);
     }
@@ -235,10 +198,12 @@ fn search_in<F: Searched>(
     Ok(PopulationEnd {
         starts,
         found,
-        evaluations: outcome.evaluations - skipped,
-        positions: (outcome.evaluations - skipped) * fitness.positions(),
+        evaluations: Evaluations {
+            objective: outcome.evaluations - skipped,
+            positions: (outcome.evaluations - skipped) * fitness.positions(),
+        },
         reason: match outcome.reason {
-            StopReason::Cancelled => budget.stop_reason().unwrap_or(Reason::Cancelled),
+            StopReason::Cancelled => context.stop_reason().unwrap_or(Reason::Cancelled),
             // The fitness does not judge: an exact answer has to pass the referee too.
             StopReason::TargetReached if reached => Reason::TargetReached,
             StopReason::TargetReached => Reason::Stalled,
@@ -248,15 +213,12 @@ fn search_in<F: Searched>(
     })
 }
 
-/// Number of individuals of the last population that are examined for distinct answers.
-const KEPT: usize = 20;
-
 impl Searched for PathFitness<'_> {
     fn positions(&self) -> u64 {
         self.positions_per_evaluation()
     }
 
-    fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start> {
+    fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
         debug_assert_eq!(x.len(), self.bounds().len());
         let problem = self.problem();
         let reading = self.read(x);
@@ -267,7 +229,7 @@ impl Searched for PathFitness<'_> {
             Timing::Free => {
                 let shape = space.shape(&design)?;
                 let sampled = PathFitness::positions(self, &shape, &reading)?;
-                settle_positions(problem, &design, reading.setting, sampled, budget)?.0
+                settle_positions(context.of(problem), &design, reading.setting, sampled)?.0
             }
         };
         Some(Start { design, setting: reading.setting, positions })

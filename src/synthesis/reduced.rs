@@ -19,10 +19,9 @@
 //! On a circuit that rocks, start and start + span are the phases psi of its two ends, sin psi of its half width from
 //! its middle; of two circuits the sign of cos(start) chooses, or, if the motion may pass toggles, the assembly.
 
-use super::Budget;
+use super::Context;
 use super::multistart::settle_positions;
-use super::population::Searched;
-use super::starts::{Starts, unit_linkage};
+use super::starts::{Searched, Starts, unit_linkage};
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Circuit, Complex, CouplerSide, LinkageType};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
@@ -341,7 +340,7 @@ impl Searched for ReducedFitness<'_> {
         }
     }
 
-    fn start(&self, x: &[f64], budget: &Budget<'_>) -> Option<Start> {
+    fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
         let Read { reading, shape, offset, .. } = self.read(x).1?;
         let space = self.physical.space(reading.setting.side);
         let design = space.design(&shape, offset);
@@ -352,7 +351,7 @@ impl Searched for ReducedFitness<'_> {
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
         let sampled = self.physical.positions(&shape, &reading)?;
-        let (positions, _) = settle_positions(self.problem, &design, reading.setting, sampled, budget)?;
+        let (positions, _) = settle_positions(context, &design, reading.setting, sampled)?;
         Some(Start { design, setting: reading.setting, positions })
     }
 }

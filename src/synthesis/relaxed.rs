@@ -6,10 +6,11 @@
 //! and the ends are fitted under all requirements. The referee judges the designs by the problem itself, not by the
 //! relaxed ones.
 
-use super::multistart::{judged, promise};
-use super::plan::local_search;
+use super::constants::relaxed::{FIT_SHARE, FITTED, JUDGED, LEAST_SEARCH};
+use super::driver::Allowance;
+use super::multistart::{by_merit, fit_and_judge, promise};
 use super::polish::finish;
-use super::{Budget, Observer};
+use super::{Context, local};
 use crate::judge::assess::assess;
 use crate::judge::loosen::Demand;
 use crate::judge::warm::start_at;
@@ -18,30 +19,22 @@ use crate::task::Problem;
 use crate::task::forms::start::Start;
 use rayon::prelude::*;
 
-/// Ends of a relaxed search that are judged by the problem itself: judging takes the whole curve of each.
-const JUDGED: usize = 48;
-/// Ends of a relaxed search that are fitted under all requirements, the most promising first.
-const FITTED: usize = 12;
-/// One part in this many of the evaluations of a relaxed search goes to those fits.
-const FIT_SHARE: u64 = 4;
-/// Least evaluations of a relaxed search: with fewer it finds nothing.
-const LEAST_SEARCH: u64 = 1000;
-
-/// Judges the first [`JUDGED`] ends of a relaxed problem by the problem itself. If none of them is acceptable, fits the
+/// Judges the first `JUDGED` ends of a relaxed problem by the problem itself. If none of them is acceptable, fits the
 /// most promising `most` of them under all of its requirements, with at most `each` evaluations a fit.
 ///
 /// Returns the judged candidates, and the evaluations of the fits.
 pub(super) fn led_in(
-    problem: &Problem,
+    context: Context<'_>,
     ends: &[Candidate],
     (most, each): (usize, u64),
-    budget: &Budget<'_>,
-) -> (Vec<Candidate>, u64) {
+) -> (Vec<Candidate>, Evaluations) {
+    let problem = context.problem;
     let ends = &ends[..ends.len().min(JUDGED)];
     let mut found: Vec<Candidate> =
         ends.par_iter().filter_map(|end| assess(problem, &end.linkage, &end.crank_deg, &end.t1_at)).collect();
+    let mut spent = Evaluations::default();
     if most == 0 || found.iter().any(|candidate| candidate.accepted) {
-        return (found, 0);
+        return (found, spent);
     }
     let mut starts: Vec<(f64, Start)> = ends
         .par_iter()
@@ -50,21 +43,10 @@ pub(super) fn led_in(
             Some((promise(problem, &mut start)?, start))
         })
         .collect();
-    starts.sort_by(|one, other| one.0.total_cmp(&other.0));
+    by_merit(&mut starts, usize::MAX);
     starts.dedup_by(|one, other| one.0 == other.0);
-    starts.truncate(most);
-    let fitted: Vec<(Option<Candidate>, u64)> = starts
-        .into_par_iter()
-        .map(|(_, start)| {
-            let fit = finish(problem, &start, each, budget);
-            (fit.end.and_then(|end| judged(problem, &end)), fit.evaluations)
-        })
-        .collect();
-    let mut spent = 0;
-    for (candidate, evaluations) in fitted {
-        spent += evaluations;
-        found.extend(candidate);
-    }
+    let starts = starts.into_iter().take(most).map(|(_, start)| start).collect();
+    fit_and_judge(context, starts, |start| finish(context, &start, each), &mut found, &mut spent);
     (found, spent)
 }
 
@@ -72,12 +54,8 @@ pub(super) fn led_in(
 /// all, and fits the ends under all requirements; it ends with the first acceptable design.
 ///
 /// Returns the candidates judged by the problem itself, and the evaluations.
-pub(super) fn search(
-    problem: &Problem,
-    limit: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-) -> (Vec<Candidate>, Evaluations) {
+pub(super) fn search(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evaluations) {
+    let problem = context.problem;
     let mut evaluations = Evaluations::default();
     let mut found = Vec::new();
     let in_turn = |demand: &Demand| match demand {
@@ -85,20 +63,19 @@ pub(super) fn search(
         Demand::Design(_) => false,
     };
     let asked: Vec<Demand> = Demand::of(problem).into_iter().filter(in_turn).collect();
-    let n = problem.task().len() as u64;
     for (turn, demand) in (0..).zip(&asked) {
         let share = limit.saturating_sub(evaluations.objective) / (asked.len() as u64 - turn);
         let for_fits = share / FIT_SHARE;
-        if share - for_fits < LEAST_SEARCH || budget.stopped() {
+        let limit = share - for_fits;
+        if limit < LEAST_SEARCH || context.stopped() {
             break;
         }
         let Ok(relaxed) = Problem::new(demand.dropped(problem, problem.spec().clone())) else { continue };
-        let ends = local_search(&relaxed, share - for_fits, share - for_fits, budget, observer, None);
-        evaluations.objective += ends.evaluations.objective;
-        evaluations.positions += ends.evaluations.positions;
-        let (led, spent) = led_in(problem, &ends.found, (FITTED, for_fits / FITTED as u64), budget);
-        evaluations.objective += spent;
-        evaluations.positions += n * spent;
+        let within = Context { keeper: None, ..context.of(&relaxed) };
+        let ends = local::search(within, Allowance { limit, patience: limit });
+        evaluations += ends.evaluations;
+        let (led, spent) = led_in(context, &ends.candidates, (FITTED, for_fits / FITTED as u64));
+        evaluations += spent;
         found.extend(led);
         if found.iter().any(|candidate: &Candidate| candidate.accepted) {
             break;
@@ -111,6 +88,7 @@ pub(super) fn search(
 mod tests {
     use super::*;
     use crate::files::problem_file;
+    use crate::synthesis::Budget;
     use std::sync::atomic::AtomicBool;
 
     /// Returns a straight guide in a small box, with a tolerance and these lines under `[require]`.
@@ -128,7 +106,8 @@ mod tests {
         let never = AtomicBool::new(false);
         let budget = Budget::new(&never, None);
         let (asked, relaxed) = (guide("transmission_deg_min = 45"), guide(""));
-        let ends = local_search(&relaxed, 2000, 2000, &budget, &|_| {}, None).found;
+        let allowance = Allowance { limit: 2000, patience: 2000 };
+        let ends = local::search(Context::new(&relaxed, &budget), allowance).candidates;
         // Ends that meet the transmission angle already are left out: the fits have to do it.
         let beyond = |end: &Candidate| {
             assess(&asked, &end.linkage, &end.crank_deg, &end.t1_at)
@@ -136,12 +115,13 @@ mod tests {
         };
         let ends: Vec<Candidate> = ends.into_iter().filter(beyond).collect();
         assert!(ends.len() >= 3, "{} ends", ends.len());
-        let (found, spent) = led_in(&asked, &ends, (FITTED, 400), &budget);
+        let context = Context::new(&asked, &budget);
+        let (found, Evaluations { objective: spent, .. }) = led_in(context, &ends, (FITTED, 400));
         assert!(spent > 0 && spent <= 400 * FITTED as u64, "{spent} evaluations");
         let accepted: Vec<&Candidate> = found.iter().filter(|c| c.accepted).collect();
         assert!(!accepted.is_empty());
         // A design that is acceptable as it is needs no fit.
-        let (again, spent) = led_in(&asked, &[accepted[0].clone()], (FITTED, 400), &budget);
-        assert!(again[0].accepted && spent == 0);
+        let (again, spent) = led_in(context, &[accepted[0].clone()], (FITTED, 400));
+        assert!(again[0].accepted && spent.objective == 0);
     }
 }

@@ -1,7 +1,6 @@
 //! Repeated hits of the best answer, counted over independent rounds.
 
-use super::free::NEARLY;
-use super::plan::SAME_OPTIMUM;
+use super::belief::{NEARLY, SAME_OPTIMUM};
 use crate::record::Repeats;
 
 /// Returns the number of rounds whose objective lies within a relative distance `part` of the best; objectives up to

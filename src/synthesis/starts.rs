@@ -4,10 +4,12 @@
 //! p = s + (s2 + s3)/2, q = s + (s1 + s3)/2, l = s + (s1 + s2)/2 covers exactly the shapes whose shortest link
 //! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
 
+use super::Context;
 use crate::mechanism::four_bar::mobility::{InputArc, Mobility};
 use crate::mechanism::four_bar::mobility::{grashof_margin, linkage_type};
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
+use crate::numbers::optimise::population::PopulationProblem;
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
 use crate::task::forms::start::Start;
@@ -15,6 +17,14 @@ use crate::task::forms::torus::Positions;
 use crate::task::{AngleOffset, Timing};
 use crate::task::{Problem, Setting};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A fitness of a population search whose individuals become starts.
+pub(super) trait Searched: PopulationProblem {
+    /// Returns the number of positions of the linkage that one evaluation computes.
+    fn positions(&self) -> u64;
+    /// Returns the start that an individual encodes.
+    fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start>;
+}
 
 /// A generator of starts for a problem.
 #[derive(Clone, Debug)]

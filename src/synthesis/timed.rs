@@ -1,6 +1,6 @@
 //! Multistart search for prescribed timing by variable projection (the reduced form).
 //!
-//! A batch draws [`DRAWS`] ratios and angles from its own stream of the seed, screens them in every allowed direction
+//! A batch draws `DRAWS` ratios and angles from its own stream of the seed, screens them in every allowed direction
 //! on both assemblies, fits the `SHORT` most promising for a few steps and the best `LONG` of them to convergence
 //! ([`crate::task::forms::projection`]). An end that meets every bound and requirement is taken as it is. One that does
 //! not, and has a lower objective than the best that does, is a lower bound for its basin: it is polished in the
@@ -16,72 +16,32 @@
 //! requirements are active, at least `BINDING_WAVES` waves have to fit under them; if several answers are wanted, the
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
-use super::belief::Belief;
-use super::keeper::{Keeper, of_as_many_points, spared};
-use super::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish, promise, round};
+use super::belief::{Belief, HITS, SAME_OPTIMUM};
+use super::constants::timed::{
+    BINDING_WAVES, CONSTRAINED_LONG, CONSTRAINED_SHORT, DRAWS, KEPT, LEAST_WAVES, LONG, LONG_EVALUATIONS,
+    POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
+};
+use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
+use super::multistart::{LONG_FIT, SHORT_FIT, by_merit, judged, polish, promise, round};
 use super::polish::{basins_wanted, promising};
 use super::starts::{Starts, draw_ratios, drawn_types};
-use super::{Budget, HitsSoFar, Observer, Progress};
-use crate::judge::rank::{count_distinct, exact_cost, exact_sum_sq, searched, sort};
+use super::states::{Judged, SearchState, TimedState, of_as_many_points};
+use super::{Context, HitsSoFar, Judging};
+use crate::judge::rank::{exact_cost, searched, sort};
 use crate::mechanism::{AssemblyMode, CouplerSide, LinkageType};
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
-use crate::record::{Candidate, Evaluations, Reason, Repeats};
-use crate::task::forms::design_space::{Design, DesignSpace};
+use crate::record::{Candidate, Repeats};
+use crate::task::forms::design_space::DesignSpace;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
 use crate::task::{AngleOffset, Timing};
 use crate::task::{Problem, Setting};
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// Draws in a batch.
-pub const DRAWS: usize = 128;
-/// Draws fitted for a few steps.
-const SHORT: usize = 8;
-/// Draws fitted to convergence.
-const LONG: usize = 3;
-/// Most evaluations of a short and of a long fit.
-const SHORT_EVALUATIONS: u32 = 10;
-const LONG_EVALUATIONS: u32 = 100;
-/// Most ends polished in a batch.
-const POLISHES: usize = 2;
-/// Draws screened with their violation, fitted for a few steps and fitted to convergence under all requirements, if
-/// requirements are active.
-const PROMISING: usize = 256;
-const CONSTRAINED_SHORT: usize = 6;
-const CONSTRAINED_STEPS: usize = 24;
-const CONSTRAINED_LONG: usize = 2;
-/// Least number of waves with such fits, if requirements are active.
-const BINDING_WAVES: u64 = 2;
-/// Batches that run in parallel.
-pub const WAVE: u64 = 4;
-/// Least number of waves if several answers are wanted, and waves without a new answer that end the search for more.
-const LEAST_WAVES: u64 = 6;
-const QUIET_WAVES: u64 = 12;
-/// Relative difference of errors below which they are the same optimum.
-const SAME_OPTIMUM: f64 = 1e-6;
 /// Difference of designs, in parts of the target's size, within which they are judged once.
 const SAME_NUMBERS: f64 = 1e-6;
-/// Number of candidates kept while searching.
-const KEPT: usize = 400;
-
-/// The outcome of the search.
-#[derive(Clone, Debug)]
-pub struct TimedOutcome {
-    /// Judged candidates, best first.
-    pub found: Vec<Candidate>,
-    /// The evaluations used.
-    pub evaluations: Evaluations,
-    /// The reason why it ended.
-    pub reason: Reason,
-    /// Whether the physical polish was needed.
-    pub polished: bool,
-    /// The repeated hits of the best answer.
-    pub repeats: Option<Repeats>,
-}
 
 /// An end of a fit, in physical parameters.
 #[derive(Clone, Debug)]
@@ -89,62 +49,6 @@ struct End {
     start: Start,
     /// The objective.
     cost: f64,
-}
-
-/// An end that the referee has judged.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Judged {
-    setting: Setting,
-    design: Design,
-    accepted: bool,
-}
-
-/// The state of the search between two waves, on which the next waves depend besides the problem and the budget.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct TimedState {
-    found: Vec<Candidate>,
-    evaluations: Evaluations,
-    polished: bool,
-    best: Option<Candidate>,
-    seen: Vec<Judged>,
-    belief: Belief,
-    known: usize,
-    quiet: u64,
-    wave: u64,
-    draws: u64,
-    binding: bool,
-    binding_waves: u64,
-}
-
-impl TimedState {
-    fn new(exact: f64) -> Self {
-        TimedState {
-            found: Vec::new(),
-            evaluations: Evaluations::default(),
-            polished: false,
-            best: None,
-            seen: Vec::new(),
-            belief: Belief::new(exact),
-            known: 0,
-            quiet: 0,
-            wave: 0,
-            draws: 0,
-            binding: false,
-            binding_waves: 0,
-        }
-    }
-
-    fn ended(self, reason: Reason) -> TimedOutcome {
-        let (hits, near) = self.belief.hits();
-        let repeats = || Repeats::new(self.wave * WAVE, hits as u64, near as u64);
-        TimedOutcome {
-            repeats: self.best.is_some().then(repeats),
-            found: self.found,
-            evaluations: self.evaluations,
-            reason,
-            polished: self.polished,
-        }
-    }
 }
 
 /// The outcome of a batch.
@@ -162,8 +66,8 @@ struct BatchOutcome {
 }
 
 struct Search<'a> {
+    context: Context<'a>,
     problem: &'a Problem,
-    budget: &'a Budget<'a>,
     forms: Vec<(f64, Projection)>,
     types: Vec<LinkageType>,
     starts: Starts<'a>,
@@ -175,129 +79,140 @@ struct Search<'a> {
     exact: f64,
 }
 
-/// Searches until the best is believed, `limit` evaluations are used, or `patience` are used without an acceptable
-/// candidate; `None` if the problem has no reduced form.
-pub fn search(
-    problem: &Problem,
-    limit: u64,
-    patience: u64,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
-    keeper: Option<&Keeper<'_>>,
-) -> Option<TimedOutcome> {
-    let search = Search::new(problem, budget)?;
-    let wanted = basins_wanted(problem);
-    let n = problem.task().len() as u64;
-    let earlier = keeper.and_then(|keeper| keeper.earlier().timed.clone());
+/// The search with its state.
+struct Timed<'a> {
+    search: Search<'a>,
+    wanted: usize,
+    at: TimedState,
+}
+
+/// Searches until the best is believed, the limit is reached, or the patience is at an end; `None` if the problem has no
+/// reduced form.
+pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
+    let problem = context.problem;
+    let search = Search::new(context)?;
+    let earlier = context.keeper.and_then(|keeper| keeper.earlier().timed.clone());
     let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
-    let mut at = earlier.unwrap_or_else(|| TimedState::new(search.exact));
-    // No batch so far came near its allowance of evaluations.
-    let mut ample = true;
-    let keep = |stopped, at: &TimedState| {
-        if let Some(keeper) = keeper {
-            keeper.keep(stopped, |state| state.timed = Some(at.clone()));
+    let at =
+        earlier.unwrap_or_else(|| TimedState { belief: Belief::new(search.exact), ..TimedState::default() });
+    let mut timed = Timed { search, wanted: basins_wanted(problem), at };
+    let reason = drive(context, allowance, &mut timed);
+    let at = timed.at;
+    let (hits, near) = at.belief.hits();
+    let repeats = || Repeats::new(at.wave * WAVE, hits as u64, near as u64);
+    let mut used = vec![Timed::PHASE.into()];
+    if at.polished {
+        used.push("least-squares".into());
+    }
+    Some(Found {
+        repeats: at.best.is_some().then(repeats),
+        candidates: at.found,
+        evaluations: at.evaluations,
+        reason,
+        used,
+    })
+}
+
+impl Timed<'_> {
+    /// Judges an end, unless it cannot matter or an equal one has been judged before.
+    fn read_end(&mut self, end: End, judging: &Judging<'_>) {
+        let belief = &mut self.at.belief;
+        if self.wanted == 1 && end.cost > self.search.exact && !belief.would_improve(end.cost) {
+            // One answer is wanted, and this is not a better one.
+            belief.came_back_to(end.cost);
+            return;
         }
-    };
-    loop {
-        let stop = budget.stop_reason();
-        if ample {
-            keep(stop.is_some(), &at);
+        if let Some(accepted) = self.search.judged_before(&self.at.seen, &end) {
+            if accepted {
+                belief.came_back_to(end.cost);
+            }
+            return;
         }
-        if let Some(reason) = stop {
-            return Some(at.ended(reason));
+        if !judging.may_go_on() {
+            return;
         }
-        let left = limit.saturating_sub(at.evaluations.objective);
-        let allowance = |index: u64| left / WAVE + u64::from(index % WAVE < left % WAVE);
-        let (wave, bar, binding) = (at.wave, at.belief.best(), at.binding);
-        let batches: Vec<BatchOutcome> = (wave * WAVE..(wave + 1) * WAVE)
-            .into_par_iter()
-            .map(|index| search.batch(index, allowance(index), bar, binding))
-            .collect();
-        let stop = budget.stop_reason();
-        if stop.is_some() && ample {
-            keep(true, &at);
+        let problem = self.search.problem;
+        let Some(candidate) = judged(problem, &end.start) else { return };
+        let Start { setting, design, .. } = end.start;
+        self.at.seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
+        self.take(candidate);
+    }
+
+    fn take(&mut self, candidate: Candidate) {
+        let problem = self.search.problem;
+        if promising(problem, &candidate) {
+            let cost = searched(problem, &candidate);
+            self.at.belief.came_to(cost);
+            if self.at.best.as_ref().is_none_or(|b| cost < searched(problem, b)) {
+                self.at.best = Some(candidate.clone());
+            }
         }
-        ample &=
-            (wave * WAVE..).zip(&batches).all(|(index, batch)| spared(batch.evaluations, allowance(index)));
-        let (found, best, seen, belief) = (&mut at.found, &mut at.best, &mut at.seen, &mut at.belief);
-        let judging = budget.judging(problem.task().len());
-        at.wave += 1;
-        at.binding_waves += u64::from(binding);
-        for batch in batches {
-            at.binding |= batch.binding;
-            at.draws += batch.draws;
-            at.polished |= batch.polished;
-            at.evaluations.objective += batch.evaluations;
-            at.evaluations.positions += n * batch.evaluations;
-            let mut take = |candidate: Candidate, belief: &mut Belief| {
-                if promising(problem, &candidate) {
-                    let cost = searched(problem, &candidate);
-                    belief.came_to(cost);
-                    if best.as_ref().is_none_or(|b| cost < searched(problem, b)) {
-                        *best = Some(candidate.clone());
-                    }
-                }
-                found.push(candidate);
-            };
+        self.at.found.push(candidate);
+    }
+}
+
+impl Strategy for Timed<'_> {
+    /// The outcomes of a wave's batches, and whether they fitted under all requirements.
+    type Batch = (Vec<BatchOutcome>, bool);
+    const PHASE: &'static str = "variable-projection";
+
+    fn save(&self, state: &mut SearchState) {
+        state.timed = Some(self.at.clone());
+    }
+
+    fn standing(&self) -> Standing<'_> {
+        let TimedState { ref found, ref best, ref belief, evaluations, draws, .. } = self.at;
+        Standing {
+            evaluations: evaluations.objective,
+            draws,
+            best: best.as_ref(),
+            nearest: found.first(),
+            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: HITS }),
+        }
+    }
+
+    fn run(&mut self, _: Context<'_>, left: u64) -> (Self::Batch, bool) {
+        let (first, bar, binding) = (self.at.wave * WAVE, self.at.belief.best(), self.at.binding);
+        let run = |i, allowance| self.search.batch(first + i, allowance, bar, binding);
+        let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations);
+        ((wave, binding), ample)
+    }
+
+    fn read(&mut self, context: Context<'_>, (wave, binding): Self::Batch) {
+        let judging = context.judging();
+        self.at.wave += 1;
+        self.at.binding_waves += u64::from(binding);
+        for batch in wave {
+            self.at.binding |= batch.binding;
+            self.at.draws += batch.draws;
+            self.at.polished |= batch.polished;
+            self.at.evaluations += context.cost(batch.evaluations);
             for end in batch.ends {
-                if wanted == 1 && end.cost > search.exact && !belief.would_improve(end.cost) {
-                    // One answer is wanted, and this is not a better one.
-                    belief.came_back_to(end.cost);
-                    continue;
-                }
-                if let Some(accepted) = search.judged_before(seen, &end) {
-                    if accepted {
-                        belief.came_back_to(end.cost);
-                    }
-                    continue;
-                }
-                if !judging.may_go_on() {
-                    continue;
-                }
-                let Some(candidate) = judged(problem, &end.start) else { continue };
-                let Start { setting, design, .. } = end.start;
-                seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
-                take(candidate, belief);
+                self.read_end(end, &judging);
             }
             for candidate in batch.judged {
-                take(candidate, belief);
+                self.take(candidate);
             }
-            belief.end_batch();
+            self.at.belief.end_batch();
         }
-        sort(problem, found);
-        found.truncate(KEPT);
-        if let Some(reason) = stop {
-            return Some(at.ended(reason));
-        }
-        observer(&Progress {
-            phase: "variable-projection",
-            evaluations: at.evaluations.objective,
-            budget: limit,
-            best_sum_sq: best.as_ref().or(found.first()).map(|c| c.error.sum_sq),
-            accepted: best.as_ref().is_some_and(|b| b.accepted),
-            hits: best.as_ref().map(|_| HitsSoFar { came: belief.hits().0, wanted: super::belief::HITS }),
-        });
+        sort(context.problem, &mut self.at.found);
+        self.at.found.truncate(KEPT);
+    }
+
+    fn is_done(&mut self, context: Context<'_>) -> bool {
+        let at = &mut self.at;
         let explored = !at.binding || at.binding_waves >= BINDING_WAVES;
-        let enough = wanted == 1 || at.wave >= LEAST_WAVES;
-        if belief.is_firm() && explored && enough {
-            let distinct = if wanted == 1 { 1 } else { count_distinct(problem, found, wanted) };
-            at.quiet = if distinct > at.known { 0 } else { at.quiet + 1 };
-            at.known = distinct;
-            if distinct >= wanted || at.quiet >= QUIET_WAVES {
-                let is_exact = best.as_ref().is_some_and(|b| b.error.sum_sq <= exact_sum_sq(problem));
-                return Some(at.ended(if is_exact { Reason::TargetReached } else { Reason::Converged }));
-            }
-        }
-        let used = at.evaluations.objective;
-        let spent = used.max(at.draws);
-        if spent >= limit || (spent >= patience && best.is_none()) {
-            return Some(at.ended(if used < patience { Reason::Stalled } else { Reason::EvaluationLimit }));
-        }
+        let enough = self.wanted == 1 || at.wave >= LEAST_WAVES;
+        at.belief.is_firm()
+            && explored
+            && enough
+            && are_enough(context, &at.found, self.wanted, (&mut at.known, &mut at.quiet), QUIET_WAVES)
     }
 }
 
 impl<'a> Search<'a> {
-    fn new(problem: &'a Problem, budget: &'a Budget<'a>) -> Option<Self> {
+    fn new(context: Context<'a>) -> Option<Self> {
+        let problem = context.problem;
         let Timing::Prescribed { crank_angles, .. } = problem.task().timing() else { return None };
         let forms = problem
             .directions()
@@ -317,8 +232,8 @@ impl<'a> Search<'a> {
             types: drawn_types(problem),
             span: (low, high),
             exact: exact_cost(problem),
+            context,
             problem,
-            budget,
         })
     }
 
@@ -367,10 +282,11 @@ impl<'a> Search<'a> {
         least >= (q - r) * (q - r) && greatest <= (q + r) * (q + r)
     }
 
+    /// Runs batch `index`: its draws screened, fitted in the reduced form, and under all requirements where that is
+    /// needed. `bar` is the best objective so far; `thorough`: fits under all requirements from the first step on too.
     fn batch(&self, index: u64, allowance: u64, bar: f64, thorough: bool) -> BatchOutcome {
-        let problem = self.problem;
         let mut out = BatchOutcome::default();
-        let mut stream = stream(problem.spec().solve.seed, index);
+        let mut stream = stream(self.problem.spec().solve.seed, index);
         let readings = 2 * self.forms.len() as u64;
         let affordable = (allowance / readings).min(DRAWS as u64) as usize;
         out.draws = DRAWS as u64;
@@ -381,19 +297,33 @@ impl<'a> Search<'a> {
         }
         let batch = Batch::new(draws);
         out.evaluations = readings * batch.len() as u64;
-        let mut screened: Vec<(f64, usize, usize, AssemblyMode)> = Vec::new();
+        let Some(screened) = self.screened(&batch) else { return BatchOutcome::default() };
+        let forms = self.forms.iter();
+        let fits = forms.map(|(_, form)| ProjectedFit::new(form, AssemblyMode::Plus)).collect();
+        let mut fitting = Fitting { search: self, fits, allowance, out };
+        let ends = fitting.reduced(&screened, &batch);
+        fitting.divide(ends, bar);
+        if thorough && index.is_multiple_of(2) {
+            let round = round(self.context, &self.starts, index, fitting.left());
+            fitting.out.evaluations += round.evaluations.objective;
+            fitting.out.polished = true;
+            fitting.out.judged = round.found;
+        } else if thorough {
+            fitting.constrained(&screened, &batch);
+        }
+        let mut out = fitting.out;
+        out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
+        out
+    }
+
+    /// Returns the draws that close in each form and assembly, least cost first; `None` if the search was stopped.
+    fn screened(&self, batch: &Batch) -> Option<Vec<Screened>> {
+        let mut screened: Vec<Screened> = Vec::new();
         for (form, (_, projection)) in self.forms.iter().enumerate() {
-            let Some(costs) = projection.screen_unless(&batch, &|| self.budget.stopped()) else {
-                return BatchOutcome::default();
-            };
+            let costs = projection.screen_unless(batch, &|| self.context.stopped())?;
             for (assembly, costs) in [AssemblyMode::Plus, AssemblyMode::Minus].into_iter().zip(costs) {
-                screened.extend(
-                    costs
-                        .iter()
-                        .enumerate()
-                        .filter(|(_, c)| c.is_finite())
-                        .map(|(i, &c)| (c, i, form, assembly)),
-                );
+                let costs = costs.iter().enumerate().filter(|(_, c)| c.is_finite());
+                screened.extend(costs.map(|(i, &c)| (c, i, form, assembly)));
             }
         }
         screened.sort_unstable_by(|x, y| {
@@ -402,155 +332,7 @@ impl<'a> Search<'a> {
                 .then(x.2.cmp(&y.2))
                 .then(x.3.sign().total_cmp(&y.3.sign()))
         });
-        let task = problem.task();
-        let options = CompactOptions {
-            max_evaluations: SHORT_EVALUATIONS,
-            relative_reduction: 1e-10,
-            exact_cost: 1e-6 * self.exact,
-            hopeless_cost: f64::INFINITY,
-            patience: u32::MAX,
-        };
-        let mut fits: Vec<ProjectedFit<'_>> =
-            self.forms.iter().map(|(_, form)| ProjectedFit::new(form, AssemblyMode::Plus)).collect();
-        let mut fit = |x: Reduced, form: usize, assembly: AssemblyMode, most: u32, used: &mut u64| {
-            let left = u32::try_from(allowance - *used).unwrap_or(u32::MAX);
-            if left == 0 {
-                return None;
-            }
-            let fit = &mut fits[form];
-            fit.set_assembly(assembly);
-            let options = CompactOptions { max_evaluations: most.min(left), ..options };
-            let end = solve(fit, x, self.forms[form].1.bounds(), &options, &|| self.budget.stopped());
-            *used += u64::from(end.evaluations);
-            end.cost.is_finite().then_some((end.cost, end.x))
-        };
-        let mut short = Vec::with_capacity(SHORT);
-        let promising =
-            screened.iter().filter(|(_, i, form, _)| self.stays_closed(*form, &batch.draws()[*i]));
-        for &(_, i, form, assembly) in promising.take(SHORT) {
-            if let Some((cost, x)) =
-                fit(batch.draws()[i], form, assembly, SHORT_EVALUATIONS, &mut out.evaluations)
-            {
-                short.push((cost, x, form, assembly));
-            }
-        }
-        short.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut long: Vec<(f64, Reduced, usize, AssemblyMode)> = Vec::with_capacity(LONG);
-        for (cost, x, form, assembly) in short.into_iter().take(LONG) {
-            if self.budget.stopped() {
-                // Taken as it is: the best so far.
-                long.push((cost, x, form, assembly));
-                break;
-            }
-            if let Some((cost, x)) = fit(x, form, assembly, LONG_EVALUATIONS, &mut out.evaluations) {
-                long.push((cost, x, form, assembly));
-            }
-        }
-        long.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut broken: Vec<(f64, End)> = Vec::new();
-        let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
-        for (cost, x, form, assembly) in long {
-            fits[form].set_assembly(assembly);
-            let Some(solution) = fits[form].solution(&x) else { continue };
-            let Some((start, lack)) = self.physical(&solution, self.forms[form].0, assembly) else {
-                continue;
-            };
-            let end = End { start, cost };
-            if lack == 0.0 {
-                if self.stays_closed(form, &x) {
-                    out.ends.push(end);
-                }
-            } else {
-                broken.push((cost + scale * lack * lack, end));
-            }
-        }
-        broken.sort_by(|x, y| x.0.total_cmp(&y.0));
-        if self.budget.stopped() && out.ends.is_empty() {
-            out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
-        }
-        let mut polishes = 0;
-        for (_, end) in broken {
-            let bar = out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
-            let left = allowance - out.evaluations;
-            if polishes >= POLISHES || left == 0 || self.budget.stopped() {
-                break;
-            }
-            if end.cost >= bar * (1.0 - SAME_OPTIMUM) {
-                continue;
-            }
-            polishes += 1;
-            out.binding = true;
-            self.polished(end.start, allowance, &mut out);
-        }
-        if thorough && index.is_multiple_of(2) {
-            let left = allowance - out.evaluations;
-            let round = round(problem, &self.starts, index, left, self.budget);
-            out.evaluations += round.evaluations;
-            out.polished = true;
-            out.judged = round.found;
-        } else if thorough {
-            self.constrained(&screened, &batch, &mut fits, allowance, &mut out);
-        }
-        out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
-        out
-    }
-
-    /// Fits to convergence under all requirements and adds the end.
-    fn polished(&self, start: Start, allowance: u64, out: &mut BatchOutcome) {
-        let left = allowance - out.evaluations;
-        let fitted = polish(self.problem, start, LONG_STEPS, LONG_ROUNDS, left, self.budget);
-        out.evaluations += fitted.evaluations;
-        out.polished = true;
-        out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
-    }
-
-    /// Fits under all requirements from the first step on, from the draws of least cost and violation.
-    fn constrained(
-        &self,
-        screened: &[(f64, usize, usize, AssemblyMode)],
-        batch: &Batch,
-        fits: &mut [ProjectedFit<'_>],
-        allowance: u64,
-        out: &mut BatchOutcome,
-    ) {
-        let mut starts = Vec::new();
-        for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
-            let x = &batch.draws()[i];
-            if self.budget.stopped() {
-                break;
-            }
-            if out.evaluations >= allowance || !self.stays_closed(form, x) {
-                continue;
-            }
-            out.evaluations += 1;
-            fits[form].set_assembly(assembly);
-            let Some(solution) = fits[form].solution(x) else { continue };
-            // The promise of the start as the fit takes it: clamped to the bounds.
-            let physical = self.physical(&solution, self.forms[form].0, assembly);
-            if let Some((mut start, _)) = physical
-                && let Some(promise) = promise(self.problem, &mut start)
-            {
-                starts.push((promise, start));
-            }
-        }
-        starts.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut short = Vec::new();
-        for (_, start) in starts.into_iter().take(CONSTRAINED_SHORT) {
-            if out.evaluations >= allowance || self.budget.stopped() {
-                break;
-            }
-            let left = allowance - out.evaluations;
-            let fitted = polish(self.problem, start, CONSTRAINED_STEPS, 2, left, self.budget);
-            out.evaluations += fitted.evaluations;
-            short.extend(fitted.end.map(|start| (fitted.merit, start)));
-        }
-        short.sort_by(|x, y| x.0.total_cmp(&y.0));
-        for (_, start) in short.into_iter().take(CONSTRAINED_LONG) {
-            if out.evaluations >= allowance || self.budget.stopped() {
-                break;
-            }
-            self.polished(start, allowance, out);
-        }
+        Some(screened)
     }
 
     /// Returns a solution as a start of the physical fit, and its violation of bounds and requirements in sizes of the
@@ -579,5 +361,162 @@ impl<'a> Search<'a> {
         let outside = space.excess(shape) / problem.task().size();
         let start = Start { design: space.design(shape, *offset), setting, positions: Vec::new() };
         Some((start, outside + lack))
+    }
+}
+
+/// A screened draw: its cost, its index, the form and the assembly.
+type Screened = (f64, usize, usize, AssemblyMode);
+/// The end of a fit in the reduced form: its cost, its unknowns, the form and the assembly.
+type ReducedEnd = (f64, Reduced, usize, AssemblyMode);
+
+/// The fits of one batch within its allowance.
+struct Fitting<'a> {
+    search: &'a Search<'a>,
+    /// One fit per form.
+    fits: Vec<ProjectedFit<'a>>,
+    allowance: u64,
+    out: BatchOutcome,
+}
+
+impl Fitting<'_> {
+    fn left(&self) -> u64 {
+        self.allowance - self.out.evaluations
+    }
+
+    fn stopped(&self) -> bool {
+        self.search.context.stopped()
+    }
+
+    /// Fits in the reduced form with at most `most` evaluations.
+    fn fit(&mut self, (x, form, assembly): (Reduced, usize, AssemblyMode), most: u32) -> Option<ReducedEnd> {
+        let left = u32::try_from(self.left()).unwrap_or(u32::MAX);
+        if left == 0 {
+            return None;
+        }
+        let search = self.search;
+        let options = CompactOptions {
+            max_evaluations: most.min(left),
+            relative_reduction: 1e-10,
+            exact_cost: 1e-6 * search.exact,
+            hopeless_cost: f64::INFINITY,
+            patience: u32::MAX,
+        };
+        let fit = &mut self.fits[form];
+        fit.set_assembly(assembly);
+        let stop = || search.context.stopped();
+        let end = solve(fit, x, search.forms[form].1.bounds(), &options, &stop);
+        self.out.evaluations += u64::from(end.evaluations);
+        end.cost.is_finite().then_some((end.cost, end.x, form, assembly))
+    }
+
+    /// Fits the most promising draws for a few steps and the best of them to convergence, in the reduced form.
+    fn reduced(&mut self, screened: &[Screened], batch: &Batch) -> Vec<ReducedEnd> {
+        let search = self.search;
+        let promising =
+            screened.iter().filter(|(_, i, form, _)| search.stays_closed(*form, &batch.draws()[*i]));
+        let mut short = Vec::with_capacity(SHORT);
+        for &(_, i, form, assembly) in promising.take(SHORT) {
+            short.extend(self.fit((batch.draws()[i], form, assembly), SHORT_EVALUATIONS));
+        }
+        short.sort_by(|x, y| x.0.total_cmp(&y.0));
+        let mut long: Vec<ReducedEnd> = Vec::with_capacity(LONG);
+        for (cost, x, form, assembly) in short.into_iter().take(LONG) {
+            if self.stopped() {
+                // Taken as it is: the best so far.
+                long.push((cost, x, form, assembly));
+                break;
+            }
+            long.extend(self.fit((x, form, assembly), LONG_EVALUATIONS));
+        }
+        long.sort_by(|x, y| x.0.total_cmp(&y.0));
+        long
+    }
+
+    /// Takes the ends that meet every bound and requirement, and polishes those that do not and are better than all that
+    /// do.
+    fn divide(&mut self, ends: Vec<ReducedEnd>, bar: f64) {
+        let search = self.search;
+        let task = search.problem.task();
+        let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
+        let mut broken: Vec<(f64, End)> = Vec::new();
+        for (cost, x, form, assembly) in ends {
+            self.fits[form].set_assembly(assembly);
+            let Some(solution) = self.fits[form].solution(&x) else { continue };
+            let physical = search.physical(&solution, search.forms[form].0, assembly);
+            let Some((start, lack)) = physical else { continue };
+            let end = End { start, cost };
+            if lack != 0.0 {
+                broken.push((cost + scale * lack * lack, end));
+            } else if search.stays_closed(form, &x) {
+                self.out.ends.push(end);
+            }
+        }
+        broken.sort_by(|x, y| x.0.total_cmp(&y.0));
+        if self.stopped() && self.out.ends.is_empty() {
+            self.out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
+        }
+        let mut polishes = 0;
+        for (_, end) in broken {
+            let bar = self.out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
+            if polishes >= POLISHES || self.left() == 0 || self.stopped() {
+                break;
+            }
+            if end.cost >= bar * (1.0 - SAME_OPTIMUM) {
+                continue;
+            }
+            polishes += 1;
+            self.out.binding = true;
+            self.polished(end.start);
+        }
+    }
+
+    /// Fits to convergence under all requirements and adds the end.
+    fn polished(&mut self, start: Start) {
+        let fitted = polish(self.search.context, start, LONG_FIT, self.left());
+        self.out.evaluations += fitted.evaluations;
+        self.out.polished = true;
+        self.out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
+    }
+
+    /// Fits under all requirements from the first step on, from the draws of least cost and violation.
+    fn constrained(&mut self, screened: &[Screened], batch: &Batch) {
+        let search = self.search;
+        let mut starts = Vec::new();
+        for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
+            let x = &batch.draws()[i];
+            if self.stopped() {
+                break;
+            }
+            if self.out.evaluations >= self.allowance || !search.stays_closed(form, x) {
+                continue;
+            }
+            self.out.evaluations += 1;
+            self.fits[form].set_assembly(assembly);
+            let Some(solution) = self.fits[form].solution(x) else { continue };
+            // The promise of the start as the fit takes it: clamped to the bounds.
+            let physical = search.physical(&solution, search.forms[form].0, assembly);
+            if let Some((mut start, _)) = physical
+                && let Some(promise) = promise(search.problem, &mut start)
+            {
+                starts.push((promise, start));
+            }
+        }
+        by_merit(&mut starts, CONSTRAINED_SHORT);
+        let mut short = Vec::new();
+        for (_, start) in starts {
+            if self.out.evaluations >= self.allowance || self.stopped() {
+                break;
+            }
+            let fitted = polish(search.context, start, SHORT_FIT, self.left());
+            self.out.evaluations += fitted.evaluations;
+            short.extend(fitted.end.map(|start| (fitted.merit, start)));
+        }
+        by_merit(&mut short, CONSTRAINED_LONG);
+        for (_, start) in short {
+            if self.out.evaluations >= self.allowance || self.stopped() {
+                break;
+            }
+            self.polished(start);
+        }
     }
 }

@@ -12,7 +12,7 @@ use linkwright::internals::mechanism::{AssemblyMode, FourBar, LinkageType, Natur
 use linkwright::internals::record::{Candidate, Record, Warning, WarningKind};
 use linkwright::internals::synthesis::buildable::buildable;
 use linkwright::internals::synthesis::offered_cognates;
-use linkwright::internals::synthesis::{Budget, plan};
+use linkwright::internals::synthesis::{Budget, Context, plan};
 use linkwright::internals::task::Problem;
 use std::sync::atomic::AtomicBool;
 
@@ -28,7 +28,7 @@ fn problem(name: &str, set: &[(&str, &str)]) -> Problem {
 fn found(problem: &Problem) -> Vec<Candidate> {
     let flag = AtomicBool::new(false);
     let budget = Budget { cancel: &flag, deadline: None };
-    let outcome = plan::search(problem, &budget, &|_| {}).expect("it runs");
+    let outcome = plan::search(Context::new(problem, &budget)).expect("it runs");
     outcome.candidates.into_iter().chain(outcome.others).collect()
 }
 
@@ -189,7 +189,7 @@ fn the_better_cognate_takes_the_candidates_place() {
     let endless = Budget { cancel: &flag, deadline: None };
     for start in forms.iter().chain([&best]) {
         let mut list = vec![start.clone()];
-        offered_cognates::offer(&problem, &mut list, &endless);
+        offered_cognates::offer(Context::new(&problem, &endless), &mut list);
         let first = &list[0];
         assert!(first.accepted);
         assert_eq!(first.alternatives.len(), 2);
@@ -201,7 +201,7 @@ fn the_better_cognate_takes_the_candidates_place() {
         }
         // Whichever of the three was found, the same one is given.
         let mut from_best = vec![best.clone()];
-        offered_cognates::offer(&problem, &mut from_best, &endless);
+        offered_cognates::offer(Context::new(&problem, &endless), &mut from_best);
         assert!((first.linkage.crank() - from_best[0].linkage.crank()).abs() < 1e-9);
         assert!((first.linkage.crank_pivot() - from_best[0].linkage.crank_pivot()).norm() < 1e-9);
     }
@@ -294,7 +294,7 @@ fn what_is_offered_beside_a_linkage_that_jams_does_not_jam() {
     let first = Candidate { rank: 1, warnings: warnings(&problem, jams), ..jams.clone() };
     let flag = AtomicBool::new(false);
     let budget = Budget { cancel: &flag, deadline: None };
-    let outcome = buildable(&problem, std::slice::from_ref(&first), &[], 20_000, &budget, &|_| {});
+    let outcome = buildable(Context::new(&problem, &budget), std::slice::from_ref(&first), &[], 20_000);
     assert!(outcome.evaluations.objective > 0 && outcome.evaluations.objective <= 20_000);
     let built = outcome.candidate.expect("there is one");
     assert!(built.accepted && built.rank == 0);
@@ -303,7 +303,7 @@ fn what_is_offered_beside_a_linkage_that_jams_does_not_jam() {
     // Near the best known one that can be built, 0.0030708, with a tenth of a search's budget.
     assert!(built.error.sum_sq < 0.00310, "{}", built.error.sum_sq);
     // Where all that was found is at hand it is never worse than the best of these.
-    let known = buildable(&problem, std::slice::from_ref(&first), &all, 0, &budget, &|_| {});
+    let known = buildable(Context::new(&problem, &budget), std::slice::from_ref(&first), &all, 0);
     assert_eq!(known.evaluations.objective, 0);
     let free = |c: &&Candidate| c.accepted && !warnings(&problem, c).iter().any(is_serious);
     let least = all.iter().filter(free).map(|c| c.error.objective).fold(f64::INFINITY, f64::min);
@@ -316,7 +316,7 @@ fn without_warnings_nothing_is_searched() {
     let best = distinct(&problem, found(&problem), 1);
     let flag = AtomicBool::new(false);
     let budget = Budget { cancel: &flag, deadline: None };
-    let outcome = buildable(&problem, &best, &[], 100_000, &budget, &|_| {});
+    let outcome = buildable(Context::new(&problem, &budget), &best, &[], 100_000);
     assert!(outcome.candidate.is_none());
     assert_eq!(outcome.evaluations.objective, 0);
 }

@@ -7,8 +7,8 @@ use linkwright::internals::judge::loosen::Demand;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::judge::warm::start_at;
 use linkwright::internals::record::{Candidate, Cost, Figure};
-use linkwright::internals::synthesis::Budget;
-use linkwright::internals::synthesis::multistart::{judged, polish};
+use linkwright::internals::synthesis::multistart::{Effort, judged, polish};
+use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::Problem;
 use std::sync::atomic::AtomicBool;
 
@@ -34,8 +34,9 @@ fn moved(problem: &Problem, candidate: &Candidate, cost: &Cost, room: f64) -> f6
     let near = Problem::new(spec).expect("it is one");
     let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
     let start = start_at(&near, candidate).expect("it closes");
-    let end = polish(&near, start, 2000, 40, u64::MAX, &budget).end.expect("it ends");
-    let end = polish(&near, end, 2000, 40, u64::MAX, &budget).end.expect("it ends");
+    let (context, effort) = (Context::new(&near, &budget), Effort::of(2000, 40));
+    let end = polish(context, start, effort, u64::MAX).end.expect("it ends");
+    let end = polish(context, end, effort, u64::MAX).end.expect("it ends");
     let found = judged(&near, &end).expect("it closes");
     assert!(found.requirements.iter().all(|r| r.met), "{cost:?}: {:?}", found.requirements);
     weighted_rms(&near, found.error.objective)

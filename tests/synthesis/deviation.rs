@@ -8,9 +8,9 @@ use linkwright::internals::judge::warm::start_at;
 use linkwright::internals::record::{Candidate, Figure, Record};
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::table::candidates_table;
-use linkwright::internals::synthesis::Budget;
-use linkwright::internals::synthesis::multistart::{LONG_ROUNDS, LONG_STEPS, judged, polish};
+use linkwright::internals::synthesis::multistart::{LONG_FIT, judged, polish};
 use linkwright::internals::synthesis::polish::finish;
+use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::fitness::PathFitness;
 use std::sync::atomic::AtomicBool;
@@ -95,11 +95,10 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
                 * value.abs();
         }
         let settled = linkwright::internals::synthesis::multistart::settle_positions(
-            &problem,
+            Context::new(&problem, &budget),
             &moved.design,
             moved.setting,
             moved.positions.clone(),
-            &budget,
         );
         let Some((positions, _)) = settled else { continue };
         moved.positions = positions;
@@ -297,8 +296,9 @@ fn convex_programs_and_the_augmented_lagrangian_end_at_the_same_optimum() {
             for (i, value) in start.design.iter_mut().enumerate().take(9) {
                 *value *= 1.0 + 0.004 * ((i % 3) as f64 - 1.0);
             }
-            let lagrangian = polish(&problem, start.clone(), LONG_STEPS, LONG_ROUNDS, 100_000, &budget);
-            let convex = finish(&problem, &start, 100_000, &budget);
+            let context = Context::new(&problem, &budget);
+            let lagrangian = polish(context, start.clone(), LONG_FIT, 100_000);
+            let convex = finish(context, &start, 100_000);
             let [one, other] = [&lagrangian, &convex]
                 .map(|fit| judged(&problem, fit.end.as_ref().expect("it ended")).expect("it closes"));
             assert!(other.accepted, "{text}");

@@ -240,7 +240,7 @@ fn what_a_linear_fit_cannot_hold_is_refused_and_what_it_can_is_not() {
 
 #[test]
 fn a_caller_without_a_file_gets_the_refusal_as_an_error() {
-    use linkwright::internals::synthesis::{Budget, plan};
+    use linkwright::internals::synthesis::{Budget, Context, plan};
     let mut spec = asked("k18", DE, "nine", 100, 1).spec;
     spec.solve.variables = Variables::Reduced;
     spec.design.coupler_x = Some(linkwright::internals::task::spec::Limits(0.5, 0.5));
@@ -248,6 +248,6 @@ fn a_caller_without_a_file_gets_the_refusal_as_an_error() {
     assert_eq!(refusal(&problem), Some(Refusal::Fixed { key: "coupler_x" }));
     let cancel = std::sync::atomic::AtomicBool::new(false);
     let budget = Budget { cancel: &cancel, deadline: None };
-    let error = plan::search(&problem, &budget, &|_| {}).expect_err("there is no such form");
+    let error = plan::search(Context::new(&problem, &budget)).expect_err("there is no such form");
     assert!(error.to_string().contains("coupler_x"));
 }

@@ -199,8 +199,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn population_searches_beat_uniform_sampling_tenfold_at_equal_evaluations() {
-    use linkwright::internals::synthesis::Budget;
     use linkwright::internals::synthesis::population::{Population, search};
+    use linkwright::internals::synthesis::{Budget, Context};
     use linkwright::internals::task::Problem;
     use std::sync::atomic::AtomicBool;
     const EVALUATIONS: u64 = 20_000;
@@ -210,8 +210,8 @@ fn population_searches_beat_uniform_sampling_tenfold_at_equal_evaluations() {
             let file = literature("k18", &[("solve.seed", &seed)]);
             let problem = Problem::new(file.spec).expect("it is one");
             let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
-            let end = search(&problem, which, EVALUATIONS, &budget, &|_| {}).expect("it runs");
-            assert!(end.evaluations <= EVALUATIONS);
+            let end = search(Context::new(&problem, &budget), which, EVALUATIONS).expect("it runs");
+            assert!(end.evaluations.objective <= EVALUATIONS);
             end.found.iter().filter(|c| c.accepted).map(|c| c.error.sum_sq).fold(f64::INFINITY, f64::min)
         });
         median(sums.collect())

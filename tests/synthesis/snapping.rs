@@ -5,10 +5,10 @@ use linkwright::internals::judge::rank::compare;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::mechanism::{AssemblyMode, Complex, FourBar};
 use linkwright::internals::record::{Candidate, Reason, Record, Termination};
-use linkwright::internals::synthesis::Budget;
 use linkwright::internals::synthesis::snap::{
     Fixed, Length, Request, SnapError, Snapped, Stock, own_curve, record, refit, snap,
 };
+use linkwright::internals::synthesis::{Budget, Context};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::spec::ProblemSpec;
 use std::sync::OnceLock;
@@ -43,7 +43,7 @@ fn request(step: f64, lengths: &[Length]) -> Request {
 fn snapped(record: &Record, request: &Request) -> (Problem, Candidate, Snapped) {
     let problem = Problem::new(spec(record)).expect("a problem");
     let candidate = record.candidates[0].clone();
-    let found = snap(&problem, &candidate, request, &budget()).expect("an answer");
+    let found = snap(Context::new(&problem, &budget()), &candidate, request).expect("an answer");
     (problem, candidate, found)
 }
 
@@ -94,7 +94,8 @@ fn no_combination_of_three_lengths_around_it_is_better_than_what_is_found() {
                             .with(lengths[0], one)
                             .with(lengths[1], two)
                             .with(lengths[2], three);
-                        let Some(other) = refit(&problem, &before, &fixed, 400, &budget()).0 else {
+                        let Some(other) = refit(Context::new(&problem, &budget()), &before, &fixed, 400).0
+                        else {
                             continue;
                         };
                         tried += 1;
@@ -139,7 +140,8 @@ fn a_linkage_whose_lengths_are_stock_already_keeps_them_and_its_curve() {
     let (problem, candidate) = own_curve(&linkage).expect("it closes");
     assert!(candidate.accepted && candidate.error.rms < 1e-12);
     let keys = [Length::Ground, Length::A, Length::B, Length::C];
-    let found = snap(&problem, &candidate, &request(10.0, &keys), &budget()).expect("an answer");
+    let found =
+        snap(Context::new(&problem, &budget()), &candidate, &request(10.0, &keys)).expect("an answer");
     for length in keys {
         assert!((length.of(&found.candidates[0].linkage) - length.of(&linkage)).abs() < 1e-12);
     }
@@ -154,7 +156,7 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     wish.fixed = Fixed::default().with(Length::A, 20.0).with(Length::C, 51.5);
     wish.fixed.crank_pivot = Some([3.0, -2.0]);
     wish.fixed.follower_pivot = Some([83.0, -2.0]);
-    let found = snap(&problem, &candidate, &wish, &budget()).expect("an answer");
+    let found = snap(Context::new(&problem, &budget()), &candidate, &wish).expect("an answer");
     let best = &found.candidates[0].linkage;
     assert_eq!((best.crank(), best.follower()), (20.0, 51.5));
     assert_eq!(best.natural_coordinates().crank_pivot, [3.0, -2.0]);
@@ -167,7 +169,7 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
     // With B held, the ground is brought to its length by A.
     let mut wish = request(7.0, &[Length::Ground]);
     wish.fixed.follower_pivot = Some([83.0, -2.0]);
-    let found = snap(&problem, &candidate, &wish, &budget()).expect("an answer");
+    let found = snap(Context::new(&problem, &budget()), &candidate, &wish).expect("an answer");
     let best = &found.candidates[0].linkage;
     assert_eq!(best.natural_coordinates().follower_pivot, [83.0, -2.0]);
     assert!(
@@ -178,10 +180,10 @@ fn what_is_kept_or_set_stays_and_what_cannot_be_snapped_is_told() {
 
     let mut wish = request(7.0, &[Length::A]);
     wish.fixed = Fixed::default().with(Length::A, 20.0);
-    assert_eq!(snap(&problem, &candidate, &wish, &budget()), Err(SnapError::NothingToSnap));
+    assert_eq!(snap(Context::new(&problem, &budget()), &candidate, &wish), Err(SnapError::NothingToSnap));
     let mut limited = problem.spec().clone();
     limited.design.a = Some(linkwright::internals::task::spec::Limits(18.0, 20.5));
     let limited = Problem::new(limited).expect("a problem");
-    let refused = snap(&limited, &candidate, &request(7.0, &[Length::A]), &budget());
+    let refused = snap(Context::new(&limited, &budget()), &candidate, &request(7.0, &[Length::A]));
     assert!(matches!(refused, Err(SnapError::NoStock { key: "a", .. })), "{refused:?}");
 }

@@ -18,8 +18,8 @@ use crate::record::{Candidate, Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
 use crate::report::text::clean;
-use crate::synthesis::Budget;
 use crate::synthesis::snap::{Fixed, Length, Request, SnapError, Stock, own_curve, record, snap};
+use crate::synthesis::{Budget, Context};
 use crate::task::Problem;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -56,7 +56,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     };
     let cancel = interrupt::watch("saving the best so far");
     let budget = Budget::new(cancel, None);
-    let snapped = match snap(&subject.problem, &subject.candidate, &request, &budget) {
+    let snapped = match snap(Context::new(&subject.problem, &budget), &subject.candidate, &request) {
         Ok(snapped) => snapped,
         Err(e @ SnapError::NoneFits) => {
             terminal::complain(&e.to_string());

@@ -10,7 +10,7 @@ use crate::record::digest::NotWritten;
 use crate::record::{ProblemRecord, Reason, Record};
 use crate::synthesis::conflicts::Explained;
 use crate::synthesis::keeper::Keeper;
-use crate::synthesis::{Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
+use crate::synthesis::{self, Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
 use crate::synthesis::{errors_without, offered_cognates};
 use crate::task::Problem;
 use crate::task::TaskError;
@@ -147,8 +147,10 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         precision_points(&problem)?;
     }
     let budget = Budget::new(context.cancel, job.spec.solve.time_limit_s);
-    let mut outcome = plan::search_kept(&problem, &budget, context.observer, keeper)?;
-    offered_cognates::offer(&problem, &mut outcome.candidates, &budget);
+    let inputs =
+        synthesis::Context { problem: &problem, budget: &budget, observer: context.observer, keeper };
+    let mut outcome = plan::search(inputs)?;
+    offered_cognates::offer(inputs, &mut outcome.candidates);
     let search_s = start.elapsed().as_secs_f64();
     let mut advice_s = AdviceSeconds::default();
     let mut so_far = search_s;
@@ -156,14 +158,14 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         let now = start.elapsed().as_secs_f64();
         (*part, so_far) = (now - so_far, now);
     };
-    let explained = explained(&problem, &mut outcome, &budget, context.observer)?;
+    let explained = explained(inputs, &mut outcome)?;
     // After it: the list of candidates is final, and ranks refer to it.
     continuation::finish(&problem, &mut outcome);
     lap(&mut advice_s.conflicts);
     // After the conflicts: the search for relaxations may have met an acceptable design.
-    errors_without::attach(&problem, &mut outcome, &budget);
+    errors_without::attach(inputs, &mut outcome);
     lap(&mut advice_s.costs);
-    let mut beside = answers::beside(&problem, &mut outcome, &budget, context.observer);
+    let mut beside = answers::beside(inputs, &mut outcome);
     lap(&mut advice_s.buildable);
     for candidate in outcome.candidates.iter_mut().chain(&mut beside.buildable) {
         candidate.error.to_raw = to_raw(&problem, candidate);
@@ -198,21 +200,19 @@ fn reached(problem: &Problem, outcome: &SearchOutcome) -> Reason {
 /// Returns the explanation why nothing is acceptable, if that is so and advice is asked for. If the budget leaves no
 /// time for it, the record shows that by its reason: with more time it would hold more.
 fn explained(
-    problem: &Problem,
+    context: synthesis::Context<'_>,
     outcome: &mut SearchOutcome,
-    budget: &Budget<'_>,
-    observer: &Observer<'_>,
 ) -> Result<Explained, PopulationError> {
-    let solve = &problem.spec().solve;
+    let solve = &context.problem.spec().solve;
     let listed = solve.method == Method::Continuation;
     if !solve.advice || listed || outcome.candidates.iter().any(|c| c.accepted) {
         return Ok(Explained::default());
     }
-    if let Some(reason) = budget.stop_reason() {
+    if let Some(reason) = context.stop_reason() {
         outcome.reason = reason;
         return Ok(Explained::default());
     }
-    conflicts::explain(problem, outcome, budget, observer)
+    conflicts::explain(context, outcome)
 }
 
 #[cfg(test)]
@@ -272,7 +272,8 @@ mod tests {
             };
             let flag = AtomicBool::new(true);
             let budget = Budget { cancel: &flag, deadline: None };
-            let found = explained(&problem, &mut outcome, &budget, &|_| {}).expect("no error");
+            let context = synthesis::Context::new(&problem, &budget);
+            let found = explained(context, &mut outcome).expect("no error");
             assert_eq!((found, outcome.reason), (Explained::default(), reason));
         }
     }

@@ -18,7 +18,7 @@ use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, e
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
 use crate::synthesis::errors_without;
-use crate::synthesis::{Budget, SearchOutcome};
+use crate::synthesis::{Budget, Context, SearchOutcome};
 use crate::task::Problem;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -394,7 +394,9 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
         exact: None,
         repeats: None,
     };
-    errors_without::attach(problem, &mut outcome, &Budget::new(&AtomicBool::new(false), Some(PATIENCE_S)));
+    let cancel = AtomicBool::new(false);
+    let budget = Budget::new(&cancel, Some(PATIENCE_S));
+    errors_without::attach(Context::new(problem, &budget), &mut outcome);
     outcome.candidates
 }
 

@@ -1,11 +1,12 @@
 //! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
 
-use super::round::{
-    Cost, Finished, Known, Place, Round, Setup, by_merit, finished, is_same, round, unfinished,
-};
-use super::{BATCH, DIFFERENT, End, LEADING, Memory};
-use crate::synthesis::Budget;
-use crate::synthesis::keeper::spared;
+use super::round::{Finished, Known, Place, Round, Setup, finished, is_same, round, unfinished};
+use super::{End, Memory};
+use crate::record::Evaluations;
+use crate::synthesis::Context;
+use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
+use crate::synthesis::driver::{in_parallel, share, spared};
+use crate::synthesis::multistart::by_merit;
 use crate::task::forms::start::Start;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -14,7 +15,7 @@ use std::sync::atomic::AtomicU64;
 /// The results of a batch.
 pub(super) struct Batch {
     pub(super) draws: u64,
-    pub(super) cost: Cost,
+    pub(super) cost: Evaluations,
     /// The least merit on all points of each independent round.
     pub(super) best_merits: Vec<f64>,
     pub(super) ends: Vec<End>,
@@ -24,47 +25,42 @@ pub(super) struct Batch {
     pub(super) memory: Memory,
 }
 
-/// Returns an even share of the evaluations left, so that the budget is never exceeded.
-fn share(left: u64, parts: u64, index: u64) -> u64 {
-    left / parts + u64::from(index < left % parts)
-}
-
 /// The data that all rounds of a batch share.
 struct Common<'a> {
+    context: Context<'a>,
     setup: &'a Setup<'a>,
     /// Index of the random stream of its first round.
     first: u64,
     near_ends: Vec<Start>,
-    budget: &'a Budget<'a>,
 }
 
 impl Batch {
     /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
     /// `memory` is the memory of its stage before it.
     pub(super) fn run(
+        context: Context<'_>,
         setup: &Setup<'_>,
         memory: &Memory,
         first: u64,
         left: u64,
-        budget: &Budget<'_>,
     ) -> Batch {
         let mut batch = Batch {
             draws: 0,
-            cost: Cost::default(),
+            cost: Evaluations::default(),
             best_merits: Vec::new(),
             ends: Vec::new(),
             ample: true,
             memory: memory.clone(),
         };
         let near_ends = memory.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { setup, first, near_ends, budget };
+        let common = Common { context, setup, first, near_ends };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = setup.finishes_apart() && setup.single && first == 0;
         let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
         while begin < BATCH {
             // Shared evenly among all rounds of the batch, each with the fits that follow from it.
-            let left = left.saturating_sub(batch.cost.evaluations);
+            let left = left.saturating_sub(batch.cost.objective);
             let (parts, of) = (end - begin, BATCH - begin);
             let exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
             if exact {
@@ -80,21 +76,18 @@ impl Batch {
     /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
     /// among them.
     fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
-        let &Common { setup, first, ref near_ends, budget } = common;
-        let (parts, index) = (wave.end - wave.start, self.memory.index);
+        let &Common { context, setup, first, ref near_ends } = common;
+        let (begin, index) = (wave.start, self.memory.index);
         let found = AtomicU64::new(u64::MAX);
         let known = Known { bar: self.memory.bar, near_ends };
-        let mut rounds: Vec<Round> = wave
-            .clone()
-            .into_par_iter()
-            .map(|i| {
-                let place = Place { stream: first + i, index: index + i };
-                round(setup, place, share(left, parts, i - wave.start), &known, budget, &found)
-            })
-            .collect();
-        let used: u64 = rounds.iter().map(|round| round.cost.evaluations).sum();
-        self.ample &=
-            (0..).zip(&rounds).all(|(i, round)| spared(round.cost.evaluations, share(left, parts, i)));
+        let run = |i, allowance| {
+            let place = Place { stream: first + begin + i, index: index + begin + i };
+            round(context, setup, place, allowance, &known, &found)
+        };
+        let (mut rounds, ample): (Vec<Round>, bool) =
+            in_parallel((left, wave.end - begin), run, |round| round.cost.objective);
+        let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
+        self.ample &= ample;
         let mut done: Vec<Finished> = Vec::new();
         if setup.finishes_apart() {
             done = self.finish(common, &rounds, left.saturating_sub(used));
@@ -105,7 +98,7 @@ impl Batch {
         }
         for round in &mut rounds {
             self.draws += round.draws;
-            self.cost.add(round.cost);
+            self.cost += round.cost;
             if round.independent {
                 self.best_merits.push(self.least_on_all(round));
             }
@@ -124,19 +117,19 @@ impl Batch {
 
     /// Fits the ends of rounds to all points, each once, up to the first exact one.
     fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
-        let &Common { setup, budget, .. } = common;
+        let &Common { context, setup, .. } = common;
         let ends = unfinished(setup, rounds, self.memory.bar, &self.memory.finished);
         let parts = ends.len() as u64;
         let found = AtomicU64::new(u64::MAX);
-        let finishes: Vec<(Option<Finished>, Cost)> = ends
+        let finishes: Vec<(Option<Finished>, Evaluations)> = ends
             .into_par_iter()
             .enumerate()
-            .map(|(i, end)| finished(setup, (i as u64, end), share(left, parts, i as u64), budget, &found))
+            .map(|(i, end)| finished(context, setup, (i as u64, end), share(left, parts, i as u64), &found))
             .collect();
         let mut done: Vec<Finished> = Vec::new();
         for (i, (finished, cost)) in (0..).zip(finishes) {
-            self.cost.add(cost);
-            self.ample &= spared(cost.evaluations, share(left, parts, i));
+            self.cost += cost;
+            self.ample &= spared(cost.objective, share(left, parts, i));
             done.extend(finished);
             if done.last().is_some_and(|end| end.exact) {
                 break;

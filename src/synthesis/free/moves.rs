@@ -2,14 +2,10 @@
 
 use crate::mechanism::Complex;
 use crate::numbers::arithmetic::streams::{Stream, normal, uniform};
+use crate::synthesis::constants::free::{DIFFERENCE, JITTER};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::TorusFit;
-
-/// Range of random steps away from a known end, in parts of a length or of the target's size.
-const JITTER: (f64, f64) = (0.01, 0.5);
-/// Range of the factor of the difference that is added.
-const DIFFERENCE: (f64, f64) = (-1.0, 1.0);
 
 /// Returns a start near a known end: every free number of the design is moved by a random part of its size, and the
 /// positions are brought back to the curves.

@@ -7,12 +7,20 @@
 
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Branch, LinkageType};
+use crate::synthesis::constants::free::LED_BACK_MOST;
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 
 /// Types whose circuits are branches: the input turns fully.
 const ONE_BRANCH: [LinkageType; 2] = [LinkageType::CrankRocker, LinkageType::DoubleCrank];
+
+/// Returns the most evaluations that a fit from a start is worth. If one branch is required and no type, only a start
+/// that was led back, or is near an end that was, aims at a type.
+pub(super) fn worth_spending(problem: &Problem, start: &Start) -> u64 {
+    let was_led_back = !problem.branch_any() && start.setting.aim.is_some() && problem.types().is_empty();
+    if was_led_back { LED_BACK_MOST } else { u64::MAX }
+}
 
 /// Returns whether the points of a start lie on circuits or branches that the problem does not allow together, or its
 /// crank rocks although it has to turn fully.

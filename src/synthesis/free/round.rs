@@ -1,55 +1,26 @@
 //! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
 //! ends.
 
+use super::End;
 use super::moves::{along_a_difference, near};
-use super::required::{led_back, strayed};
-use super::{BATCH, DENSE_BATCHES, End};
+use super::required::{led_back, strayed, worth_spending};
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
-use crate::synthesis::Budget;
+use crate::record::Evaluations;
+use crate::synthesis::Context;
 use crate::synthesis::atlas::Matches;
+use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
-use crate::synthesis::multistart::{fit_with, judged, promise};
-use crate::synthesis::plan::SAME_OPTIMUM;
+use crate::synthesis::constants::free::{
+    BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED,
+    SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
+};
+use crate::synthesis::multistart::{Effort, LONG_FIT, by_merit, judged, polish, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
 use crate::synthesis::starts::Starts;
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Starts drawn and screened in a round.
-const SCREEN: usize = 160;
-/// Matches of the atlas taken in a round.
-const MATCHED: usize = 48;
-/// Starts near a known end taken in a round.
-const JITTERED: usize = 40;
-/// Starts fitted for a few steps.
-const SHORT: usize = 16;
-const DENSE_SHORT: usize = 10;
-/// Starts fitted further. On a dense target most lead to the same end: at first one per round, and more rounds.
-const MIDDLE: usize = 3;
-const DENSE_MIDDLE: usize = 1;
-/// Most passes that reassign the points of an end to the curve and fit again.
-const REASSIGNED: usize = 6;
-/// Most evaluations of a fit that leads strayed points back to a type whose points cannot stray: if the type binds, the
-/// linkage is almost a change point, and not worth more.
-const LED_BACK_MOST: u64 = 600;
-/// Greatest merit after a few steps, in units of the strayed end's merit, at which such a fit is continued.
-const WORTH_LEADING_BACK: f64 = 16.0;
-/// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
-const WORTH_FINISHING: f64 = 4.0;
-
-/// Steps, rounds of the multipliers and the relative reduction at which a fit stops.
-#[derive(Clone, Copy, Debug)]
-struct Effort {
-    steps: usize,
-    rounds: usize,
-    relative_reduction: f64,
-}
-
-const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
-const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
-const LAST_FIT: Effort = Effort { steps: 300, rounds: 14, relative_reduction: 1e-12 };
 
 /// The data that all rounds share.
 pub(super) struct Setup<'a> {
@@ -100,24 +71,10 @@ pub(super) struct Place {
     pub(super) index: u64,
 }
 
-/// The evaluations and positions used by fits.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cost {
-    pub(super) evaluations: u64,
-    pub(super) positions: u64,
-}
-
-impl Cost {
-    pub(super) fn add(&mut self, other: Cost) {
-        self.evaluations += other.evaluations;
-        self.positions += other.positions;
-    }
-}
-
 #[derive(Debug)]
 pub(super) struct Round {
     pub(super) draws: u64,
-    pub(super) cost: Cost,
+    pub(super) cost: Evaluations,
     /// The ends on the explored points with their merits there, best first.
     pub(super) leaders: Vec<(f64, Start)>,
     /// The ends that the round finished itself.
@@ -150,28 +107,25 @@ pub(super) struct Finished {
 
 /// Runs fits within an allowance and counts their cost.
 struct Spender<'a> {
-    cost: Cost,
+    context: Context<'a>,
+    cost: Evaluations,
     allowance: u64,
-    budget: &'a Budget<'a>,
 }
 
 impl Spender<'_> {
     fn left(&self) -> u64 {
-        self.allowance.saturating_sub(self.cost.evaluations)
+        self.allowance.saturating_sub(self.cost.objective)
     }
 
-    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
-        let mut left = self.left();
-        if left == 0 || self.budget.stopped() {
+    /// Fits from a start with at most `most` of the evaluations left.
+    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort, most: u64) -> Option<(f64, Start)> {
+        let left = self.left().min(most);
+        if left == 0 || self.context.stopped() {
             return None;
         }
-        if !problem.branch_any() && start.setting.aim.is_some() && problem.types().is_empty() {
-            left = left.min(LED_BACK_MOST);
-        }
-        let Effort { steps, rounds, relative_reduction } = effort;
-        let fit = fit_with(problem, start, (steps, rounds, relative_reduction), left, self.budget);
-        self.cost.evaluations += fit.evaluations;
-        self.cost.positions += problem.task().len() as u64 * fit.evaluations;
+        let context = self.context.of(problem);
+        let fit = polish(context, start, effort, left);
+        self.cost += context.cost(fit.evaluations);
         fit.end.map(|end| (fit.merit, end))
     }
 
@@ -186,7 +140,7 @@ impl Spender<'_> {
             let Reassigned { better, positions } = reassigned(problem, &end);
             self.cost.positions += positions;
             // Counted as evaluations of as many positions, within the allowance.
-            self.cost.evaluations += (positions / problem.task().len() as u64).min(self.left());
+            self.cost.objective += (positions / problem.task().len() as u64).min(self.left());
             let Some(start) = better else { break };
             match self.fit_as_required(problem, start, effort) {
                 Some((again, start)) if again < merit => (merit, end) = (again, start),
@@ -199,7 +153,8 @@ impl Spender<'_> {
     /// As `fit`; if the points end on circuits or branches that the problem does not allow together, also fits from
     /// there to the nearest ends that it allows.
     fn fit_as_required(&mut self, problem: &Problem, start: Start, effort: Effort) -> Option<(f64, Start)> {
-        let (merit, end) = self.fit(problem, start, effort)?;
+        let most = worth_spending(problem, &start);
+        let (merit, end) = self.fit(problem, start, effort, most)?;
         if !strayed(problem, &end) {
             return Some((merit, end));
         }
@@ -208,14 +163,16 @@ impl Spender<'_> {
             // The more promising one first.
             let mut tried: Vec<(f64, Start)> = Vec::with_capacity(back.len());
             for start in back {
-                tried.extend(self.fit(problem, start, SHORT_FIT));
+                let most = worth_spending(problem, &start);
+                tried.extend(self.fit(problem, start, SHORT_FIT, most));
             }
             tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
             tried.sort_by(|one, other| one.0.total_cmp(&other.0));
             back = tried.into_iter().map(|(_, start)| start).collect();
         }
         for start in back {
-            let again = self.fit(problem, start, effort).filter(|(_, end)| !strayed(problem, end));
+            let most = worth_spending(problem, &start);
+            let again = self.fit(problem, start, effort, most).filter(|(_, end)| !strayed(problem, end));
             if again.is_some() {
                 return again;
             }
@@ -223,11 +180,6 @@ impl Spender<'_> {
         // If that fails: the end that the referee will refuse.
         Some((merit, end))
     }
-}
-
-pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
-    ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-    ends.truncate(keep);
 }
 
 /// Returns the starts of a round with their promise ([`promise`]) on the explored points, and the number drawn.
@@ -238,14 +190,12 @@ fn drawn(
     spender: &mut Spender<'_>,
 ) -> (Vec<(f64, Start)>, u64) {
     let explored = setup.explored();
-    let n = explored.task().len() as u64;
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     let mut count = 0;
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
         count += 1;
         let Some(mut start) = start else { return };
-        spender.cost.evaluations += 1;
-        spender.cost.positions += n;
+        spender.cost += spender.context.of(explored).cost(1);
         if let Some(promise) = promise(explored, &mut start) {
             drawn.push((promise, start));
         }
@@ -298,21 +248,21 @@ fn drawn(
 /// Runs a round: its ends on the explored points, and on a sparse target the finished ends. `found` is the index of the
 /// first round with an exact answer; those after it are not read and may stop.
 pub(super) fn round(
+    context: Context<'_>,
     setup: &Setup<'_>,
     Place { stream: of_search, index }: Place,
     allowance: u64,
     known: &Known<'_>,
-    budget: &Budget<'_>,
     found: &AtomicU64,
 ) -> Round {
     let mut round = Round {
         draws: 0,
-        cost: Cost::default(),
+        cost: Evaluations::default(),
         leaders: Vec::new(),
         finished: Vec::new(),
         independent: known.is_independent(index),
     };
-    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
     let beaten = || found.load(Ordering::Relaxed) < of_search;
     if beaten() {
         return round;
@@ -326,7 +276,8 @@ pub(super) fn round(
     let spare = drawn.first().cloned();
     let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(shorts);
     for (_, start) in drawn {
-        fitted.extend(spender.fit(explored, start, SHORT_FIT));
+        let most = worth_spending(explored, &start);
+        fitted.extend(spender.fit(explored, start, SHORT_FIT, most));
     }
     by_merit(&mut fitted, middles);
     let mut middle: Vec<(f64, Start)> = Vec::with_capacity(middles);
@@ -378,14 +329,14 @@ fn finish(
         None => start.clone(),
         Some(coarse) => coarse.refine(setup.problem, start)?,
     };
-    let fitted = spender.fit_as_required(setup.problem, start.clone(), LAST_FIT);
+    let fitted = spender.fit_as_required(setup.problem, start.clone(), LONG_FIT);
     let (merit, start) = match fitted {
         Some(end) => end,
         // Out of budget: taken as it is, with its error on all points.
         None => (promise(setup.problem, &mut start)?, start),
     };
     let (merit, start) = if setup.finishes_apart() {
-        spender.at_best_places(setup.problem, (merit, start), LAST_FIT)
+        spender.at_best_places(setup.problem, (merit, start), LONG_FIT)
     } else {
         (merit, start)
     };
@@ -427,13 +378,13 @@ pub(super) fn is_same(one: f64, other: f64) -> bool {
 
 /// Finishes one of them within its allowance, unless one before it was exact.
 pub(super) fn finished(
+    context: Context<'_>,
     setup: &Setup<'_>,
     (index, end): (u64, (f64, &Start)),
     allowance: u64,
-    budget: &Budget<'_>,
     found: &AtomicU64,
-) -> (Option<Finished>, Cost) {
-    let mut spender = Spender { cost: Cost::default(), allowance, budget };
+) -> (Option<Finished>, Evaluations) {
+    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
     if found.load(Ordering::Relaxed) < index {
         return (None, spender.cost);
     }

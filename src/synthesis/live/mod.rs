@@ -12,19 +12,11 @@ use crate::judge::assess::assess;
 use crate::judge::rank::{compare, distinct, sort};
 use crate::judge::warm::start_at;
 use crate::record::Candidate;
+use crate::synthesis::constants::live::{EFFORT, EVALUATIONS, FIRST_LOOK, FOLLOWING};
 use crate::synthesis::multistart::{judged, polish};
 use crate::synthesis::nearest::nearest_positions;
-use crate::synthesis::{Budget, plan};
+use crate::synthesis::{Budget, Context, plan};
 use crate::task::Problem;
-
-/// The most candidates that follow the target.
-pub const FOLLOWING: usize = 5;
-/// Most steps of a fit while the target moves: from so near a start, a few are enough to converge.
-const STEPS: usize = 24;
-/// Most rounds of the multipliers in such a fit.
-const ROUNDS: usize = 4;
-/// Most evaluations of the cost in such a fit.
-const EVALUATIONS: u64 = 120;
 
 /// The candidates that follow a target.
 #[derive(Clone, Debug, Default)]
@@ -77,9 +69,6 @@ impl Session {
     }
 }
 
-/// Most evaluations of a first look.
-const FIRST_LOOK: u64 = 3000;
-
 /// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
 /// whose polish takes long. Its answers are judged by the whole problem. Empty for a problem that cannot be searched.
 pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
@@ -87,7 +76,7 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     spec.solve.evaluations = spec.solve.evaluations.min(FIRST_LOOK);
     spec.task.path.tolerance = None;
     let Ok(easier) = Problem::new(spec) else { return Vec::new() };
-    let Ok(outcome) = plan::search(&easier, budget, &|_| {}) else { return Vec::new() };
+    let Ok(outcome) = plan::search(Context::new(&easier, budget)) else { return Vec::new() };
     let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
     let found = outcome.candidates.iter().filter_map(judged).collect();
     distinct(problem, found, FOLLOWING)
@@ -97,7 +86,7 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
 fn followed(problem: &Problem, candidate: &Candidate, budget: &Budget<'_>) -> Option<Candidate> {
     let placed = placed(problem, candidate)?;
     let start = start_at(problem, &placed)?;
-    let fit = polish(problem, start, STEPS, ROUNDS, EVALUATIONS, budget);
+    let fit = polish(Context::new(problem, budget), start, EFFORT, EVALUATIONS);
     let fitted = fit.end.and_then(|end| judged(problem, &end));
     // A fit that was cut short may have given up an acceptable linkage for a nearer one that is not.
     let unfitted = judged(problem, &start_at(problem, &placed)?);

@@ -5,7 +5,7 @@ use crate::judge::rank::compare;
 use crate::judge::warm::start_at;
 use crate::mechanism::{FourBar, NaturalCoordinates, point, xy};
 use crate::record::Candidate;
-use crate::synthesis::Budget;
+use crate::synthesis::Context;
 use crate::synthesis::multistart::judged;
 use crate::synthesis::polish::finish;
 use crate::task::Problem;
@@ -148,12 +148,12 @@ impl Fixed {
 /// Fits a candidate again with dimensions fixed and judges it under the original problem; also returns the evaluations
 /// used, about `evaluations` at most. `None` if the fit cannot start or its end is not a linkage.
 pub fn refit(
-    problem: &Problem,
+    context: Context<'_>,
     candidate: &Candidate,
     fixed: &Fixed,
     evaluations: u64,
-    budget: &Budget<'_>,
 ) -> (Option<Candidate>, u64) {
+    let problem = context.problem;
     let design = &problem.spec().design;
     let ground = fixed.get(Length::Ground).is_some() || fixed.ground_angle_deg.is_some();
     let has_pivot = design.follower_pivot.is_some() || fixed.follower_pivot.is_some();
@@ -161,19 +161,19 @@ pub fn refit(
     let held = fixed.follower_pivot.is_some()
         || design.follower_pivot.is_some_and(|b| b.iter().all(Limits::is_fixed));
     let polar = has_pivot && ground && !held;
-    let (mut found, mut used) = fit(problem, candidate, fixed, (polar, evaluations), budget);
+    let (mut found, mut used) = fit(context, candidate, fixed, (polar, evaluations));
     if found.is_none() && held && fixed.crank_pivot.is_none() {
         // Then with A fixed at its start on its circle.
         if let Some(linkage) = on_its_circle(&candidate.linkage, fixed) {
             let still = Fixed { crank_pivot: Some(xy(linkage.crank_pivot())), ..fixed.clone() };
-            let (there, more) = fit(problem, candidate, &still, (polar, evaluations), budget);
+            let (there, more) = fit(context, candidate, &still, (polar, evaluations));
             (found, used) = (there, used + more);
         }
     }
     let Some(found) = found else { return (None, used) };
     let out = |r: &crate::record::Requirement| !r.met && (r.name == "design.Bx" || r.name == "design.By");
     if polar && found.requirements.iter().any(out) {
-        let (within, more) = fit(problem, candidate, fixed, (false, evaluations), budget);
+        let (within, more) = fit(context, candidate, fixed, (false, evaluations));
         used += more;
         if let Some(within) = within.filter(|within| compare(problem, within, &found).is_lt()) {
             return (Some(within), used);
@@ -183,12 +183,12 @@ pub fn refit(
 }
 
 fn fit(
-    problem: &Problem,
+    context: Context<'_>,
     candidate: &Candidate,
     fixed: &Fixed,
     (polar, evaluations): (bool, u64),
-    budget: &Budget<'_>,
 ) -> (Option<Candidate>, u64) {
+    let problem = context.problem;
     let mut spec = problem.spec().clone();
     spec.design = fixed.design(&spec.design, polar);
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
@@ -199,7 +199,7 @@ fn fit(
         .flatten()
         .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
     let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
-    let fitted = finish(&narrowed, &start, evaluations, budget);
+    let fitted = finish(context.of(&narrowed), &start, evaluations);
     let found = fitted.end.and_then(|end| judged(&narrowed, &end)).and_then(|found| {
         let linkage = to_the_digit(&found.linkage, fixed)?;
         assess(problem, &linkage, &found.crank_deg, &found.t1_at)

@@ -6,19 +6,12 @@ use crate::judge::practicality::crank_of;
 use crate::judge::practicality::sensitivity::{At, sensitivity};
 use crate::judge::rank::compare;
 use crate::record::{Candidate, Evaluations, Reason};
-use crate::synthesis::Budget;
+use crate::synthesis::Context;
+use crate::synthesis::constants::snap::{BEAM, IMPROVED, NEAR, QUICK, ROUNDS, SPARE, THOROUGH};
 use crate::task::Problem;
 use crate::task::spec::Limits;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-
-/// Number of stock sizes tried for a length, the nearest to its fitted value.
-const NEAR: usize = 4;
-/// Width of the beam: partial choices kept in parallel.
-const BEAM: usize = 12;
-/// Number of complete choices whose neighbours are tried, and the most rounds of that.
-const IMPROVED: usize = 2;
-const ROUNDS: usize = 12;
 
 /// A request to snap lengths to a stock.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,12 +74,6 @@ pub struct Snapped {
     pub reason: Reason,
 }
 
-/// Most evaluations of a fit while choices are compared, and of the final ones.
-const QUICK: u64 = 60;
-const THOROUGH: u64 = 400;
-/// Number of answers that are fitted thoroughly besides those that are wanted.
-const SPARE: usize = 4;
-
 /// A choice of stock lengths with its fitted candidate.
 #[derive(Clone)]
 struct Choice {
@@ -95,8 +82,7 @@ struct Choice {
 }
 
 struct Search<'a> {
-    problem: &'a Problem,
-    budget: &'a Budget<'a>,
+    context: Context<'a>,
     fits: u64,
     evaluations: u64,
 }
@@ -109,12 +95,8 @@ struct Search<'a> {
 ///
 /// # Errors
 /// [`SnapError`].
-pub fn snap(
-    problem: &Problem,
-    candidate: &Candidate,
-    request: &Request,
-    budget: &Budget<'_>,
-) -> Result<Snapped, SnapError> {
+pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> Result<Snapped, SnapError> {
+    let problem = context.problem;
     let design = &problem.spec().design;
     let lengths = to_snap(problem, candidate, request);
     if lengths.is_empty() {
@@ -130,7 +112,7 @@ pub fn snap(
             return Err(SnapError::NoStock { key: length.key(), stock: request.stock.words(), low, high });
         }
     }
-    let mut search = Search { problem, budget, fits: 0, evaluations: 0 };
+    let mut search = Search { context, fits: 0, evaluations: 0 };
     let plain = lengths.iter().fold(request.fixed.clone(), |fixed, &length| {
         near(length, candidate, 1).first().map_or(fixed.clone(), |value| fixed.with(length, *value))
     });
@@ -138,7 +120,7 @@ pub fn snap(
     let at_once = search.fitted(vec![(plain, candidate)], THOROUGH);
     let mut beam = vec![root];
     for &length in &lengths {
-        if budget.stopped() {
+        if context.stopped() {
             // Choices of only some of the lengths are not answers; every length at its nearest stock size is one.
             beam.clear();
             break;
@@ -163,7 +145,7 @@ pub fn snap(
     for _ in 0..ROUNDS {
         let best: Vec<Choice> =
             all.iter().take(IMPROVED).filter(|c| improved.insert(bits(&c.fixed))).cloned().collect();
-        if best.is_empty() || budget.stopped() {
+        if best.is_empty() || context.stopped() {
             break;
         }
         let mut choices = Vec::new();
@@ -179,7 +161,7 @@ pub fn snap(
         search.sort(&mut all);
     }
     // The best are fitted once more from their present parameters, with more evaluations.
-    let leaders = if budget.stopped() { 0 } else { request.wanted.max(1) + SPARE };
+    let leaders = if context.stopped() { 0 } else { request.wanted.max(1) + SPARE };
     let leaders: Vec<Choice> = all.iter().take(leaders).cloned().collect();
     let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
     all.extend(search.fitted(again, THOROUGH));
@@ -196,16 +178,15 @@ pub fn snap(
         .map(|(candidate, rank)| Candidate { rank, ..candidate })
         .collect();
     if candidates.is_empty() {
-        return Err(if budget.stopped() { SnapError::Interrupted } else { SnapError::NoneFits });
+        return Err(if context.stopped() { SnapError::Interrupted } else { SnapError::NoneFits });
     }
-    let reason = budget.stop_reason().unwrap_or(Reason::Snapped);
-    let positions = search.evaluations * problem.task().len() as u64;
+    let reason = context.stop_reason().unwrap_or(Reason::Snapped);
     Ok(Snapped {
         lengths,
         candidates,
         nearest,
         fits: search.fits,
-        evaluations: Evaluations { objective: search.evaluations, positions },
+        evaluations: context.cost(search.evaluations),
         reason,
     })
 }
@@ -278,7 +259,7 @@ impl Search<'_> {
         let fitted: Vec<(Option<Choice>, u64)> = choices
             .into_par_iter()
             .map(|(fixed, from)| {
-                let (candidate, used) = refit(self.problem, from, &fixed, evaluations, self.budget);
+                let (candidate, used) = refit(self.context, from, &fixed, evaluations);
                 (candidate.map(|candidate| Choice { fixed, candidate }), used)
             })
             .collect();
@@ -293,6 +274,6 @@ impl Search<'_> {
 
     /// Sorts choices, best first; equals stay in the order in which they were tried.
     fn sort(&self, choices: &mut [Choice]) {
-        choices.sort_by(|one, other| compare(self.problem, &one.candidate, &other.candidate));
+        choices.sort_by(|one, other| compare(self.context.problem, &one.candidate, &other.candidate));
     }
 }

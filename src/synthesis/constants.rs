@@ -1,0 +1,322 @@
+//! The tuning constants of the searches, by search.
+//!
+//! Each constant has its purpose beside it, each group the benchmark that chooses it. Constants of the stopping rules
+//! are in [`super::belief`]. Tolerances of an algorithm, indices of random streams and the tables of the atlas, of
+//! starts and of the reassignment are beside their code.
+
+/// The effort of a fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// Most steps.
+    pub steps: usize,
+    /// Most rounds of the multipliers.
+    pub rounds: usize,
+    /// The relative reduction of the cost at which it counts as converged.
+    pub relative_reduction: f64,
+}
+
+impl Effort {
+    /// Creates the effort of a fit that goes on to the last digits.
+    pub const fn of(steps: usize, rounds: usize) -> Self {
+        Effort { steps, rounds, relative_reduction: 1e-12 }
+    }
+}
+
+/// The phases of a plan. No benchmark chooses them: they divide the budget of a problem for which the local searches
+/// find nothing acceptable.
+pub mod plan {
+    /// The part of the budget that `auto` gives to local searches if these find nothing acceptable.
+    pub const LOCAL_SHARE: f64 = 0.6;
+    /// If local searches end with nothing acceptable, one part in this many of the evaluations left goes to searches
+    /// without one of the requirements (`relaxed`), and the rest to differential evolution.
+    pub const RELAXED_SHARE: u64 = 2;
+    /// One part in this many of the evaluations for differential evolution goes to the polish of its best.
+    pub const POLISH_SHARE: u64 = 5;
+    /// Number of the other candidates found around a far target's own centre that are brought back to the target.
+    pub const FAR_OTHERS: usize = 32;
+    /// The part of the patience for the reduced form of prescribed timing, before rounds in the physical parameters.
+    pub const REDUCED_SHARE: f64 = 0.5;
+}
+
+/// Fits, and the rounds of prescribed timing in the physical parameters. `benches/recovery` has no prescribed timing:
+/// no benchmark chooses them.
+pub mod multistart {
+    use super::Effort;
+
+    /// Starts drawn and screened in a round.
+    pub const SCREEN: usize = 160;
+    /// Starts fitted for a few steps.
+    pub const SHORT: usize = 8;
+    /// Starts fitted to convergence.
+    pub const LONG: usize = 3;
+    /// The effort of a short fit.
+    pub const SHORT_FIT: Effort = Effort::of(24, 2);
+    /// The effort of a long fit.
+    pub const LONG_FIT: Effort = Effort::of(300, 14);
+    /// The effort that brings positions to their nearest points at a fixed design.
+    pub const SETTLING: Effort = Effort::of(60, 1);
+}
+
+/// The batches of rounds in the physical parameters; no benchmark chooses them.
+pub mod rounds {
+    /// Rounds that run in parallel before any is read: the same number for any number of threads.
+    pub const BATCH: u64 = 8;
+    /// Least number of batches, so that rarer answers have their chance, and batches without a new answer that end a
+    /// search for further distinct answers.
+    pub const LEAST_BATCHES: u64 = 3;
+    pub const QUIET_BATCHES: u64 = 6;
+    /// Number of candidates kept while searching; the worst are dropped beyond it.
+    pub const KEPT: usize = 400;
+}
+
+/// Prescribed timing in its reduced form; no benchmark chooses them.
+pub mod timed {
+    /// Draws in a batch.
+    pub const DRAWS: usize = 128;
+    /// Draws fitted for a few steps.
+    pub const SHORT: usize = 8;
+    /// Draws fitted to convergence.
+    pub const LONG: usize = 3;
+    /// Most evaluations of a short and of a long fit.
+    pub const SHORT_EVALUATIONS: u32 = 10;
+    pub const LONG_EVALUATIONS: u32 = 100;
+    /// Most ends polished in a batch.
+    pub const POLISHES: usize = 2;
+    /// Draws screened with their violation, fitted for a few steps and fitted to convergence under all requirements, if
+    /// requirements are active.
+    pub const PROMISING: usize = 256;
+    pub const CONSTRAINED_SHORT: usize = 6;
+    pub const CONSTRAINED_LONG: usize = 2;
+    /// Least number of waves with such fits, if requirements are active.
+    pub const BINDING_WAVES: u64 = 2;
+    /// Batches that run in parallel.
+    pub const WAVE: u64 = 4;
+    /// Least number of waves if several answers are wanted, and waves without a new answer that end the search for
+    /// more.
+    pub const LEAST_WAVES: u64 = 6;
+    pub const QUIET_WAVES: u64 = 12;
+    /// Number of candidates kept while searching.
+    pub const KEPT: usize = 400;
+}
+
+/// Free timing: chosen by `benches/recovery`, whose targets are dense; those for sparse targets have no benchmark.
+pub mod free {
+    use super::Effort;
+
+    /// Number of different ends near which later rounds start.
+    pub const LEADING: usize = 12;
+    /// Relative difference of merits below which ends on the explored points are the same.
+    pub const DIFFERENT: f64 = 1e-3;
+    /// Rounds that run in parallel before any is read.
+    pub const BATCH: u64 = 8;
+    /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
+    /// with a relative spread of (2/n)^(1/2).
+    pub const IN_NOISE: f64 = 1e-2;
+    /// Rounds with equally good answers that suffice if the errors are noise.
+    pub const NOISE_HITS: usize = 5;
+    /// Least number of batches for a sparse target.
+    pub const LEAST_BATCHES: u64 = 5;
+    /// Batches in which a round on a dense target fits only its best start further.
+    pub const DENSE_BATCHES: u64 = 2;
+    /// Least number of batches for a dense target whose errors are not noise.
+    pub const PATIENT_BATCHES: u64 = 60;
+    /// Correlation of the errors of neighbouring points above which they are not noise.
+    pub const ALIKE: f64 = 0.3;
+    /// Of `WHOLE_EVERY` batches on a dense target of at most `WHOLE_MOST` points one explores all of its points: the
+    /// fourth if the errors are noise, else the second.
+    pub const WHOLE_EVERY: u64 = 8;
+    pub const WHOLE_IN_NOISE: u64 = 3;
+    pub const WHOLE_ELSE: u64 = 1;
+    pub const WHOLE_MOST: usize = 200;
+    /// Batches without a new distinct answer that end a search for further ones.
+    pub const QUIET_BATCHES: u64 = 6;
+    /// Number of ends kept.
+    pub const KEPT: usize = 400;
+    /// Number of points below which a target is not matched with the atlas.
+    pub const LEAST_MATCHED: usize = 24;
+    /// Starts drawn and screened in a round.
+    pub const SCREEN: usize = 160;
+    /// Matches of the atlas taken in a round.
+    pub const MATCHED: usize = 48;
+    /// Starts near a known end taken in a round.
+    pub const JITTERED: usize = 40;
+    /// Starts fitted for a few steps.
+    pub const SHORT: usize = 16;
+    pub const DENSE_SHORT: usize = 10;
+    /// Starts fitted further. On a dense target most lead to the same end: at first one per round, and more rounds.
+    pub const MIDDLE: usize = 3;
+    pub const DENSE_MIDDLE: usize = 1;
+    /// Most passes that reassign the points of an end to the curve and fit again.
+    pub const REASSIGNED: usize = 6;
+    /// Greatest merit after a few steps, in units of the strayed end's merit, at which such a fit is continued.
+    pub const WORTH_LEADING_BACK: f64 = 16.0;
+    /// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
+    pub const WORTH_FINISHING: f64 = 4.0;
+    /// The efforts of short fits and of longer ones; ends are finished by [`super::multistart::LONG_FIT`].
+    pub const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+    pub const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
+    /// Range of random steps away from a known end, in parts of a length or of the target's size.
+    pub const JITTER: (f64, f64) = (0.01, 0.5);
+    /// Range of the factor of the difference that is added.
+    pub const DIFFERENCE: (f64, f64) = (-1.0, 1.0);
+    /// Most evaluations of a fit from a start that was led back to a type whose points cannot stray: if the type binds,
+    /// the linkage is almost a change point, and not worth more.
+    pub const LED_BACK_MOST: u64 = 600;
+}
+
+/// Coarsening of dense targets with free timing: chosen by `benches/recovery`, whose targets have 60 and 360 points.
+pub mod coarse {
+    /// The number of points above which a target is explored in groups.
+    pub const DENSE: usize = 48;
+    /// Number of groups.
+    pub const GROUPS: usize = 32;
+}
+
+/// Population searches. `benches/population` compares them; no benchmark chooses these constants.
+pub mod population {
+    /// Number of points from which a stop is checked before each evaluation. With fewer, a generation takes a fraction
+    /// of a second, and a stop waits for its end.
+    pub const LONG_TARGET: usize = 1000;
+    /// Number of individuals of the last population that are examined for distinct answers.
+    pub const KEPT: usize = 20;
+}
+
+/// The polish of candidates; no benchmark chooses them.
+pub mod polish {
+    /// Number of different optima of the sum of squares that are polished: the best largest deviation need not lie in
+    /// the best of them.
+    pub const BASINS: usize = 24;
+    /// Least number of distinct optima to find before they are polished.
+    pub const LEAST_BASINS: usize = 8;
+    /// Most steps of a polish.
+    pub const STEPS: usize = 150;
+    /// Local random restarts (hops) for the largest deviation: the optima around which they start, starts around each,
+    /// their reach (in trust boxes; for a long link a tenth of it counts), the most rounds, and the rounds without
+    /// improvement that end them.
+    pub const HOPPED: usize = 3;
+    pub const HOPS: usize = 4;
+    pub const HOP: f64 = 0.4;
+    pub const MAX_HOPS: u64 = 4;
+    pub const QUIET_HOPS: usize = 2;
+    /// Relative difference of largest deviation and link ratio below which starts are the same.
+    pub const SAME_START: f64 = 1e-2;
+    /// Relative difference of largest deviations below which they are the same optimum.
+    pub const SAME_DEVIATION: f64 = 1e-6;
+    /// Most evaluations of a polish.
+    pub const EVALUATIONS: u64 = 400;
+    /// One part in this many of a budget is reserved for polishing, if the objective or the tolerances need it.
+    pub const SHARE: u64 = 5;
+    /// Largest deviation, in parts of the tolerances, below which least squares has enough room between them.
+    pub const INSIDE: f64 = 0.98;
+}
+
+/// Searches without one of the requirements; no benchmark chooses them.
+pub mod relaxed {
+    /// Ends of a relaxed search that are judged by the problem itself: judging takes the whole curve of each.
+    pub const JUDGED: usize = 48;
+    /// Ends of a relaxed search that are fitted under all requirements, the most promising first.
+    pub const FITTED: usize = 12;
+    /// One part in this many of the evaluations of a relaxed search goes to those fits.
+    pub const FIT_SHARE: u64 = 4;
+    /// Least evaluations of a relaxed search: with fewer it finds nothing.
+    pub const LEAST_SEARCH: u64 = 1000;
+}
+
+/// The search for a buildable candidate; no benchmark chooses them.
+pub mod buildable {
+    use super::Effort;
+
+    /// Rounds that have to reach the best answer of the second search.
+    pub const HITS: usize = 4;
+    /// Rounds without a better answer after which the second search ends.
+    pub const QUIET: usize = 24;
+    /// Rounds per parallel batch: the same number for any number of threads.
+    pub const BATCH: u64 = 8;
+    /// Distinct answers of the main search that the second one starts from.
+    pub const WARM: usize = 8;
+    /// Factors of the shortest link for the starts from each answer. On the boundary between two types, where the links
+    /// align, there is no derivative, and a solver does not move from there.
+    pub const SHORTER: [f64; 3] = [1.0, 0.9, 0.5];
+    /// The transmission angle (degrees; or the problem's limit, if that is larger) that starts with a shorter link meet
+    /// first, so that they approach the limit from inside.
+    pub const STRICT_DEG: f64 = 30.0;
+    /// The effort of that first fit.
+    pub const STRICT_FIT: Effort = Effort::of(100, 6);
+    /// The share of the allowed evaluations for the warm starts, and the share reserved for the move away from a change
+    /// point.
+    pub const WARM_SHARE: f64 = 0.5;
+    pub const LAST_SHARE: f64 = 0.1;
+    /// Degrees by which the limit of the transmission angle is raised in that move, and the number of bisections of the
+    /// least raise that suffices.
+    pub const RAISES: [f64; 5] = [1.0, 3.0, 8.0, 18.0, 35.0];
+    pub const HALVINGS: usize = 5;
+    /// Number of the best candidates from which that move is made, until one of them needs no move.
+    pub const MOST_FROM: usize = 3;
+}
+
+/// The trials of a conflict analysis; no benchmark chooses them.
+pub mod conflicts {
+    /// Most evaluations of a trial.
+    pub const TRIAL: u64 = 20_000;
+    /// A trial also uses at most one part in this many of the problem's own budget.
+    pub const TRIAL_SHARE: u64 = 4;
+    /// Budget of all trials, in trials: no new one begins once it is spent. (A proof is the whole search, and counted
+    /// apart.)
+    pub const ALLOWANCE: u64 = 40;
+    /// A fit from a known candidate gets one part in this many of a trial: one that succeeds does so soon.
+    pub const FIT_SHARE: u64 = 16;
+    /// Most evaluations of a fit that starts from a design of a trial under all requirements of the problem: each is a
+    /// convex program.
+    pub const LED_IN: u64 = 150;
+    /// Number of answers of a trial from which further fits start.
+    pub const WARM: usize = 4;
+    /// Most limits tried between the asked and the attained ones.
+    pub const STEPS: usize = 30;
+    /// Relative step below which the steps inward end.
+    pub const SHORTEST_STEP: f64 = 0.02;
+    /// Least relative step at which a short search is worth its cost.
+    pub const SEARCHED_STEP: f64 = 0.2;
+    /// Factor of the next step after one that succeeded, and after one that did not.
+    pub const LONGER: f64 = 1.5;
+    pub const SHORTER: f64 = 0.5;
+    /// Most proposals.
+    pub const PROPOSALS: usize = 5;
+}
+
+/// The errors without a requirement; no benchmark chooses them.
+pub mod errors_without {
+    /// Most evaluations of the search without a requirement; one part in `SHORT_SHARE` of the evaluations of the search
+    /// itself.
+    pub const SHORT_SEARCH: u64 = 20_000;
+    pub const SHORT_SHARE: u64 = 4;
+}
+
+/// Live fitting; no benchmark chooses them.
+pub mod live {
+    use super::Effort;
+
+    /// The most candidates that follow the target.
+    pub const FOLLOWING: usize = 5;
+    /// The effort of a fit while the target moves: from so near a start, a few steps are enough to converge.
+    pub const EFFORT: Effort = Effort::of(24, 4);
+    /// Most evaluations of the cost in such a fit.
+    pub const EVALUATIONS: u64 = 120;
+    /// Most evaluations of a first look.
+    pub const FIRST_LOOK: u64 = 3000;
+}
+
+/// Snapping; no benchmark chooses them.
+pub mod snap {
+    /// Number of stock sizes tried for a length, the nearest to its fitted value.
+    pub const NEAR: usize = 4;
+    /// Width of the beam: partial choices kept in parallel.
+    pub const BEAM: usize = 12;
+    /// Number of complete choices whose neighbours are tried, and the most rounds of that.
+    pub const IMPROVED: usize = 2;
+    pub const ROUNDS: usize = 12;
+    /// Most evaluations of a fit while choices are compared, and of the final ones.
+    pub const QUICK: u64 = 60;
+    pub const THOROUGH: u64 = 400;
+    /// Number of answers that are fitted thoroughly besides those that are wanted.
+    pub const SPARE: usize = 4;
+}

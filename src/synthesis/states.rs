@@ -1,0 +1,112 @@
+//! The states of the searches in a checkpoint: data alone, so that neither the keeper nor a search depends on another
+//! search.
+//!
+//! A state holds everything on which the next batches of a search depend, besides the problem and the budget. The names
+//! and the order of the fields are those of the checkpoint file.
+
+use super::belief::Belief;
+use crate::numbers::optimise::argmin_bridge::RestartsState;
+use crate::numbers::optimise::exact_float::Exact;
+use crate::record::{Candidate, Evaluations};
+use crate::task::forms::design_space::Design;
+use crate::task::forms::start::Start;
+use crate::task::{Problem, Setting};
+use serde::{Deserialize, Serialize};
+
+/// The state of a search: the last saved boundary of each of its parts.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SearchState {
+    /// State of least squares with free timing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) free: Option<FreeState>,
+    /// State of prescribed timing in its reduced form (variable projection).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) timed: Option<TimedState>,
+    /// State of the multistart rounds of prescribed timing in the physical parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) rounds: Option<RoundsState>,
+    /// State of a population search.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) population: Option<RestartsState>,
+}
+
+/// Counters over all batches.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Counts {
+    /// Distinct answers known; `quiet`: batches in a row without a new one.
+    pub(super) known: usize,
+    pub(super) quiet: u64,
+    pub(super) batch: u64,
+    pub(super) draws: u64,
+}
+
+/// The state of least squares with free timing between two batches.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct FreeState {
+    pub(super) counts: Counts,
+    pub(super) evaluations: Evaluations,
+    pub(super) best_merits: Vec<Exact>,
+    pub(super) stages: Vec<StageState>,
+    pub(super) ends: Vec<EndState>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct StageState {
+    pub(super) bar: Exact,
+    pub(super) leading: Vec<(Exact, Start)>,
+    pub(super) finished: Vec<(Exact, Exact)>,
+    pub(super) index: u64,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct EndState {
+    pub(super) merit: Exact,
+    pub(super) start: Start,
+    /// Whether the referee has judged it; the verdict is computed again on resuming.
+    pub(super) judged: bool,
+}
+
+/// An end that the referee has judged.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Judged {
+    pub(super) setting: Setting,
+    pub(super) design: Design,
+    pub(super) accepted: bool,
+}
+
+/// The state of prescribed timing in its reduced form between two waves.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct TimedState {
+    pub(super) found: Vec<Candidate>,
+    pub(super) evaluations: Evaluations,
+    pub(super) polished: bool,
+    pub(super) best: Option<Candidate>,
+    pub(super) seen: Vec<Judged>,
+    pub(super) belief: Belief,
+    pub(super) known: usize,
+    pub(super) quiet: u64,
+    pub(super) wave: u64,
+    pub(super) draws: u64,
+    pub(super) binding: bool,
+    pub(super) binding_waves: u64,
+}
+
+/// The state of the multistart rounds of prescribed timing in the physical parameters between two batches.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct RoundsState {
+    pub(super) found: Vec<Candidate>,
+    pub(super) evaluations: Evaluations,
+    pub(super) best: Option<Candidate>,
+    pub(super) hits: usize,
+    pub(super) known: usize,
+    pub(super) quiet: u64,
+    pub(super) batch: u64,
+    pub(super) draws: u64,
+}
+
+/// Returns whether saved candidates fit the problem: they have as many points.
+pub(super) fn of_as_many_points(problem: &Problem, found: &[Candidate], best: &Option<Candidate>) -> bool {
+    let n = problem.task().len();
+    found.iter().chain(best).all(|c| c.crank_deg.len() == n && c.t1_at.len() == n)
+}
