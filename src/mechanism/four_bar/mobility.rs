@@ -151,8 +151,8 @@ pub fn wrapped(angle: f64) -> f64 {
     if turned <= -PI { turned + TAU } else { turned }
 }
 
-/// Returns the step `by` taken forwards (`direction` +1) or backwards (-1), as an angle in [0, 2 pi); a step that falls short
-/// of a full turn by less than `tolerance` is none.
+/// Returns the step `by` taken forwards (`direction` +1) or backwards (-1), as an angle in [0, 2 pi); 0 for a step
+/// that falls short of a full turn by less than `tolerance`.
 pub fn step_along(by: f64, direction: f64, tolerance: f64) -> f64 {
     let step = (direction * by).rem_euclid(TAU);
     if step > TAU - tolerance { 0.0 } else { step }

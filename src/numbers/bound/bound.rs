@@ -31,11 +31,11 @@ pub(super) fn split(cell: &Cell, axis: usize) -> [Cell; 2] {
 
 /// The factor that covers the rounding of a few products and roots in a lower bound.
 pub(super) const SMALLER: f64 = 1.0 - 1e-13;
-/// The factor that covers the rounding of the witness' own parts along the basis: they are rounding themselves, of which
-/// the first two digits suffice.
+/// The factor that covers the rounding of the witness' own parts along the basis: they are rounding themselves, so
+/// that their first two digits suffice.
 pub(super) const WIDER: f64 = 1.01;
-/// A relative margin for `f64::hypot`, which is trusted to 1e-12, and for a witness that rounding has made longer than 1
-/// (docs/certificate.md, Rounding).
+/// A relative margin for `f64::hypot`, which is trusted to 1e-12, and for a witness that rounding has made longer
+/// than 1 (docs/certificate.md, Rounding).
 const MARGIN: f64 = 1e-12;
 
 /// The witness y of a box: u off the basis, scaled to a length of at most 1 but for rounding.

@@ -1,8 +1,8 @@
 //! The damping of Levenberg-Marquardt steps, and steps that end inside bounds.
 //!
 //! The damping follows Nielsen (1999), *Damping parameter in Marquardt's method*: after an accepted step it is
-//! multiplied by 1 - (2 gain - 1)^3, cut to [1/3, 2], with the gain as the ratio of actual to predicted reduction; after
-//! rejected ones in a row by 2, 4, 8 ..
+//! multiplied by 1 - (2 gain - 1)^3, cut to [1/3, 2], with the gain as the ratio of actual to predicted reduction;
+//! after rejected ones in a row by 2, 4, 8 ..
 
 /// The first damping, relative to the diagonal of the normal matrix.
 const FIRST: f64 = 1e-3;

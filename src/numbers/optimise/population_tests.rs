@@ -33,8 +33,8 @@ fn limit(evaluations: u64) -> Limits {
     Limits { evaluations, target: None }
 }
 
-/// A search with its arguments in a row: whether it restarts, the problem, the algorithm, starts, seed, limits, token and
-/// observer.
+/// A search with its arguments in a row: whether it restarts, the problem, the algorithm, starts, seed, limits, token
+/// and observer.
 type Asked<'a> = (
     bool,
     &'a dyn PopulationProblem,

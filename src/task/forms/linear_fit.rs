@@ -144,8 +144,8 @@ impl Unknowns {
 }
 
 /// The ridge relative to the largest diagonal entry. u nearly affine in e (a parallelogram, a tiny crank) makes the
-/// system singular, and the ridge keeps it solvable: well above the rounding of the sums, about 1e-15 of that entry, and so
-/// small that a start moves by parts in 1e10, which the fit that follows undoes.
+/// system singular, and the ridge keeps it solvable: it is well above the rounding of the sums, about 1e-15 of that
+/// entry, and so small that a well-posed start moves by parts in 1e10, which the fit that follows undoes.
 const RIDGE: f64 = 1e-10;
 
 /// Returns the normal equations of the real unknowns (A, K, Z): complex sums over the columns 1, e, u, from which

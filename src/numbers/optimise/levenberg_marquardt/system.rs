@@ -251,8 +251,8 @@ struct Pool<const N: usize> {
 }
 
 impl<const N: usize> Workspace<N> {
-    /// Adds the rows of all pooled points, r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and one
-    /// tau for a pool.
+    /// Adds the rows of all pooled points, r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and
+    /// one tau for a pool.
     fn push_pools(&mut self) -> Vec<Pool<N>> {
         let mut eliminated = Vec::new();
         for members in self.order.pools() {
