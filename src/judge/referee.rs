@@ -15,7 +15,7 @@
 //! target have to run one way for the same reason.
 
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::four_bar::mobility::{step_along, wrapped};
 use crate::mechanism::four_bar::transmission::{TransmissionExtremes, angle_opposite};
 use crate::mechanism::{AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility};
 use crate::task::Defect;
@@ -203,13 +203,8 @@ impl Course {
     /// than once around.
     fn through(parameter: &[f64], whole: bool) -> Course {
         let along = |direction: f64| {
-            let steps: Vec<f64> = parameter
-                .windows(2)
-                .map(|w| {
-                    let step = (direction * (w[1] - w[0])).rem_euclid(TAU);
-                    if step > TAU - ORDER_TOLERANCE { 0.0 } else { step }
-                })
-                .collect();
+            let step = |w: &[f64]| step_along(w[1] - w[0], direction, ORDER_TOLERANCE);
+            let steps: Vec<f64> = parameter.windows(2).map(step).collect();
             (steps.iter().sum::<f64>(), steps)
         };
         let (forward, backward) = (along(1.0), along(-1.0));

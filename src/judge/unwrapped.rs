@@ -1,6 +1,6 @@
 //! Crank angles unwrapped along the motion through the points.
 
-use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::four_bar::mobility::{ways_round, wrapped};
 use crate::mechanism::{AssemblyMode, FourBar};
 use crate::task::Problem;
 use crate::task::defect::ORDER_TOLERANCE;
@@ -17,11 +17,8 @@ pub fn unwrapped(
 ) -> (Vec<f64>, Vec<AssemblyMode>) {
     let mobility = linkage.mobility();
     let arc = mobility.arc(mobility.branch(angles[0], assemblies[0]).circuit);
-    let total = |direction: f64| -> f64 {
-        let step = |w: &[f64]| (direction * (w[1] - w[0])).rem_euclid(TAU);
-        angles.windows(2).map(step).map(|step| if step > TAU - ORDER_TOLERANCE { 0.0 } else { step }).sum()
-    };
-    let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
+    let [forward, backward] = ways_round(angles.windows(2).map(|w| w[1] - w[0]), ORDER_TOLERANCE);
+    let direction = if backward < forward { -1.0 } else { 1.0 };
     let mut along: Vec<f64> = match arc {
         // From the middle of the arc, brought to within half a turn of the x axis.
         Some(arc) => angles.iter().map(|angle| wrapped(arc.middle) + arc.offset(*angle)).collect(),

@@ -7,12 +7,13 @@ use super::reduced::{ReducedFitness, forms};
 use super::starts::Searched;
 use super::{Context, Progress};
 use crate::numbers::optimise::argmin_bridge::{
-    Limits, PopulationProgress, RestartsState, StopReason, run_restarts_from,
+    Limits, PopulationProgress, RestartsState, SearchArguments, StopReason, run_restarts,
 };
 use crate::numbers::optimise::differential_evolution::DifferentialEvolution;
 use crate::numbers::optimise::genetic::Genetic;
-use crate::numbers::optimise::population::{Fitness, Generations, PopulationError, PopulationProblem};
+use crate::numbers::optimise::population::{Fitness, PopulationError, PopulationProblem};
 use crate::numbers::optimise::random_search::{UniformSampling, UniformSamplingParameters};
+use crate::numbers::optimise::saved::Resumable;
 use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Timing;
 use crate::task::forms::fitness::PathFitness;
@@ -128,7 +129,7 @@ fn search_in<F: Searched>(
 ) -> Result<PopulationEnd, PopulationError> {
     let problem = context.problem;
     let spec = &problem.spec().solve;
-    let mut algorithm: Box<dyn Generations> = match which {
+    let mut algorithm: Box<dyn Resumable> = match which {
         Population::Genetic => Box::new(Genetic::new(spec.genetic)?),
         Population::DifferentialEvolution => {
             Box::new(DifferentialEvolution::new(spec.differential_evolution)?)
@@ -166,18 +167,17 @@ fn search_in<F: Searched>(
         }
     };
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().population.clone());
-    let (algorithm, seed) = (&mut *algorithm, spec.seed);
-    let outcome = run_restarts_from(
-        earlier,
-        &stoppable,
-        algorithm,
-        &[],
-        seed,
-        &limits,
-        &stop,
-        &mut observe,
-        &mut keep,
-    )?;
+    let arguments = SearchArguments {
+        problem: &stoppable,
+        algorithm: &mut *algorithm,
+        starts: &[],
+        seed: spec.seed,
+        limits,
+        cancel: &stop,
+        observe: &mut observe,
+        keep: &mut keep,
+    };
+    let outcome = run_restarts(arguments, earlier)?;
     let mut starts = Vec::new();
     let mut found = Vec::new();
     let kept =

@@ -13,6 +13,7 @@
 //! On a closed circuit the first point is pinned, in turn, to its present place and to the places where it would be
 //! nearest. The present places are among the samples, so that the result is never worse than the start.
 
+use crate::mechanism::four_bar::mobility::ways_round;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Mobility};
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
@@ -97,10 +98,8 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
 
     // The closing point has the place of the first one.
     let n = if task.repeats_first() { task.len() - 1 } else { task.len() };
-    let total = |direction: f64| -> f64 {
-        own[..n].windows(2).map(|w| (direction * (w[1] - w[0])).rem_euclid(TAU)).sum()
-    };
-    let direction = if total(-1.0) < total(1.0) { -1.0 } else { 1.0 };
+    let [forward, backward] = ways_round(own[..n].windows(2).map(|w| w[1] - w[0]), 0.0);
+    let direction = if backward < forward { -1.0 } else { 1.0 };
     let one_branch = arc.is_some() && !problem.branch_any();
     let places = sampled(&track, &own[..n], direction, one_branch);
     let count = places.len() as u64;

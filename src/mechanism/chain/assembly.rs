@@ -30,15 +30,31 @@ struct Site<'a> {
     joint: &'a str,
 }
 
+/// A key of a part, with an index if its value is a list.
+#[derive(Clone, Copy)]
+struct Key<'a> {
+    site: &'a Site<'a>,
+    key: &'static str,
+    index: Option<usize>,
+}
+
+/// The outcome of a step of the assembly.
+type Assembled<T> = Result<T, Box<ChainError>>;
+
 impl Site<'_> {
-    fn error(
-        &self,
-        key: &'static str,
-        index: impl Into<Option<usize>>,
-        fault: ChainFault,
-    ) -> Box<ChainError> {
-        let joint = self.joint.to_owned();
-        Box::new(ChainError { place: self.place.clone(), joint, key, index: index.into(), fault })
+    fn key(&self, key: &'static str) -> Key<'_> {
+        Key { site: self, key, index: None }
+    }
+}
+
+impl Key<'_> {
+    fn nth(self, index: usize) -> Self {
+        Key { index: Some(index), ..self }
+    }
+
+    fn error(self, fault: ChainFault) -> Box<ChainError> {
+        let Key { site: Site { place, joint }, key, index } = self;
+        Box::new(ChainError { place: place.clone(), joint: (*joint).to_owned(), key, index, fault })
     }
 }
 
@@ -63,22 +79,22 @@ impl<'a> Assembly<'a> {
     }
 
     /// Assembles the chain, without its source.
-    pub(super) fn finish(mut self) -> Result<Chain, Box<ChainError>> {
+    pub(super) fn finish(mut self) -> Assembled<Chain> {
         let source = self.source;
         for (name, at) in &source.pivots {
             let site = Site { place: ChainPlace::Pivot(name.clone()), joint: name };
-            self.numbers(&site, "pivots", at)?;
-            let id = self.name(&site, "pivots", name)?;
+            self.numbers(site.key("pivots"), at)?;
+            let id = self.name(site.key("pivots"), name)?;
             self.attach(0, id, point(*at));
         }
         let site = Site { place: ChainPlace::Crank, joint: &source.crank_joint };
         let pivots = self.names.clone();
         let Some(&crank_pivot) = self.known.get(&source.crank_pivot) else {
             let fault = ChainFault::NotAPivot { name: source.crank_pivot.clone(), known: pivots };
-            return Err(site.error("pivot", None, fault));
+            return Err(site.key("pivot").error(fault));
         };
-        self.length(&site, "length", None, source.crank)?;
-        let joint = self.name(&site, "joint", &source.crank_joint)?;
+        self.length(site.key("length"), source.crank)?;
+        let joint = self.name(site.key("joint"), &source.crank_joint)?;
         self.link(crank_pivot, joint, Complex::new(source.crank, 0.0));
         for (i, stage) in source.stages.iter().enumerate() {
             let site = Site { place: ChainPlace::Stage(i), joint: stage.joint() };
@@ -87,7 +103,7 @@ impl<'a> Assembly<'a> {
         }
         let whole = Site { place: ChainPlace::Chain, joint: "" };
         let trace = match &source.trace {
-            Some(name) => self.find(&whole, "trace", None, name)?,
+            Some(name) => self.find(whole.key("trace"), name)?,
             None => self.names.len() - 1,
         };
         let as_ids = |link: &Link| link.0.iter().map(|(i, _)| PointId(*i)).collect();
@@ -104,13 +120,13 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    fn stage(&mut self, site: &Site<'_>, stage: &Stage) -> Result<Step, Box<ChainError>> {
+    fn stage(&mut self, site: &Site<'_>, stage: &Stage) -> Assembled<Step> {
         match stage {
             Stage::Dyad { joint, from, lengths: [b, c], side } => {
-                let [p, q] = self.two(site, "from", from)?;
-                self.length(site, "lengths", 0, *b)?;
-                self.length(site, "lengths", 1, *c)?;
-                let n = self.name(site, "joint", joint)?;
+                let [p, q] = self.two(site.key("from"), from)?;
+                self.length(site.key("lengths").nth(0), *b)?;
+                self.length(site.key("lengths").nth(1), *c)?;
+                let n = self.name(site.key("joint"), joint)?;
                 self.link(p, n, Complex::new(*b, 0.0));
                 self.link(q, n, Complex::new(*c, 0.0));
                 Ok(Step::Dyad {
@@ -123,77 +139,77 @@ impl<'a> Assembly<'a> {
                 })
             }
             Stage::Point { name, on, at } => {
-                let [p, q] = self.two(site, "on", on)?;
-                let (link, [from, to]) = self.common_link(site, "on", on, [p, q])?;
+                let [p, q] = self.two(site.key("on"), on)?;
+                let (link, [from, to]) = self.common_link(site.key("on"), on, [p, q])?;
                 let base = (to - from).norm();
                 let offset = match *at {
                     Attachment::Offset(offset) => {
-                        self.numbers(site, "at", &offset)?;
+                        self.numbers(site.key("at"), &offset)?;
                         point(offset)
                     }
                     Attachment::Distances(distances, side) => {
-                        self.numbers(site, "distances", &distances)?;
+                        self.numbers(site.key("distances"), &distances)?;
                         offset_from_distances(site, on, base, distances, side)?
                     }
                 };
                 let z = offset / base;
-                let n = self.name(site, "name", name)?;
+                let n = self.name(site.key("name"), name)?;
                 self.attach(link, n, from + z * (to - from));
                 Ok(Step::Point { p, q, z })
             }
             Stage::Slider { joint, from, length, line, side } => {
-                let p = self.find(site, "from", None, from)?;
-                self.length(site, "length", None, *length)?;
+                let p = self.find(site.key("from"), from)?;
+                self.length(site.key("length"), *length)?;
                 let line = self.line(site, line)?;
-                let n = self.name(site, "joint", joint)?;
+                let n = self.name(site.key("joint"), joint)?;
                 self.link(p, n, Complex::new(*length, 0.0));
                 Ok(Step::Slider { p, length_sq: length * length, line, t: side.sign() })
             }
             Stage::Guide { joint, pivot, block, at, offset, side } => {
-                let p = self.find(site, "pivot", None, pivot)?;
-                let q = self.find(site, "block", None, block)?;
+                let p = self.find(site.key("pivot"), pivot)?;
+                let q = self.find(site.key("block"), block)?;
                 if p == q {
-                    return Err(site.error("block", None, ChainFault::SamePoint { name: block.clone() }));
+                    return Err(site.key("block").error(ChainFault::SamePoint { name: block.clone() }));
                 }
-                self.numbers(site, "at", at)?;
-                self.number(site, "offset", None, *offset)?;
+                self.numbers(site.key("at"), at)?;
+                self.number(site.key("offset"), *offset)?;
                 if *at == [0.0, 0.0] {
-                    return Err(site.error("at", None, ChainFault::NoLength));
+                    return Err(site.key("at").error(ChainFault::NoLength));
                 }
-                let n = self.name(site, "joint", joint)?;
+                let n = self.name(site.key("joint"), joint)?;
                 self.link(p, n, point(*at));
                 Ok(Step::Guide { p, q, w: point(*at), offset: *offset, t: side.sign() })
             }
         }
     }
 
-    fn line(&mut self, site: &Site<'_>, line: &SliderLine) -> Result<Line, Box<ChainError>> {
+    fn line(&mut self, site: &Site<'_>, line: &SliderLine) -> Assembled<Line> {
         match line {
             SliderLine::Fixed { through, angle } => {
-                self.numbers(site, "through", through)?;
+                self.numbers(site.key("through"), through)?;
                 if !is_usable(*angle) {
-                    return Err(site.error("angle_deg", None, ChainFault::NotFinite { value: *angle }));
+                    return Err(site.key("angle_deg").error(ChainFault::NotFinite { value: *angle }));
                 }
                 Ok(fixed_line(*through, *angle))
             }
             SliderLine::OnLink { along, offset } => {
-                let [p, q] = self.two(site, "along", along)?;
-                self.number(site, "offset", None, *offset)?;
-                let (_, [from, to]) = self.common_link(site, "along", along, [p, q])?;
+                let [p, q] = self.two(site.key("along"), along)?;
+                self.number(site.key("offset"), *offset)?;
+                let (_, [from, to]) = self.common_link(site.key("along"), along, [p, q])?;
                 Ok(Line::OnLink { p, q, per_length: 1.0 / (to - from).norm(), offset: *offset })
             }
         }
     }
 
     /// Adds a new point and returns its index.
-    fn name(&mut self, site: &Site<'_>, key: &'static str, name: &str) -> Result<usize, Box<ChainError>> {
+    fn name(&mut self, key: Key<'_>, name: &str) -> Assembled<usize> {
         let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         if name.is_empty() || name.chars().count() > MAX_POINT_NAME || !name.chars().all(allowed) {
-            return Err(site.error(key, None, ChainFault::BadName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::BadName { name: name.to_owned() }));
         }
         let id = self.names.len();
         if self.known.insert(name.to_owned(), id).is_some() {
-            return Err(site.error(key, None, ChainFault::DuplicateName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::DuplicateName { name: name.to_owned() }));
         }
         self.names.push(name.to_owned());
         self.links_of.push(Vec::new());
@@ -201,40 +217,25 @@ impl<'a> Assembly<'a> {
     }
 
     /// Returns the index of a point that is known already.
-    fn find(
-        &self,
-        site: &Site<'_>,
-        key: &'static str,
-        index: Option<usize>,
-        name: &str,
-    ) -> Result<usize, Box<ChainError>> {
+    fn find(&self, key: Key<'_>, name: &str) -> Assembled<usize> {
         if let Some(&id) = self.known.get(name) {
             return Ok(id);
         }
         let known = self.source.all_names();
         let name = name.to_owned();
-        Err(site.error(
-            key,
-            index,
-            if known.contains(&name) {
-                ChainFault::ForwardReference { itself: site.joint == name, name }
-            } else {
-                ChainFault::UnknownPoint { name, known }
-            },
-        ))
+        Err(key.error(if known.contains(&name) {
+            ChainFault::ForwardReference { itself: key.site.joint == name, name }
+        } else {
+            ChainFault::UnknownPoint { name, known }
+        }))
     }
 
     /// Returns the indices of two different points that are known already.
-    fn two(
-        &self,
-        site: &Site<'_>,
-        key: &'static str,
-        [first, second]: &[String; 2],
-    ) -> Result<[usize; 2], Box<ChainError>> {
-        let p = self.find(site, key, Some(0), first)?;
-        let q = self.find(site, key, Some(1), second)?;
+    fn two(&self, key: Key<'_>, [first, second]: &[String; 2]) -> Assembled<[usize; 2]> {
+        let p = self.find(key.nth(0), first)?;
+        let q = self.find(key.nth(1), second)?;
         if p == q {
-            return Err(site.error(key, 1, ChainFault::SamePoint { name: second.clone() }));
+            return Err(key.nth(1).error(ChainFault::SamePoint { name: second.clone() }));
         }
         Ok([p, q])
     }
@@ -242,21 +243,20 @@ impl<'a> Assembly<'a> {
     /// Returns a link that carries two points, and their positions on it.
     fn common_link(
         &self,
-        site: &Site<'_>,
-        key: &'static str,
+        key: Key<'_>,
         [first, second]: &[String; 2],
         [p, q]: [usize; 2],
-    ) -> Result<(usize, [Complex; 2]), Box<ChainError>> {
+    ) -> Assembled<(usize, [Complex; 2])> {
         let names = || (first.clone(), second.clone());
         let Some(&link) = self.links_of[p].iter().find(|l| self.links_of[q].contains(l)) else {
             let (first, second) = names();
-            return Err(site.error(key, None, ChainFault::NotOnOneLink { first, second }));
+            return Err(key.error(ChainFault::NotOnOneLink { first, second }));
         };
         let place = |of: usize| self.links[link].0.iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
         let [from, to] = [place(p), place(q)];
         if (to - from).norm_sqr() <= coincident_sq(self.scale) {
             let (first, second) = names();
-            return Err(site.error(key, None, ChainFault::Coincident { first, second }));
+            return Err(key.error(ChainFault::Coincident { first, second }));
         }
         Ok((link, [from, to]))
     }
@@ -274,40 +274,22 @@ impl<'a> Assembly<'a> {
         self.attach(link, to, at);
     }
 
-    fn number(
-        &mut self,
-        site: &Site<'_>,
-        key: &'static str,
-        index: Option<usize>,
-        value: f64,
-    ) -> Result<(), Box<ChainError>> {
+    fn number(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
         if !is_usable(value) {
-            return Err(site.error(key, index, ChainFault::NotFinite { value }));
+            return Err(key.error(ChainFault::NotFinite { value }));
         }
         self.scale = self.scale.max(value.abs());
         Ok(())
     }
 
-    fn numbers(
-        &mut self,
-        site: &Site<'_>,
-        key: &'static str,
-        values: &[f64; 2],
-    ) -> Result<(), Box<ChainError>> {
-        (0..2).try_for_each(|i| self.number(site, key, Some(i), values[i]))
+    fn numbers(&mut self, key: Key<'_>, values: &[f64; 2]) -> Assembled<()> {
+        (0..2).try_for_each(|i| self.number(key.nth(i), values[i]))
     }
 
-    fn length(
-        &mut self,
-        site: &Site<'_>,
-        key: &'static str,
-        index: impl Into<Option<usize>>,
-        value: f64,
-    ) -> Result<(), Box<ChainError>> {
-        let index = index.into();
-        self.number(site, key, index, value)?;
+    fn length(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
+        self.number(key, value)?;
         if value <= 0.0 {
-            return Err(site.error(key, index, ChainFault::LengthNotPositive { value }));
+            return Err(key.error(ChainFault::LengthNotPositive { value }));
         }
         Ok(())
     }
@@ -320,7 +302,7 @@ fn offset_from_distances(
     base: f64,
     [d, e]: [f64; 2],
     side: CouplerSide,
-) -> Result<Complex, Box<ChainError>> {
+) -> Assembled<Complex> {
     let triangle = FourBar::new(NaturalCoordinates {
         crank_pivot: [0.0, 0.0],
         follower_pivot: [0.0, 0.0],
@@ -334,14 +316,14 @@ fn offset_from_distances(
     });
     triangle.map(|t| t.coupler_offset()).map_err(|error| match error {
         LinkageError::DistanceNegative { key, value } => {
-            site.error("distances", usize::from(key == "e"), ChainFault::DistanceNegative { value })
+            site.key("distances").nth(usize::from(key == "e")).error(ChainFault::DistanceNegative { value })
         }
         LinkageError::NotFinite { value, .. } | LinkageError::LengthNotPositive { value, .. } => {
-            site.error("distances", None, ChainFault::NotFinite { value })
+            site.key("distances").error(ChainFault::NotFinite { value })
         }
         LinkageError::NoCouplerTriangle { b, d, e } => {
             let (first, second) = (first.clone(), second.clone());
-            site.error("distances", None, ChainFault::NoTriangle { first, second, base: b, d, e })
+            site.key("distances").error(ChainFault::NoTriangle { first, second, base: b, d, e })
         }
     })
 }

@@ -151,6 +151,18 @@ pub fn wrapped(angle: f64) -> f64 {
     if turned <= -PI { turned + TAU } else { turned }
 }
 
+/// Returns the step `by` taken forwards (`direction` +1) or backwards (-1), as an angle in [0, 2 pi); 0 for a step
+/// that falls short of a full turn by less than `tolerance`.
+pub fn step_along(by: f64, direction: f64, tolerance: f64) -> f64 {
+    let step = (direction * by).rem_euclid(TAU);
+    if step > TAU - tolerance { 0.0 } else { step }
+}
+
+/// Returns the total lengths of steps all taken forwards, and all taken backwards, as [`step_along`].
+pub fn ways_round(steps: impl Iterator<Item = f64> + Clone, tolerance: f64) -> [f64; 2] {
+    [1.0, -1.0].map(|direction| steps.clone().map(|by| step_along(by, direction, tolerance)).sum())
+}
+
 /// Type, margin and input range of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mobility {

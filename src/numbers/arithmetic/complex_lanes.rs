@@ -1,4 +1,4 @@
-//! Complex numbers of eight paths side by side, and the 8x8 linear systems that eight paths solve at once.
+//! Complex numbers side by side in lanes, and the 8x8 linear systems that eight paths solve at once.
 //!
 //! Every operation is one IEEE-754 operation a lane, so a path's digits depend neither on its lane nor on what the
 //! other lanes hold. Wide instructions come from the function that encloses the loops
@@ -8,23 +8,84 @@ use crate::Complex;
 use crate::lane::{F64x8, LANES, Lane};
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// Eight complex numbers: real parts together, imaginary parts together.
+/// One complex number a lane: real parts together, imaginary parts together.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ComplexLanes {
+pub struct ComplexLanes<L = F64x8> {
     /// Real parts.
-    pub re: F64x8,
+    pub re: L,
     /// Imaginary parts.
-    pub im: F64x8,
+    pub im: L,
+}
+
+impl<L: Lane> ComplexLanes<L> {
+    /// Returns the same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: Complex) -> Self {
+        ComplexLanes { re: L::splat(value.re), im: L::splat(value.im) }
+    }
+
+    /// Returns |z|^2.
+    #[inline(always)]
+    pub fn norm_sq(self) -> L {
+        self.re * self.re + self.im * self.im
+    }
+
+    /// Multiplies each lane by a real number.
+    #[inline(always)]
+    pub fn scale(self, by: L) -> Self {
+        ComplexLanes { re: self.re * by, im: self.im * by }
+    }
+
+    /// Returns 1 / z; not finite if z = 0.
+    #[inline(always)]
+    pub fn recip(self) -> Self {
+        let inverse = self.norm_sq().recip();
+        ComplexLanes { re: self.re * inverse, im: -self.im * inverse }
+    }
+
+    /// Returns conj(self) other.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> Self {
+        ComplexLanes {
+            re: self.re * other.re + self.im * other.im,
+            im: self.re * other.im - self.im * other.re,
+        }
+    }
+
+    /// Selects `yes` in the lanes with left >= right, `no` elsewhere.
+    #[inline(always)]
+    pub fn where_at_least(left: L, right: L, yes: Self, no: Self) -> Self {
+        ComplexLanes { re: left.at_least(right, yes.re, no.re), im: left.at_least(right, yes.im, no.im) }
+    }
 }
 
 impl ComplexLanes {
     /// Zero in every lane.
     pub const ZERO: ComplexLanes = ComplexLanes { re: F64x8([0.0; LANES]), im: F64x8([0.0; LANES]) };
 
-    /// Returns the same number in every lane.
+    /// Loads the eight numbers that start at index `at` of a column of real parts and one of imaginary parts.
+    ///
+    /// # Panics
+    /// When fewer than eight are left.
     #[inline(always)]
-    pub fn splat(value: Complex) -> Self {
-        ComplexLanes { re: F64x8::splat(value.re), im: F64x8::splat(value.im) }
+    pub fn load([re, im]: &[Vec<f64>; 2], at: usize) -> Self {
+        ComplexLanes { re: F64x8::load(re, at), im: F64x8::load(im, at) }
+    }
+
+    /// Writes the eight numbers to index `at` of a column of real parts and one of imaginary parts.
+    ///
+    /// # Panics
+    /// When there is no room for eight.
+    #[inline(always)]
+    pub fn store(self, [re, im]: &mut [Vec<f64>; 2], at: usize) {
+        self.re.store(re, at);
+        self.im.store(im, at);
+    }
+
+    /// Returns the sum of the lanes, in the order of [`F64x8::sum`].
+    #[inline(always)]
+    pub fn sum(self) -> Complex {
+        Complex::new(self.re.sum(), self.im.sum())
     }
 
     /// Returns the number in one lane.
@@ -38,31 +99,6 @@ impl ComplexLanes {
     pub fn set(&mut self, lane: usize, value: Complex) {
         self.re.0[lane] = value.re;
         self.im.0[lane] = value.im;
-    }
-
-    /// Returns |z|^2.
-    #[inline(always)]
-    pub fn norm_sq(self) -> F64x8 {
-        self.re * self.re + self.im * self.im
-    }
-
-    /// Multiplies each lane by a real number.
-    #[inline(always)]
-    pub fn scale(self, by: F64x8) -> Self {
-        ComplexLanes { re: self.re * by, im: self.im * by }
-    }
-
-    /// Returns 1 / z; not finite if z = 0.
-    #[inline(always)]
-    pub fn recip(self) -> Self {
-        let inverse = self.norm_sq().recip();
-        ComplexLanes { re: self.re * inverse, im: -self.im * inverse }
-    }
-
-    /// Selects `yes` in the lanes with left >= right, `no` elsewhere.
-    #[inline(always)]
-    pub fn where_at_least(left: F64x8, right: F64x8, yes: Self, no: Self) -> Self {
-        ComplexLanes { re: left.at_least(right, yes.re, no.re), im: left.at_least(right, yes.im, no.im) }
     }
 
     /// Selects `yes` in the lanes with left = right, `no` elsewhere.
@@ -79,7 +115,7 @@ impl ComplexLanes {
     }
 }
 
-impl Add for ComplexLanes {
+impl<L: Lane> Add for ComplexLanes<L> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -87,7 +123,7 @@ impl Add for ComplexLanes {
     }
 }
 
-impl Sub for ComplexLanes {
+impl<L: Lane> Sub for ComplexLanes<L> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -95,7 +131,7 @@ impl Sub for ComplexLanes {
     }
 }
 
-impl Neg for ComplexLanes {
+impl<L: Lane> Neg for ComplexLanes<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -103,7 +139,7 @@ impl Neg for ComplexLanes {
     }
 }
 
-impl Mul for ComplexLanes {
+impl<L: Lane> Mul for ComplexLanes<L> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {

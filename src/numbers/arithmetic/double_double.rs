@@ -17,7 +17,6 @@
 //! double-word arithmetic", ACM Trans. Math. Softw. 44 (2017) 15res, algorithms 6 (sum), 10 (product), 17 (quotient).
 
 use crate::Complex;
-use std::ops::{Add, Mul, Neg, Sub};
 
 /// A bound above the relative error of any one operation on [`DoubleDouble`]: 2^-100 = 64 u^2.
 pub const RELATIVE_ERROR: f64 = 1.0 / (1_u128 << 100) as f64;
@@ -111,51 +110,25 @@ impl From<f64> for DoubleDouble {
     }
 }
 
-impl Neg for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        DoubleDouble { hi: -self.hi, lo: -self.lo }
-    }
-}
-
-impl Add for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let high = two_sum(self.hi, other.hi);
-        let low = two_sum(self.lo, other.lo);
+crate::operators! { DoubleDouble:
+    Neg neg(x) { DoubleDouble { hi: -x.hi, lo: -x.lo } }
+    Add add(x, y) {
+        let high = two_sum(x.hi, y.hi);
+        let low = two_sum(x.lo, y.lo);
         let head = fast_two_sum(high.hi, high.lo + low.hi);
         fast_two_sum(head.hi, low.lo + head.lo)
     }
-}
-
-impl Sub for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self + -other
+    Sub sub(x, y) { x + -y }
+    Mul mul(x, y) {
+        let head = two_product(x.hi, y.hi);
+        fast_two_sum(head.hi, head.lo + (x.hi * y.lo + x.lo * y.hi))
     }
-}
-
-impl Mul for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let head = two_product(self.hi, other.hi);
-        fast_two_sum(head.hi, head.lo + (self.hi * other.lo + self.lo * other.hi))
-    }
-}
-
-impl std::ops::Div for DoubleDouble {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, by: Self) -> Self {
-        let quotient = self.hi / by.hi;
-        let product = two_product(by.hi, quotient);
-        let back = fast_two_sum(product.hi, product.lo + by.lo * quotient);
-        let rest = (self.hi - back.hi) + (self.lo - back.lo);
-        fast_two_sum(quotient, rest / by.hi)
+    Div div(x, y) {
+        let quotient = x.hi / y.hi;
+        let product = two_product(y.hi, quotient);
+        let back = fast_two_sum(product.hi, product.lo + y.lo * quotient);
+        let rest = (x.hi - back.hi) + (x.lo - back.lo);
+        fast_two_sum(quotient, rest / y.hi)
     }
 }
 
@@ -201,49 +174,16 @@ impl From<Complex> for DoubleComplex {
     }
 }
 
-impl Neg for DoubleComplex {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        DoubleComplex { re: -self.re, im: -self.im }
-    }
-}
-
-impl Add for DoubleComplex {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        DoubleComplex { re: self.re + other.re, im: self.im + other.im }
-    }
-}
-
-impl Sub for DoubleComplex {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        DoubleComplex { re: self.re - other.re, im: self.im - other.im }
-    }
-}
-
-/// Error at most 4 [`RELATIVE_ERROR`] |z| |w|.
-impl Mul for DoubleComplex {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        DoubleComplex {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
-        }
-    }
-}
-
-/// z / w = z conj(w) / |w|^2.
-impl std::ops::Div for DoubleComplex {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, by: Self) -> Self {
-        let norm_sqr = by.re * by.re + by.im * by.im;
-        let above = self * by.conj();
+crate::operators! { DoubleComplex:
+    Neg neg(z) { DoubleComplex { re: -z.re, im: -z.im } }
+    Add add(z, w) { DoubleComplex { re: z.re + w.re, im: z.im + w.im } }
+    Sub sub(z, w) { DoubleComplex { re: z.re - w.re, im: z.im - w.im } }
+    /// Error at most 4 [`RELATIVE_ERROR`] |z| |w|.
+    Mul mul(z, w) { DoubleComplex { re: z.re * w.re - z.im * w.im, im: z.re * w.im + z.im * w.re } }
+    /// z / w = z conj(w) / |w|^2.
+    Div div(z, w) {
+        let norm_sqr = w.re * w.re + w.im * w.im;
+        let above = z * w.conj();
         DoubleComplex { re: above.re / norm_sqr, im: above.im / norm_sqr }
     }
 }

@@ -108,36 +108,11 @@ impl F64x8 {
     }
 }
 
-impl Add for F64x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |x, y| x + y)
-    }
-}
-
-impl Sub for F64x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |x, y| x - y)
-    }
-}
-
-impl Mul for F64x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self.zip(other, |x, y| x * y)
-    }
-}
-
-impl Neg for F64x8 {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.map(|x| -x)
-    }
+crate::operators! { F64x8:
+    Add add(x, y) { x.zip(y, |x, y| x + y) }
+    Sub sub(x, y) { x.zip(y, |x, y| x - y) }
+    Mul mul(x, y) { x.zip(y, |x, y| x * y) }
+    Neg neg(x) { x.map(|x| -x) }
 }
 
 impl Lane for F64x8 {

@@ -4,6 +4,7 @@ pub mod complex_lanes;
 pub mod dispatch;
 pub mod double_double;
 pub mod lane;
+mod operators;
 pub mod streams;
 
 /// A point or a vector of the plane, x + i y.

@@ -10,7 +10,7 @@
 
 use super::affine::Affine;
 use super::ball::{Ball, not_negative};
-use super::bound::Bound;
+use super::bound::{Bound, SMALLER, WIDER, Witness, largest};
 use super::expansion::{Expansion, LARGER, Moved, STEEPEST};
 use super::target::{MAX_POINTS, Target};
 use linkwright_leaves::{Cell, Class, Lengths};
@@ -72,39 +72,11 @@ impl Parts {
         let n = target.len();
         let expansion = Expansion::new(&target.turn, class, cell);
         let Expansion { h, u, .. } = &expansion;
-        // The witness: u off the basis, of length 1.
-        let dot = |b: &[[f64; 2]], v: &[[f64; 2]]| {
-            b.iter().zip(v).fold((0.0, 0.0), |(re, im), (b, v)| {
-                (re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0])
-            })
-        };
-        let mut y = *u;
-        for _ in 0..2 {
-            for b in &target.basis {
-                let (re, im) = dot(b, &y[..n]);
-                for (b, v) in b.iter().zip(&mut y) {
-                    *v = [v[0] - (b[0] * re - b[1] * im), v[1] - (b[0] * im + b[1] * re)];
-                }
-            }
-            let across = y[..n].iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum::<f64>().sqrt();
-            let scale = if across > 0.0 { (1.0 - 1e-13) / across } else { 0.0 };
-            for v in &mut y[..n] {
-                *v = [v[0] * scale, v[1] * scale];
-            }
-        }
-        // The rounding of every sum of n products, and the part of y along the exact basis.
+        // The rounding of every sum of n products.
         let root_n = (n as f64).sqrt() * LARGER;
         let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * root_n;
         let turning = rounding * (1.0 + (h[0] + h[1] + h[2] + h[3]) * STEEPEST);
-        let mut along = 0.0;
-        for b in &target.basis {
-            let (re, im) = dot(b, &y[..n]);
-            along += re.abs() + im.abs() + rounding + 1.01 * target.basis_error();
-        }
-        let mut size_y = [0.0; MAX_POINTS];
-        for j in 0..n {
-            size_y[j] = (y[j][0] * y[j][0] + y[j][1] * y[j][1]).sqrt();
-        }
+        let Witness { y, size: size_y, along } = Witness::new(target, u, 2, SMALLER, rounding);
         let common = expansion.common_turn(&size_y);
         let moved: [Moved; MAX_POINTS] =
             std::array::from_fn(|j| if j < n { expansion.moved(j, &common) } else { Moved::NOT });
@@ -116,7 +88,7 @@ impl Parts {
         }
         let of =
             |w: &[[f64; 2]], error: f64| functional(w, &u[..n], &moved[..n], h, error * root_n + turning);
-        let [beta, _] = of(&y[..n], along * 1.01);
+        let [beta, _] = of(&y[..n], along * WIDER);
         let error = target.basis_error();
         let [v, alpha] = [1, 2].map(|k| of(&target.basis[k], error));
         let mut length_sq = Affine::exact(n as f64);
@@ -145,7 +117,7 @@ impl Condition {
         if size.is_nan() || size <= 0.0 {
             return;
         }
-        let (cos, sin) = (x / size * (1.0 - 1e-13), y / size * (1.0 - 1e-13));
+        let (cos, sin) = (x / size * SMALLER, y / size * SMALLER);
         let sum = self.x.times(cos) + self.y.times(sin);
         // W <= W^2/(2 m) + m/2.
         let m = self.w_sq.mid.max(0.01 * self.w_sq.high()).max(1e-12).sqrt();
@@ -155,19 +127,8 @@ impl Condition {
             *weight += 0.25 * by.abs();
         }
         let goal = wanted.sqrt() * (1.0 + 1e-13);
-        let found = if holds(goal) {
-            goal
-        } else if holds(0.0) {
-            let (mut low, mut high) = (0.0, goal);
-            for _ in 0..12 {
-                let root = 0.5 * (low + high);
-                if holds(root) { low = root } else { high = root }
-            }
-            low
-        } else {
-            0.0
-        };
-        *sum_sq = sum_sq.max(found * found * (1.0 - 1e-13));
+        let found = largest(goal, holds);
+        *sum_sq = sum_sq.max(found * found * SMALLER);
     }
 }
 
@@ -211,7 +172,7 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
         let part = [s * v[0] - (w * alpha[0] - t * alpha[1]), s * v[1] - (w * alpha[1] + t * alpha[0])];
         let far = (part[0].mid * part[0].mid + part[1].mid * part[1].mid).sqrt();
         let (cos, sin) = if far > 0.0 { (part[0].mid / far, part[1].mid / far) } else { (1.0, 0.0) };
-        let y = (part[0].times(cos) + part[1].times(sin)).times(1.0 - 1e-13);
+        let y = (part[0].times(cos) + part[1].times(sin)).times(SMALLER);
         Condition { x, y, w_sq: *length_sq }.certified(wanted, sum_sq, weight);
     };
     let by_ground = |ground: f64| {

@@ -29,6 +29,86 @@ pub(super) fn split(cell: &Cell, axis: usize) -> [Cell; 2] {
     [lower, upper]
 }
 
+/// The factor that covers the rounding of a few products and roots in a lower bound.
+pub(super) const SMALLER: f64 = 1.0 - 1e-13;
+/// The factor that covers the rounding of the witness' own parts along the basis: they are rounding themselves, so
+/// that their first two digits suffice.
+pub(super) const WIDER: f64 = 1.01;
+/// A relative margin for `f64::hypot`, which is trusted to 1e-12, and for a witness that rounding has made longer
+/// than 1 (docs/certificate.md, Rounding).
+const MARGIN: f64 = 1e-12;
+
+/// The witness y of a box: u off the basis, scaled to a length of at most 1 but for rounding.
+pub(super) struct Witness {
+    pub(super) y: [[f64; 2]; MAX_POINTS],
+    /// The sizes |y_j|.
+    pub(super) size: [f64; MAX_POINTS],
+    /// A bound of the part of y along the exact basis.
+    pub(super) along: f64,
+}
+
+impl Witness {
+    /// Projects u off the basis and scales it to `length`, both `times` in a row; `rounding` is that of a sum of n
+    /// products.
+    #[inline(always)]
+    pub(super) fn new(
+        target: &Target,
+        u: &[[f64; 2]; MAX_POINTS],
+        times: usize,
+        length: f64,
+        rounding: f64,
+    ) -> Self {
+        let n = target.len();
+        let mut y = *u;
+        for _ in 0..times {
+            for b in &target.basis {
+                let (re, im) = product(b, &y[..n]);
+                for (b, v) in b.iter().zip(&mut y) {
+                    *v = [v[0] - (b[0] * re - b[1] * im), v[1] - (b[0] * im + b[1] * re)];
+                }
+            }
+            let across = y[..n].iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum::<f64>().sqrt();
+            let scale = if across > 0.0 { length / across } else { 0.0 };
+            for v in &mut y[..n] {
+                *v = [v[0] * scale, v[1] * scale];
+            }
+        }
+        let mut along = 0.0;
+        for b in &target.basis {
+            let (re, im) = product(b, &y[..n]);
+            along += re.abs() + im.abs() + rounding + WIDER * target.basis_error();
+        }
+        let mut size = [0.0; MAX_POINTS];
+        for (size, y) in size.iter_mut().zip(&y[..n]) {
+            *size = (y[0] * y[0] + y[1] * y[1]).sqrt();
+        }
+        Witness { y, size, along }
+    }
+}
+
+/// Returns <b, v> = sum conj(b_j) v_j.
+#[inline(always)]
+fn product(b: &[[f64; 2]], v: &[[f64; 2]]) -> (f64, f64) {
+    b.iter()
+        .zip(v)
+        .fold((0.0, 0.0), |(re, im), (b, v)| (re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0]))
+}
+
+/// Returns the largest number up to `goal` that twelve halvings find to hold; 0 if none does.
+pub(super) fn largest(goal: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    if holds(goal) {
+        return goal;
+    }
+    let (mut low, mut high) = (0.0, goal);
+    if holds(0.0) {
+        for _ in 0..12 {
+            let middle = 0.5 * (low + high);
+            if holds(middle) { low = middle } else { high = middle }
+        }
+    }
+    low
+}
+
 /// The lower bound of a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bound {
@@ -45,41 +125,15 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
     let n = target.len();
     let expansion = Expansion::new(&target.turn, class, cell);
     let Expansion { h, u, .. } = &expansion;
-    // The witness y: u projected off the basis, scaled to length 1.
-    let dot = |b: &[[f64; 2]], v: &[[f64; 2]]| {
-        b.iter().zip(v).fold((0.0, 0.0), |(re, im), (b, v)| {
-            (re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0])
-        })
-    };
-    let mut y = *u;
-    for b in &target.basis {
-        let (re, im) = dot(b, &y[..n]);
-        for (b, v) in b.iter().zip(&mut y) {
-            *v = [v[0] - (b[0] * re - b[1] * im), v[1] - (b[0] * im + b[1] * re)];
-        }
-    }
-    let across = y[..n].iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum::<f64>().sqrt();
-    let scale = if across > 0.0 { 1.0 / across } else { 0.0 };
-    for v in &mut y[..n] {
-        *v = [v[0] * scale, v[1] * scale];
-    }
-    // The part of y along the exact basis, and the rounding of every sum of n products below.
     let rounding = (n as f64 + 8.0) * 2.0 * f64::EPSILON * (n as f64).sqrt();
-    let mut along = 0.0;
-    for b in &target.basis {
-        let (re, im) = dot(b, &y[..n]);
-        along += re.abs() + im.abs() + rounding + 1.01 * target.basis_error();
-    }
-    let slack = along * (n as f64).sqrt() * 1.01 + 2.0 * rounding;
+    let witness = Witness::new(target, u, 1, 1.0, rounding);
+    let (y, size_y) = (&witness.y, &witness.size);
+    let slack = witness.along * (n as f64).sqrt() * WIDER + 2.0 * rounding;
     let tau = &target.basis[2];
-    let (re, im) = dot(tau, &u[..n]);
+    let (re, im) = product(tau, &u[..n]);
     let beta = re.hypot(im);
     let turn = if beta > 0.0 { [re / beta, im / beta] } else { [1.0, 0.0] };
-    let mut size_y = [0.0; MAX_POINTS];
-    for j in 0..n {
-        size_y[j] = (y[j][0] * y[j][0] + y[j][1] * y[j][1]).sqrt();
-    }
-    let common = expansion.common_turn(&size_y);
+    let common = expansion.common_turn(size_y);
     let (mut value, mut rest_y, mut rest_tau) = (0.0, 0.0, 0.0);
     let (mut a, mut b_re, mut b_im) = ([0.0; 4], [0.0; 4], [0.0; 4]);
     let mut weight = [0.0; 4];
@@ -116,30 +170,21 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, cap: f64, wanted: f64) 
     let certified = |kappa: f64| {
         let linear: f64 = (0..4).map(|k| (a[k] - kappa * slope * b_re[k]).abs() * h[k]).sum();
         // The witness may be longer than 1 by rounding.
-        (value - rest_y - kappa * mean - linear * LARGER) - 1e-12 * (1.0 + kappa * longest) >= 0.0
+        (value - rest_y - kappa * mean - linear * LARGER) - MARGIN * (1.0 + kappa * longest) >= 0.0
     };
     for k in 0..4 {
         weight[k] += 0.25 * (a[k] - slope * b_re[k] * 0.1).abs() * h[k];
     }
     let size_sq = target.size_sq();
-    let reached = |kappa: f64| size_sq * (kappa * kappa / (1.0 + kappa * kappa)) * (1.0 - 1e-13);
-    let goal = (wanted / (size_sq - wanted)).sqrt() * (1.0 + 1e-12);
+    let reached = |kappa: f64| size_sq * (kappa * kappa / (1.0 + kappa * kappa)) * SMALLER;
+    let goal = (wanted / (size_sq - wanted)).sqrt() * (1.0 + MARGIN);
     let mut sum_sq = 0.0_f64;
     if wanted < size_sq {
-        if certified(goal) {
-            sum_sq = reached(goal);
-        } else if certified(0.0) {
-            let (mut low, mut high) = (0.0, goal);
-            for _ in 0..12 {
-                let kappa = 0.5 * (low + high);
-                if certified(kappa) { low = kappa } else { high = kappa }
-            }
-            sum_sq = reached(low);
-        }
+        sum_sq = reached(largest(goal, certified));
     }
-    let short = size_sq.sqrt() * (1.0 - 1e-13) - cap * longest * LARGER;
+    let short = size_sq.sqrt() * SMALLER - cap * longest * LARGER;
     if short > 0.0 {
-        sum_sq = sum_sq.max(short * short * (1.0 - 1e-13));
+        sum_sq = sum_sq.max(short * short * SMALLER);
     }
     Bound { sum_sq, weight }
 }

@@ -4,9 +4,9 @@
 //! solution with links of a million times the points' extent loses twelve digits of sixteen in doubles, and with them
 //! its direction; of the thirty-two here twenty are left.
 
-use super::equations::{LEG, UNKNOWNS, unknowns};
+use super::equations::{LEG, UNKNOWNS, rounded, unknowns};
 use super::target::{Displacements, STEPS, Solution};
-use super::tracker::{Ending, NODES, Parameters, Segment, continuation};
+use super::tracker::{Ending, NODES, Parameters, Segment, add, continuation};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
 use linkwright_arithmetic::double_double::DoubleComplex;
@@ -43,7 +43,7 @@ pub(super) fn follow(start: &Solution, along: &Segment, with: &Parameters, cance
     let (mut t, mut h) = (0.0, with.first_step);
     let ended = |ending: Ending, z: &Unknowns, newton_step: f64, tangent: &Unknowns| Followed {
         ending,
-        solution: rounded(z),
+        solution: rounded(z, DoubleComplex::to_complex),
         newton_step,
         speed: change(tangent, z),
     };
@@ -106,27 +106,8 @@ fn predicted(nodes: &[(f64, Unknowns, Unknowns)], to: f64) -> Unknowns {
     z
 }
 
-/// Returns the solution, rounded after the ground pivots and the rotations have been computed.
-fn rounded(z: &Unknowns) -> Solution {
-    let place = |i: usize| [z[i], z[LEG + i]].map(DoubleComplex::to_complex);
-    let ground = |i: usize| [z[i] - z[i + 1], z[LEG + i] - z[LEG + i + 1]].map(DoubleComplex::to_complex);
-    Solution {
-        pins: place(0),
-        grounds: ground(0),
-        pins_starred: place(2),
-        grounds_starred: ground(2),
-        rotations: std::array::from_fn(|j| (z[ORDER + j] + real(1.0)).to_complex()),
-    }
-}
-
 fn real(x: f64) -> DoubleComplex {
     Complex::new(x, 0.0).into()
-}
-
-fn add(z: &mut Unknowns, step: &Unknowns) {
-    for (z, step) in z.iter_mut().zip(step) {
-        *z = *z + *step;
-    }
 }
 
 /// Computes the relative change, the root of the sum of squares, with T_j in place of tau_j. It is not finite if a

@@ -12,8 +12,22 @@
 //! the focus. So the set of the three (focus, product), with their starred twins, identifies a class. The foci alone
 //! do so in general: linkages that are mirror images, of foci on a symmetric target's axis, share them.
 
+use super::conjugation::Reality;
 use super::target::{Displacements, STEPS, Solution};
 use linkwright_arithmetic::Complex;
+
+/// One class of six solutions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Class {
+    /// One of the six solutions.
+    pub solution: Solution,
+    /// The reality of the class, found to rounding.
+    pub reality: Reality,
+    /// Relative size of the last Newton step: the uncertainty that rounding leaves.
+    pub newton_step: f64,
+    /// Relative speed of the solution as the target comes in along the path: large near a singularity.
+    pub speed: f64,
+}
 
 /// The permutations of three foci.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];

@@ -18,7 +18,7 @@
 
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::double_double::DoubleComplex;
-use std::ops::{Add, Mul, Sub};
+use linkwright_arithmetic::operators;
 
 /// The unit roundoff, 2^-53.
 const UNIT: f64 = f64::EPSILON / 2.0;
@@ -70,20 +70,9 @@ impl Upper {
     }
 }
 
-impl Add for Upper {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Upper((self.0 + other.0).next_up())
-    }
-}
-
-impl Mul for Upper {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Upper((self.0 * other.0).next_up())
-    }
+operators! { Upper:
+    Add add(x, y) { Upper((x.0 + y.0).next_up()) }
+    Mul mul(x, y) { Upper((x.0 * y.0).next_up()) }
 }
 
 /// The disc |z - mid| <= radius.
@@ -162,32 +151,20 @@ impl Disc {
     }
 }
 
-impl Add for Disc {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        let mid = self.mid + other.mid;
-        Disc { mid, radius: self.radius + other.radius + Upper(UNIT) * Upper::magnitude(mid) }
+operators! { Disc:
+    Add add(z, w) {
+        let mid = z.mid + w.mid;
+        Disc { mid, radius: z.radius + w.radius + Upper(UNIT) * Upper::magnitude(mid) }
     }
-}
-
-impl Sub for Disc {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        let mid = self.mid - other.mid;
-        Disc { mid, radius: self.radius + other.radius + Upper(UNIT) * Upper::magnitude(mid) }
+    Sub sub(z, w) {
+        let mid = z.mid - w.mid;
+        Disc { mid, radius: z.radius + w.radius + Upper(UNIT) * Upper::magnitude(mid) }
     }
-}
-
-impl Mul for Disc {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        let [one, two] = [self, other].map(|d| Upper::magnitude(d.mid));
+    Mul mul(z, w) {
+        let [one, two] = [z, w].map(|d| Upper::magnitude(d.mid));
         let rounding = Upper(4.0 * UNIT) * one * two + Upper(f64::MIN_POSITIVE);
-        let spread = one * other.radius + two * self.radius + self.radius * other.radius;
-        Disc { mid: self.mid * other.mid, radius: spread + rounding }
+        let spread = one * w.radius + two * z.radius + z.radius * w.radius;
+        Disc { mid: z.mid * w.mid, radius: spread + rounding }
     }
 }
 

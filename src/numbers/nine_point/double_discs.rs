@@ -8,7 +8,7 @@
 use super::discs::{Disc, Upper};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::double_double::{DoubleComplex, RELATIVE_ERROR};
-use std::ops::{Add, Mul, Sub};
+use linkwright_arithmetic::operators;
 
 /// The disc |z - mid| <= radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,29 +50,18 @@ impl DoubleDisc {
     }
 }
 
-impl Add for DoubleDisc {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        let mid = self.mid + other.mid;
+operators! { DoubleDisc:
+    Add add(z, w) {
+        let mid = z.mid + w.mid;
         let rounding = Upper::exactly(2.0 * RELATIVE_ERROR) * Upper::magnitude_of_double(mid);
-        DoubleDisc { mid, radius: self.radius + other.radius + rounding }
+        DoubleDisc { mid, radius: z.radius + w.radius + rounding }
     }
-}
-
-impl Sub for DoubleDisc {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + DoubleDisc { mid: -other.mid, radius: other.radius }
-    }
-}
-
-impl Mul for DoubleDisc {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let [one, two] = [self, other].map(|d| Upper::magnitude_of_double(d.mid));
+    Sub sub(z, w) { z + DoubleDisc { mid: -w.mid, radius: w.radius } }
+    Mul mul(z, w) {
+        let [one, two] = [z, w].map(|d| Upper::magnitude_of_double(d.mid));
         let rounding = Upper::exactly(8.0 * RELATIVE_ERROR) * one * two + Upper::exactly(f64::MIN_POSITIVE);
-        let spread = one * other.radius + two * self.radius + self.radius * other.radius;
-        DoubleDisc { mid: self.mid * other.mid, radius: spread + rounding }
+        let spread = one * w.radius + two * z.radius + z.radius * w.radius;
+        DoubleDisc { mid: z.mid * w.mid, radius: spread + rounding }
     }
 }
 

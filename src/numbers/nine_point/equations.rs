@@ -21,6 +21,7 @@ use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER, larger, solve};
 use linkwright_arithmetic::lane::F64x8;
 use linkwright_arithmetic::lane::Lane;
+use std::ops::{Add, Sub};
 
 /// The number of unknowns.
 pub const UNKNOWNS: usize = ORDER + STEPS;
@@ -48,14 +49,23 @@ pub fn unknowns(of: &Solution) -> [Complex; UNKNOWNS] {
 
 /// Returns the solution with these unknowns.
 pub fn solution(of: &[Complex; UNKNOWNS]) -> Solution {
-    let pins = |place: usize| [of[place], of[LEG + place]];
-    let grounds = |place: usize| [of[place] - of[place + 1], of[LEG + place] - of[LEG + place + 1]];
+    rounded(of, |z| z)
+}
+
+/// Returns the solution with these unknowns, rounded after the ground pivots and the rotations have been computed.
+pub(super) fn rounded<Z>(of: &[Z; UNKNOWNS], round: impl Fn(Z) -> Complex) -> Solution
+where
+    Z: Copy + Add<Output = Z> + Sub<Output = Z> + From<Complex>,
+{
+    let pins = |place: usize| [of[place], of[LEG + place]].map(&round);
+    let grounds =
+        |place: usize| [of[place] - of[place + 1], of[LEG + place] - of[LEG + place + 1]].map(&round);
     Solution {
         pins: pins(0),
         grounds: grounds(0),
         pins_starred: pins(2),
         grounds_starred: grounds(2),
-        rotations: std::array::from_fn(|j| of[ORDER + j] + 1.0),
+        rotations: std::array::from_fn(|j| round(of[ORDER + j] + Complex::ONE.into())),
     }
 }
 

@@ -39,9 +39,11 @@ pub mod target;
 pub mod tracker;
 
 pub use certificate::{Certificate, Refused, certify, certify_all};
+pub use classes::Class;
 pub use conjugation::Reality;
 pub use distinct::not_proved_distinct;
 pub use live::{Moved, resolve_from};
 pub use refinement::{Refined, refine};
-pub use solve::{Census, Class, Completeness, Options, Solved, solve};
+pub use settle::Options;
+pub use solve::{Census, Completeness, Solved, solve};
 pub use target::{Displacements, Solution, Target, TargetError};

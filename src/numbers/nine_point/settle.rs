@@ -3,17 +3,32 @@
 
 use super::careful::{Followed, follow};
 use super::certificate::{Certificate, Refused, certify_displacements};
-use super::classes::first_of_class;
+use super::classes::{Class, first_of_class};
 use super::conjugation::Reality;
 use super::correction::{Corrected, correct};
 use super::distinct::not_proved_distinct;
 use super::refinement::refine;
-use super::solve::{Class, Options};
 use super::target::{Displacements, Solution};
 use super::tracker::{Ending, Parameters, Segment, Tracked, track};
 use linkwright_arithmetic::Complex;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The options of [`solve`](super::solve::solve).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// The parameters of the first round of tracking.
+    pub parameters: Parameters,
+    /// The number of further rounds, each with tighter tolerances and from another image of the start, for paths that
+    /// were lost and for those that ended together.
+    pub retries: u32,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { parameters: Parameters::default(), retries: 7 }
+    }
+}
 
 /// The classified end of a path.
 #[expect(clippy::large_enum_variant, reason = "nearly every path ends in an isolated solution")]

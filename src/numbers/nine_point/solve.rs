@@ -2,43 +2,14 @@
 //! classifies the ends.
 
 use super::certificate::certify;
-use super::classes::key;
+use super::classes::{Class, key};
 use super::conjugation::Reality;
-use super::settle::{Fate, Fates, complete, firsts, isolated, settle};
+use super::settle::{Fate, Fates, Options, complete, firsts, isolated, settle};
 use super::start::{CLASSES, StartSet};
 use super::target::{Solution, Target};
-use super::tracker::{Parameters, Segment};
+use super::tracker::Segment;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// The options of [`solve`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
-    /// The parameters of the first round of tracking.
-    pub parameters: Parameters,
-    /// The number of further rounds, each with tighter tolerances and from another image of the start, for paths that
-    /// were lost and for those that ended together.
-    pub retries: u32,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Options { parameters: Parameters::default(), retries: 7 }
-    }
-}
-
-/// One class of six solutions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Class {
-    /// One of the six solutions.
-    pub solution: Solution,
-    /// The reality of the class, found to rounding.
-    pub reality: Reality,
-    /// Relative size of the last Newton step: the uncertainty that rounding leaves.
-    pub newton_step: f64,
-    /// Relative speed of the solution as the target comes in along the path: large near a singularity.
-    pub speed: f64,
-}
 
 /// The census of the paths: `tracked = finite + singular + failed`, `finite = distinct + duplicates`,
 /// `distinct = real + curve_only + complex`.

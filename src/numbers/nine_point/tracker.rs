@@ -17,6 +17,7 @@ use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER};
 use linkwright_arithmetic::dispatch::vectorised;
 use linkwright_arithmetic::lane::{F64x8, LANES, Lane};
+use std::ops::Add;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// The parameters of the step control: the acceptance and length of steps.
@@ -373,7 +374,7 @@ fn worker(
 }
 
 #[inline(always)]
-pub(super) fn add(z: &mut Unknowns, step: &Unknowns) {
+pub(super) fn add<Z: Copy + Add<Output = Z>>(z: &mut [Z; UNKNOWNS], step: &[Z; UNKNOWNS]) {
     for (z, step) in z.iter_mut().zip(step) {
         *z = *z + *step;
     }

@@ -1,6 +1,6 @@
 //! Runs a population algorithm under argmin's executor: the one file that names argmin.
 //!
-//! Each algorithm implements [`Generations`]; the bridge makes any of them an `argmin::core::Solver` whose state is a
+//! Each algorithm implements [`Resumable`]; the bridge makes any of them an `argmin::core::Solver` whose state is a
 //! `PopulationState<Vec<f64>, f64>`. Four tasks are not left to argmin:
 //!
 //! - *counting*: argmin counts evaluations only on request, per call of the problem, and from zero after a resume. The
@@ -16,11 +16,11 @@
 //! A search that stops at its limit, by cancellation or in a stall is an outcome, not an error.
 
 use super::population::{
-    Generations, GenerationsState, Individual, PopulationError, PopulationProblem, best_of, check_box,
-    lies_in, sort_best_first,
+    Individual, PopulationError, PopulationProblem, best_of, check_box, lies_in, sort_best_first,
 };
+use super::saved::{GenerationsState, Resumable};
 use argmin::core::{
-    Error, Executor, KV, PopulationState, Problem, Solver, State, TerminationReason, TerminationStatus,
+    Error, Executor, KV, PopulationState, Problem, Solver, TerminationReason, TerminationStatus,
 };
 use linkwright_arithmetic::streams::stream;
 use serde::{Deserialize, Serialize};
@@ -80,7 +80,7 @@ pub struct PopulationOutcome {
 }
 
 /// The checkpoint of a search with restarts between two generations: everything that its continuation depends on
-/// besides the arguments of [`run_restarts_from`].
+/// besides the [`SearchArguments`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RestartsState {
     /// The index of the restart, from zero.
@@ -114,41 +114,49 @@ impl RestartsState {
 /// function that returns the state of the search; the callback need not call it.
 pub type Keep<'k> = dyn FnMut(&dyn Fn() -> RestartsState) + 'k;
 
-/// Searches once, with stream 0 of `seed`, until the algorithm converges or the limits are met.
+/// The arguments of a search.
+pub struct SearchArguments<'a> {
+    /// The problem.
+    pub problem: &'a dyn PopulationProblem,
+    /// The algorithm.
+    pub algorithm: &'a mut dyn Resumable,
+    /// Points that the first population shall contain, as many as fit; the others are drawn uniformly from the box.
+    /// They are given to restart 0 only, since the later ones shall find something else.
+    pub starts: &'a [Vec<f64>],
+    /// The seed: restart i draws from its stream i.
+    pub seed: u64,
+    /// The limits.
+    pub limits: Limits,
+    /// The cancellation token. It is checked after each generation, so even a search that is cancelled beforehand has
+    /// an answer, from its first population.
+    pub cancel: &'a AtomicBool,
+    /// A callback for progress, called on this thread after each generation.
+    pub observe: &'a mut dyn FnMut(PopulationProgress<'_>),
+    /// A callback for checkpoints.
+    pub keep: &'a mut Keep<'a>,
+}
+
+/// Searches once until the algorithm converges or the limits are met.
 ///
-/// `starts` are points that the first population shall contain, as many as fit; the others are drawn uniformly from
-/// the box. `observe` is called on this thread after each generation. `cancel` is checked after each generation, so
-/// even a search that is cancelled beforehand has an answer, from its first population. The outcome is a function of
-/// the problem, the algorithm's parameters, the starts, the seed and the limits, unless the search is cancelled:
-/// neither the number of threads nor the observer changes a digit.
+/// The outcome is a function of the problem, the algorithm's parameters, the starts, the seed and the limits, unless
+/// the search is cancelled: neither the number of threads nor the observer changes a digit.
 ///
 /// # Errors
 /// [`PopulationError`] if the box, a start or the limit makes no search; see [`check_box`].
 ///
 /// # Panics
-/// If the algorithm breaks the contract of [`Generations`].
-pub fn run(
-    problem: &dyn PopulationProblem,
-    algorithm: &mut dyn Generations,
-    starts: &[Vec<f64>],
-    seed: u64,
-    limits: &Limits,
-    cancel: &AtomicBool,
-    observe: &mut dyn FnMut(PopulationProgress<'_>),
-) -> Result<PopulationOutcome, PopulationError> {
-    check(problem, starts, limits)?;
-    let keep = &mut |_: &dyn Fn() -> RestartsState| {};
-    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, keep, found: None };
-    search.restart(0, starts, None);
-    Ok(search.finish())
+/// If the algorithm breaks the contract of [`Generations`](super::population::Generations).
+pub fn run(arguments: SearchArguments<'_>) -> Result<PopulationOutcome, PopulationError> {
+    Search::new(arguments, false)?.run()
 }
 
-/// Searches with restarts until the limits are met: restart i begins afresh with stream i of `seed`, once restart
+/// Searches with restarts until the limits are met: restart i begins afresh with stream i of the seed, once restart
 /// i - 1 has converged. The best of all restarts is kept.
 ///
-/// `starts` are given to restart 0 only, since the later ones shall find something else. The other arguments are those
-/// of [`run`], whose outcome is that of restart 0 alone. The reason is never [`StopReason::Converged`]; the last
-/// restart is cut short by the limit.
+/// The outcome of [`run`] is that of restart 0 alone. The reason is never [`StopReason::Converged`]; the last restart
+/// is cut short by the limit. If `state` is one that a search of the same problem, algorithm, starts and seed handed
+/// out, the search continues from there, and its outcome is that of an unbroken search; a state that does not fit is
+/// ignored.
 ///
 /// # Errors
 /// As [`run`].
@@ -156,222 +164,141 @@ pub fn run(
 /// # Panics
 /// As [`run`].
 pub fn run_restarts(
-    problem: &dyn PopulationProblem,
-    algorithm: &mut dyn Generations,
-    starts: &[Vec<f64>],
-    seed: u64,
-    limits: &Limits,
-    cancel: &AtomicBool,
-    observe: &mut dyn FnMut(PopulationProgress<'_>),
-) -> Result<PopulationOutcome, PopulationError> {
-    let keep = &mut |_: &dyn Fn() -> RestartsState| {};
-    run_restarts_from(None, problem, algorithm, starts, seed, limits, cancel, observe, keep)
-}
-
-/// Continues a search with restarts from `state`, which a search of the same problem, algorithm, starts and seed
-/// handed out; the outcome is that of an unbroken search. If `state` is `None` or does not fit, it searches from the
-/// beginning, as [`run_restarts`]. `keep` receives the states in between.
-///
-/// # Errors
-/// As [`run`].
-///
-/// # Panics
-/// As [`run`].
-#[expect(clippy::too_many_arguments, reason = "those of a search, and where it comes from and goes to")]
-pub fn run_restarts_from(
+    arguments: SearchArguments<'_>,
     state: Option<RestartsState>,
-    problem: &dyn PopulationProblem,
-    algorithm: &mut dyn Generations,
-    starts: &[Vec<f64>],
-    seed: u64,
-    limits: &Limits,
-    cancel: &AtomicBool,
-    observe: &mut dyn FnMut(PopulationProgress<'_>),
-    keep: &mut Keep<'_>,
 ) -> Result<PopulationOutcome, PopulationError> {
-    check(problem, starts, limits)?;
-    let mut search = Search { problem, algorithm, seed, limits, cancel, observe, keep, found: None };
-    let state = state.filter(|state| state.fits(problem.bounds(), limits));
-    let mut index = 0;
-    let mut again = None;
-    if let Some(state) = state
-        && search.algorithm.restore(problem, state.algorithm)
-    {
-        index = state.restart;
-        search.found = state.found;
-        again = Some((state.generation, state.evaluations));
+    let mut search = Search::new(arguments, true)?;
+    if let Some(state) = state {
+        search.restore(state);
     }
-    search.restart(index, if index == 0 { starts } else { &[] }, again);
-    while search.wants_more() {
-        index += 1;
-        search.restart(index, &[], None);
-    }
-    Ok(search.finish())
+    search.run()
 }
 
-fn check(
-    problem: &dyn PopulationProblem,
-    starts: &[Vec<f64>],
-    limits: &Limits,
-) -> Result<(), PopulationError> {
-    check_box(problem.bounds(), starts)?;
-    if limits.evaluations == 0 {
-        return Err(PopulationError::NoEvaluations);
-    }
-    Ok(())
-}
-
-/// A search in progress: its arguments, and the result of the restarts that are over.
+/// A search in progress, as an argmin solver.
 struct Search<'a> {
-    problem: &'a dyn PopulationProblem,
-    algorithm: &'a mut dyn Generations,
-    seed: u64,
-    limits: &'a Limits,
-    cancel: &'a AtomicBool,
-    observe: &'a mut dyn FnMut(PopulationProgress<'_>),
-    keep: &'a mut Keep<'a>,
-    found: Option<PopulationOutcome>,
-}
-
-impl Search<'_> {
-    /// Returns whether the last restart converged with evaluations left.
-    fn wants_more(&mut self) -> bool {
-        let Some(found) = &mut self.found else {
-            return true;
-        };
-        if found.reason == StopReason::Converged && found.evaluations >= self.limits.evaluations {
-            found.reason = StopReason::EvaluationLimit;
-        }
-        found.reason == StopReason::Converged
-    }
-
-    /// Runs restart `index`; if the algorithm has been restored, it continues after `restored` = (generations,
-    /// evaluations).
-    fn restart(&mut self, index: u64, starts: &[Vec<f64>], restored: Option<(u64, u64)>) {
-        let (evaluations, generations) =
-            self.found.as_ref().map_or((0, 0), |found| (found.evaluations, found.generations));
-        let (generation, evaluations) = restored.unwrap_or((0, evaluations));
-        let bridge = Bridge {
-            algorithm: self.algorithm,
-            starts,
-            seed: self.seed,
-            restart: index,
-            limits: self.limits,
-            cancel: self.cancel,
-            observe: self.observe,
-            keep: self.keep,
-            found: self.found.as_ref(),
-            restored: restored.is_some(),
-            evaluations,
-            generation,
-        };
-        let result = Executor::new(self.problem, bridge)
-            .ctrlc(false)
-            .timer(false)
-            .run()
-            .expect("neither the bridge nor an executor without observers and checkpoints fails");
-        let reason = stop_reason(result.state.get_termination_reason());
-        let evaluations = result.solver.evaluations;
-        let generations = generations + result.solver.generation + 1;
-        let mut population = result.solver.algorithm.population().to_vec();
-        sort_best_first(&mut population);
-        let best = population[0].clone();
-        match &mut self.found {
-            None => {
-                let restart_bests = vec![best.clone()];
-                let outcome =
-                    PopulationOutcome { best, population, restart_bests, evaluations, generations, reason };
-                self.found = Some(outcome);
-            }
-            Some(found) => {
-                (found.evaluations, found.generations) = (evaluations, generations);
-                found.reason = reason;
-                found.restart_bests.push(best.clone());
-                if best.fitness.compare(&found.best.fitness).is_lt() {
-                    (found.best, found.population) = (best, population);
-                }
-            }
-        }
-    }
-
-    fn finish(self) -> PopulationOutcome {
-        self.found.expect("a search makes at least one restart")
-    }
-}
-
-/// Translates the termination reason that the bridge gave argmin.
-fn stop_reason(reason: Option<&TerminationReason>) -> StopReason {
-    match reason {
-        Some(TerminationReason::SolverConverged) => StopReason::Converged,
-        Some(TerminationReason::TargetCostReached) => StopReason::TargetReached,
-        Some(TerminationReason::MaxItersReached) => StopReason::EvaluationLimit,
-        Some(TerminationReason::Interrupt) => StopReason::Cancelled,
-        Some(TerminationReason::Timeout | TerminationReason::SolverExit(_)) | None => {
-            unreachable!("the bridge sets no timeout and names one of four reasons")
-        }
-    }
-}
-
-type BridgeState = PopulationState<Vec<f64>, f64>;
-
-/// One restart of an algorithm, as an argmin solver.
-struct Bridge<'a> {
-    algorithm: &'a mut dyn Generations,
-    starts: &'a [Vec<f64>],
-    seed: u64,
-    restart: u64,
-    limits: &'a Limits,
-    cancel: &'a AtomicBool,
-    observe: &'a mut dyn FnMut(PopulationProgress<'_>),
-    keep: &'a mut Keep<'a>,
+    arguments: SearchArguments<'a>,
+    /// Whether the search restarts when the algorithm has converged.
+    restarting: bool,
     /// The result of the restarts before this one.
-    found: Option<&'a PopulationOutcome>,
-    /// Whether the algorithm has its population already.
-    restored: bool,
+    found: Option<PopulationOutcome>,
+    /// The index of the restart.
+    restart: u64,
+    /// The index of the last generation within this restart; `None` before its first population.
+    generation: Option<u64>,
     /// The number of evaluations over all restarts.
     evaluations: u64,
-    /// The index of the generation within this restart.
-    generation: u64,
+    reason: StopReason,
 }
 
-impl Bridge<'_> {
-    fn remaining(&self) -> u64 {
-        self.limits.evaluations - self.evaluations
+type SearchState = PopulationState<Vec<f64>, f64>;
+
+impl<'a> Search<'a> {
+    fn new(arguments: SearchArguments<'a>, restarting: bool) -> Result<Self, PopulationError> {
+        check_box(arguments.problem.bounds(), arguments.starts)?;
+        if arguments.limits.evaluations == 0 {
+            return Err(PopulationError::NoEvaluations);
+        }
+        let reason = StopReason::Converged;
+        Ok(Search {
+            arguments,
+            restarting,
+            found: None,
+            restart: 0,
+            generation: None,
+            evaluations: 0,
+            reason,
+        })
     }
 
-    fn best(&self) -> &Individual {
-        best_of(self.algorithm.population()).expect("an initialised algorithm has a population")
+    /// Continues from a state if it fits.
+    fn restore(&mut self, state: RestartsState) {
+        let bounds = self.arguments.problem.bounds();
+        if state.fits(bounds, &self.arguments.limits)
+            && self.arguments.algorithm.restore(bounds, state.algorithm)
+        {
+            (self.found, self.restart) = (state.found, state.restart);
+            (self.generation, self.evaluations) = (Some(state.generation), state.evaluations);
+        }
+    }
+
+    fn run(self) -> Result<PopulationOutcome, PopulationError> {
+        let executor = Executor::new(self.arguments.problem, self).ctrlc(false).timer(false);
+        let result = executor.run().map_err(|error| PopulationError::Executor { why: error.to_string() })?;
+        let mut search = result.solver;
+        search.conclude();
+        search.found.ok_or(PopulationError::NoEvaluations)
+    }
+
+    fn remaining(&self) -> u64 {
+        self.arguments.limits.evaluations - self.evaluations
+    }
+
+    /// Adds the present restart to the result.
+    fn conclude(&mut self) {
+        let mut population = self.arguments.algorithm.population().to_vec();
+        sort_best_first(&mut population);
+        let Some(best) = population.first().cloned() else { return };
+        let (evaluations, reason) = (self.evaluations, self.reason);
+        let found = self.found.get_or_insert_with(|| PopulationOutcome {
+            best: best.clone(),
+            population: population.clone(),
+            restart_bests: Vec::new(),
+            evaluations,
+            generations: 0,
+            reason,
+        });
+        (found.evaluations, found.reason) = (evaluations, reason);
+        found.generations += self.generation.map_or(0, |last| last + 1);
+        found.restart_bests.push(best.clone());
+        if best.fitness.compare(&found.best.fitness).is_lt() {
+            (found.best, found.population) = (best, population);
+        }
+    }
+
+    /// Makes one generation, the first of a restart if there is none yet or the last restart has converged.
+    fn generate(&mut self, problem: &Evaluated<'_>, state: SearchState) -> SearchState {
+        if self.generation.is_some() && self.arguments.algorithm.converged() {
+            self.conclude();
+            self.restart += 1;
+            self.generation = None;
+        }
+        let allowance = self.remaining();
+        let SearchArguments { algorithm, starts, seed, .. } = &mut self.arguments;
+        let spent = match self.generation {
+            Some(_) => algorithm.advance(*problem, allowance),
+            None => {
+                let starts = if self.restart == 0 { starts } else { &[][..] };
+                algorithm.initialise(*problem, starts, stream(*seed, self.restart), allowance)
+            }
+        };
+        self.generation = Some(self.generation.map_or(0, |last| last + 1));
+        self.book(spent, state)
     }
 
     /// Counts the evaluations that a generation spent, calls the observer and the checkpoint callback, and gives
     /// argmin the best individual.
-    fn book(&mut self, spent: u64, mut state: BridgeState) -> BridgeState {
+    fn book(&mut self, spent: u64, mut state: SearchState) -> SearchState {
+        let (remaining, generation) = (self.remaining(), self.generation.unwrap_or(0));
+        let algorithm = &*self.arguments.algorithm;
         assert!(
-            (1..=self.remaining()).contains(&spent),
-            "{} spent {spent} evaluations of {}",
-            self.algorithm.name(),
-            self.remaining()
+            (1..=remaining).contains(&spent),
+            "{} spent {spent} evaluations of {remaining}",
+            algorithm.name()
         );
         self.evaluations += spent;
-        let best = best_of(self.algorithm.population()).expect("an initialised algorithm has a population");
-        let overall = match self.found.map(|found| &found.best) {
-            Some(before) if before.fitness.compare(&best.fitness).is_le() => before,
+        let (restart, evaluations, found) = (self.restart, self.evaluations, &self.found);
+        let Some(best) = best_of(algorithm.population()) else { return state };
+        let overall = match found {
+            Some(before) if before.best.fitness.compare(&best.fitness).is_le() => &before.best,
             _ => best,
         };
-        (self.observe)(PopulationProgress {
-            restart: self.restart,
-            generation: self.generation,
-            evaluations: self.evaluations,
-            best: overall,
-        });
-        if self.remaining() > 0 {
-            let (algorithm, found) = (&*self.algorithm, self.found);
-            let (restart, generation, evaluations) = (self.restart, self.generation, self.evaluations);
-            (self.keep)(&|| RestartsState {
+        (self.arguments.observe)(PopulationProgress { restart, generation, evaluations, best: overall });
+        if remaining > spent {
+            (self.arguments.keep)(&|| RestartsState {
                 restart,
                 generation,
                 evaluations,
-                found: found.cloned(),
+                found: found.clone(),
                 algorithm: algorithm.state(),
             });
         }
@@ -379,56 +306,58 @@ impl Bridge<'_> {
         state.individual.get_or_insert_default().clone_from(&best.x);
         state
     }
+
+    /// Returns the reason to stop after a generation, with argmin's name of it.
+    fn stop(&self) -> Option<(StopReason, TerminationReason)> {
+        let SearchArguments { algorithm, limits, cancel, .. } = &self.arguments;
+        let best = best_of(algorithm.population()).map(|best| best.fitness);
+        let met = |target| best.is_some_and(|best| best.is_feasible() && best.cost <= target);
+        // A success is a success even if the token is set; a search that converges with its last evaluation converged.
+        if limits.target.is_some_and(met) {
+            Some((StopReason::TargetReached, TerminationReason::TargetCostReached))
+        } else if cancel.load(Ordering::Relaxed) {
+            Some((StopReason::Cancelled, TerminationReason::Interrupt))
+        } else if algorithm.converged() && !self.restarting {
+            Some((StopReason::Converged, TerminationReason::SolverConverged))
+        } else if self.remaining() == 0 {
+            Some((StopReason::EvaluationLimit, TerminationReason::MaxItersReached))
+        } else {
+            None
+        }
+    }
 }
 
-impl<'p> Solver<&'p dyn PopulationProblem, BridgeState> for Bridge<'_> {
+type Evaluated<'p> = &'p dyn PopulationProblem;
+
+impl<'p> Solver<Evaluated<'p>, SearchState> for Search<'_> {
     fn name(&self) -> &str {
-        self.algorithm.name()
+        self.arguments.algorithm.name()
     }
 
     fn init(
         &mut self,
-        problem: &mut Problem<&'p dyn PopulationProblem>,
-        state: BridgeState,
-    ) -> Result<(BridgeState, Option<KV>), Error> {
-        if self.restored {
-            return Ok((state, None));
-        }
-        let draws = stream(self.seed, self.restart);
-        let allowance = self.remaining();
-        let (algorithm, starts) = (&mut self.algorithm, self.starts);
-        let spent = problem
-            .problem("evaluations", |problem| Ok(algorithm.initialise(*problem, starts, draws, allowance)))?;
-        Ok((self.book(spent, state), None))
+        problem: &mut Problem<Evaluated<'p>>,
+        state: SearchState,
+    ) -> Result<(SearchState, Option<KV>), Error> {
+        // A search that continues from a state has its population.
+        if self.generation.is_some() { Ok((state, None)) } else { self.next_iter(problem, state) }
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<&'p dyn PopulationProblem>,
-        state: BridgeState,
-    ) -> Result<(BridgeState, Option<KV>), Error> {
-        let allowance = self.remaining();
-        let algorithm = &mut self.algorithm;
-        let spent = problem.problem("evaluations", |problem| Ok(algorithm.advance(*problem, allowance)))?;
-        self.generation += 1;
-        Ok((self.book(spent, state), None))
+        problem: &mut Problem<Evaluated<'p>>,
+        state: SearchState,
+    ) -> Result<(SearchState, Option<KV>), Error> {
+        Ok((problem.problem("evaluations", |problem| Ok(self.generate(problem, state)))?, None))
     }
 
-    fn terminate(&mut self, _state: &BridgeState) -> TerminationStatus {
-        let best = self.best().fitness;
-        let met = |target| best.is_feasible() && best.cost <= target;
-        // A success is a success even if the token is set; a search that converges with its last evaluation converged.
-        let reason = if self.limits.target.is_some_and(met) {
-            TerminationReason::TargetCostReached
-        } else if self.cancel.load(Ordering::Relaxed) {
-            TerminationReason::Interrupt
-        } else if self.algorithm.converged() {
-            TerminationReason::SolverConverged
-        } else if self.remaining() == 0 {
-            TerminationReason::MaxItersReached
-        } else {
-            return TerminationStatus::NotTerminated;
-        };
-        TerminationStatus::Terminated(reason)
+    fn terminate(&mut self, _state: &SearchState) -> TerminationStatus {
+        match self.stop() {
+            Some((reason, named)) => {
+                self.reason = reason;
+                TerminationStatus::Terminated(named)
+            }
+            None => TerminationStatus::NotTerminated,
+        }
     }
 }

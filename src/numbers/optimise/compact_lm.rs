@@ -4,8 +4,10 @@
 //!
 //! A problem gives its cost at a point and then, at that same point, J^T J and J^T r. How it computes them
 //! (eliminating linear unknowns, over thousands of rows) is left to the problem. A step solves
-//! (J^T J + lambda D) dx = -J^T r with D the diagonal of J^T J; lambda follows Nielsen (1999), *Damping parameter in
-//! Marquardt's method*. An unknown that is at a bound and would cross it is held there.
+//! (J^T J + lambda D) dx = -J^T r with D the diagonal of J^T J and Nielsen's damping lambda ([`super::damping`]). An
+//! unknown that is at a bound and would cross it is held there.
+
+use super::damping::{Damping, clamped, held, moved};
 
 /// The normal equations: J^T J and J^T r.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,8 +74,6 @@ pub struct CompactResult<const N: usize> {
     pub outcome: CompactOutcome,
 }
 
-/// The first damping, relative to the diagonal.
-const FIRST_DAMPING: f64 = 1e-3;
 /// The largest damping; beyond it a step is below rounding.
 const LAST_DAMPING: f64 = 1e12;
 /// The number of steps in a row with hardly any reduction after which a solve counts as converged.
@@ -88,70 +88,61 @@ pub fn solve<const N: usize, P: CompactLeastSquares<N>>(
     options: &CompactOptions,
     stop: &dyn Fn() -> bool,
 ) -> CompactResult<N> {
-    let mut x = start;
-    for (value, &(low, high)) in x.iter_mut().zip(bounds) {
-        *value = value.max(low).min(high);
-    }
+    let x = clamped(start, bounds);
     let mut result =
         CompactResult { x, cost: f64::INFINITY, evaluations: 1, outcome: CompactOutcome::NoStart };
-    let Some(cost) = problem.cost(&x) else { return result };
-    result.cost = cost;
-    let (mut damping, mut growth, mut quiet) = (FIRST_DAMPING, 2.0, 0);
+    if let Some(cost) = problem.cost(&x) {
+        result.cost = cost;
+        result.outcome = iterate(problem, &mut result, bounds, options, stop);
+    }
+    result
+}
+
+fn iterate<const N: usize, P: CompactLeastSquares<N>>(
+    problem: &mut P,
+    result: &mut CompactResult<N>,
+    bounds: &[(f64, f64); N],
+    options: &CompactOptions,
+    stop: &dyn Fn() -> bool,
+) -> CompactOutcome {
+    let (mut damping, mut quiet) = (Damping::up_to(LAST_DAMPING), 0);
     let mut normal = problem.normal();
     loop {
         if result.cost <= options.exact_cost {
-            result.outcome = CompactOutcome::Converged;
-            return result;
+            return CompactOutcome::Converged;
         }
         if result.evaluations >= options.max_evaluations {
-            result.outcome = CompactOutcome::EvaluationLimit;
-            return result;
+            return CompactOutcome::EvaluationLimit;
         }
         if result.evaluations >= options.patience && result.cost > options.hopeless_cost {
-            result.outcome = CompactOutcome::Hopeless;
-            return result;
+            return CompactOutcome::Hopeless;
         }
         if stop() {
-            result.outcome = CompactOutcome::Stopped;
-            return result;
+            return CompactOutcome::Stopped;
         }
-        let Some((trial, promised)) = step(&normal, &result.x, bounds, damping) else {
-            damping *= growth;
-            growth *= 2.0;
-            if damping > LAST_DAMPING {
-                result.outcome = CompactOutcome::Stalled;
-                return result;
+        let Some((trial, promised)) = step(&normal, &result.x, bounds, damping.value) else {
+            if damping.raise() {
+                return CompactOutcome::Stalled;
             }
             continue;
         };
         if promised <= 1e-3 * options.relative_reduction * result.cost {
-            result.outcome = CompactOutcome::Converged;
-            return result;
+            return CompactOutcome::Converged;
         }
         result.evaluations += 1;
         match problem.cost(&trial) {
             Some(cost) if cost < result.cost => {
                 let reduction = result.cost - cost;
-                let gain = reduction / promised;
-                result.x = trial;
-                result.cost = cost;
-                damping = (damping * (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0)).max(1e-15);
-                growth = 2.0;
+                (result.x, result.cost) = (trial, cost);
+                damping.accept(reduction / promised);
                 quiet = if reduction <= options.relative_reduction * cost { quiet + 1 } else { 0 };
                 if quiet >= QUIET_STEPS {
-                    result.outcome = CompactOutcome::Converged;
-                    return result;
+                    return CompactOutcome::Converged;
                 }
                 normal = problem.normal();
             }
-            _ => {
-                damping *= growth;
-                growth *= 2.0;
-                if damping > LAST_DAMPING {
-                    result.outcome = CompactOutcome::Stalled;
-                    return result;
-                }
-            }
+            _ if damping.raise() => return CompactOutcome::Stalled,
+            _ => {}
         }
     }
 }
@@ -165,13 +156,7 @@ fn step<const N: usize>(
     damping: f64,
 ) -> Option<([f64; N], f64)> {
     let largest = (0..N).map(|i| normal.matrix[i][i]).fold(f64::MIN_POSITIVE, f64::max);
-    let mut held = [false; N];
-    for i in 0..N {
-        let (low, high) = bounds[i];
-        held[i] = low == high
-            || (x[i] <= low && normal.gradient[i] >= 0.0)
-            || (x[i] >= high && normal.gradient[i] <= 0.0);
-    }
+    let held = held(x, bounds, &normal.gradient);
     let mut matrix = normal.matrix;
     let mut dx = normal.gradient.map(|g| -g);
     for i in 0..N {
@@ -185,11 +170,8 @@ fn step<const N: usize>(
         }
     }
     solve_positive(&mut matrix, &mut dx)?;
-    let mut to = *x;
-    for i in 0..N {
-        to[i] = (x[i] + dx[i]).max(bounds[i].0).min(bounds[i].1);
-        dx[i] = to[i] - x[i];
-    }
+    let to = moved(x, &dx, bounds);
+    let dx: [f64; N] = std::array::from_fn(|i| to[i] - x[i]);
     // |r|^2 - |r + J dx|^2
     let mut promised = 0.0;
     for i in 0..N {

@@ -30,8 +30,7 @@
 //! adaptation for differential evolution", IEEE Congress on Evolutionary Computation (2013).
 
 use super::population::{
-    Fitness, Generations, GenerationsState, Individual, PopulationError, PopulationProblem, StallWatch,
-    admitted, best_of, evaluate_generation, lie_in, lies_in, scatter, spread,
+    Fitness, Generations, Individual, PopulationError, StallWatch, best_of, lie_in, lies_in, resized, spread,
 };
 use linkwright_arithmetic::streams::{Stream, below, cauchy, normal, stream, uniform, unit};
 use schemars::JsonSchema;
@@ -129,21 +128,14 @@ fn countable(gain: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct DifferentialEvolution {
     parameters: DifferentialEvolutionParameters,
-    stream: Stream,
-    population: Vec<Individual>,
+    pub(super) state: EvolutionState,
     trials: Vec<Individual>,
     /// The strategy of each trial.
     strategies: Vec<Strategy>,
     /// The indices of the population, best first.
     ranking: Vec<usize>,
-    archive: Vec<Vec<f64>>,
     archive_size: usize,
-    history: Vec<Strategy>,
-    /// The index in the history that is written next.
-    cursor: usize,
     successes: Vec<(Strategy, Gain)>,
-    watch: StallWatch,
-    collapsed: bool,
 }
 
 /// The state of a [`DifferentialEvolution`] search between two generations, for a checkpoint.
@@ -153,6 +145,7 @@ pub struct EvolutionState {
     population: Vec<Individual>,
     archive: Vec<Vec<f64>>,
     history: Vec<Strategy>,
+    /// The index in the history that is written next.
     cursor: usize,
     watch: StallWatch,
     collapsed: bool,
@@ -167,23 +160,37 @@ impl DifferentialEvolution {
         parameters.check()?;
         Ok(Self {
             parameters,
-            stream: stream(0, 0),
-            population: Vec::new(),
+            state: EvolutionState {
+                stream: stream(0, 0),
+                population: Vec::new(),
+                archive: Vec::new(),
+                history: Vec::new(),
+                cursor: 0,
+                watch: StallWatch::new(Fitness::UNKNOWN),
+                collapsed: false,
+            },
             trials: Vec::new(),
             strategies: Vec::new(),
             ranking: Vec::new(),
-            archive: Vec::new(),
             archive_size: (parameters.archive_share * parameters.population as f64) as usize,
-            history: Vec::new(),
-            cursor: 0,
             successes: Vec::new(),
-            watch: StallWatch::new(Fitness::UNKNOWN),
-            collapsed: false,
         })
     }
 
+    /// Returns whether a search with these parameters in this box can continue from a state.
+    pub(super) fn fits(&self, state: &EvolutionState, bounds: &[(f64, f64)]) -> bool {
+        let archived = state.archive.len() <= self.archive_size;
+        let remembered = state.history.len() == self.parameters.history && state.cursor < state.history.len();
+        // Steps drawn around anything else may never be positive.
+        let likely =
+            |one: &Strategy| one.step > 0.0 && one.step <= 1.0 && (0.0..=1.0).contains(&one.crossover);
+        let whole = lie_in(&state.population, self.size(), bounds)
+            && state.archive.iter().all(|x| lies_in(x, bounds));
+        whole && archived && remembered && state.history.iter().all(likely)
+    }
+
     fn rank(&mut self) {
-        let population = &self.population;
+        let population = &self.state.population;
         self.ranking.clear();
         self.ranking.extend(0..population.len());
         self.ranking.sort_by(|&one, &other| population[one].fitness.compare(&population[other].fitness));
@@ -191,8 +198,8 @@ impl DifferentialEvolution {
 
     /// Draws F and CR for one trial.
     fn draw_strategy(&mut self) -> Strategy {
-        let stream = &mut self.stream;
-        let middle = self.history[below(stream, self.history.len())];
+        let EvolutionState { stream, history, .. } = &mut self.state;
+        let middle = history[below(stream, history.len())];
         let crossover = normal(stream, middle.crossover, SCATTER).clamp(0.0, 1.0);
         // The history's F are means of numbers in (0, 1], so that at least half of the draws are positive.
         loop {
@@ -203,26 +210,26 @@ impl DifferentialEvolution {
         }
     }
 
-    /// Writes the trial vector of individual `index`.
-    fn propose(&mut self, index: usize, bounds: &[(f64, f64)]) {
+    /// Writes the trial vector of individual `index` and appends its strategy.
+    fn cross(&mut self, index: usize, bounds: &[(f64, f64)]) {
         let strategy = self.draw_strategy();
-        self.strategies[index] = strategy;
-        let size = self.population.len();
-        let stream = &mut self.stream;
+        self.strategies.push(strategy);
+        let EvolutionState { stream, population, archive, .. } = &mut self.state;
+        let size = population.len();
 
         let least = 2.0 / size as f64;
         let share = uniform(stream, least.min(self.parameters.best_share), self.parameters.best_share);
         let leaders = ((share * size as f64) as usize).clamp(2, size);
-        let best = &self.population[self.ranking[below(stream, leaders)]].x;
+        let best = &population[self.ranking[below(stream, leaders)]].x;
         let first = draw_other(stream, size, &[index]);
-        let second = draw_other(stream, size + self.archive.len(), &[index, first]);
-        let ahead = &self.population[first].x;
+        let second = draw_other(stream, size + archive.len(), &[index, first]);
+        let ahead = &population[first].x;
         let behind = match second.checked_sub(size) {
-            None => &self.population[second].x,
-            Some(archived) => &self.archive[archived],
+            None => &population[second].x,
+            Some(archived) => &archive[archived],
         };
 
-        let parent = &self.population[index].x;
+        let parent = &population[index].x;
         let certain = below(stream, bounds.len());
         for (gene, value) in self.trials[index].x.iter_mut().enumerate() {
             let from = parent[gene];
@@ -235,28 +242,27 @@ impl DifferentialEvolution {
         }
     }
 
-    /// Replaces parents by those of the first `count` trials that are not worse, and records the successful
-    /// strategies.
-    fn select(&mut self, count: usize) {
+    /// Replaces parents by those trials that are not worse, and records the successful strategies.
+    fn replace(&mut self) {
         self.successes.clear();
-        for index in 0..count {
-            let (parent, trial) = (&mut self.population[index], &mut self.trials[index]);
+        let EvolutionState { stream, population, archive, .. } = &mut self.state;
+        for ((parent, trial), strategy) in population.iter_mut().zip(&mut self.trials).zip(&self.strategies) {
             let order = trial.fitness.compare(&parent.fitness);
             if order.is_gt() {
                 continue;
             }
             if order.is_lt() {
                 let gain = Gain::between(&parent.fitness, &trial.fitness);
-                self.successes.push((self.strategies[index], gain));
+                self.successes.push((*strategy, gain));
             }
             std::mem::swap(parent, trial);
             // The parent is now where the trial was.
             if order.is_lt() && self.archive_size > 0 {
-                if self.archive.len() < self.archive_size {
-                    self.archive.push(trial.x.clone());
+                if archive.len() < self.archive_size {
+                    archive.push(trial.x.clone());
                 } else {
-                    let place = below(&mut self.stream, self.archive_size);
-                    self.archive[place].clone_from(&trial.x);
+                    let place = below(stream, self.archive_size);
+                    archive[place].clone_from(&trial.x);
                 }
             }
         }
@@ -287,9 +293,10 @@ impl DifferentialEvolution {
             steps += weight * strategy.step;
             squares += weight * strategy.step * strategy.step;
         }
-        self.history[self.cursor] =
+        let EvolutionState { history, cursor, .. } = &mut self.state;
+        history[*cursor] =
             Strategy { step: squares / steps, crossover: (crossovers / total).clamp(0.0, 1.0) };
-        self.cursor = (self.cursor + 1) % self.history.len();
+        *cursor = (*cursor + 1) % history.len();
     }
 }
 
@@ -325,90 +332,48 @@ impl Generations for DifferentialEvolution {
         "differential evolution"
     }
 
-    fn initialise(
-        &mut self,
-        problem: &dyn PopulationProblem,
-        starts: &[Vec<f64>],
-        stream: Stream,
-        allowance: u64,
-    ) -> u64 {
-        self.stream = stream;
-        let size = self.parameters.population;
-        let population = &mut self.population;
-        let spent = scatter(problem, starts, &mut self.stream, allowance, size, population);
-        self.trials.clear();
-        self.trials.resize(size, Individual::blank(problem.bounds().len()));
-        self.strategies.clear();
-        self.strategies.resize(size, FIRST_GUESS);
-        self.history.clear();
-        self.history.resize(self.parameters.history, FIRST_GUESS);
-        self.cursor = 0;
-        self.archive.clear();
-        self.watch = StallWatch::new(best_of(&self.population).map_or(Fitness::UNKNOWN, |best| best.fitness));
-        self.collapsed = false;
-        spent
+    fn size(&self) -> usize {
+        self.parameters.population
     }
 
-    fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64 {
-        let size = self.population.len();
-        assert!(size == self.parameters.population, "advance needs a whole population");
-        let count = admitted(size, allowance);
+    fn begin(&mut self, stream: Stream, population: Vec<Individual>) {
+        self.state = EvolutionState {
+            stream,
+            archive: Vec::new(),
+            history: vec![FIRST_GUESS; self.parameters.history],
+            cursor: 0,
+            watch: StallWatch::new(best_of(&population).map_or(Fitness::UNKNOWN, |best| best.fitness)),
+            collapsed: false,
+            population,
+        };
+    }
+
+    fn propose(&mut self, count: usize, bounds: &[(f64, f64)]) -> &mut [Individual] {
         self.rank();
+        self.strategies.clear();
+        resized(&mut self.trials, count, bounds.len());
         for index in 0..count {
-            self.propose(index, problem.bounds());
+            self.cross(index, bounds);
         }
-        evaluate_generation(problem, &mut self.trials[..count]);
-        self.select(count);
+        &mut self.trials
+    }
+
+    fn select(&mut self, bounds: &[(f64, f64)]) {
+        self.replace();
         self.learn();
-        if let Some(best) = best_of(&self.population) {
-            self.watch.note(best.fitness);
+        let EvolutionState { population, watch, collapsed, .. } = &mut self.state;
+        if let Some(best) = best_of(population) {
+            watch.note(best.fitness);
         }
-        self.collapsed = spread(&self.population, problem.bounds()) <= COLLAPSED_SPREAD;
-        count as u64
+        *collapsed = spread(population, bounds) <= COLLAPSED_SPREAD;
     }
 
     fn population(&self) -> &[Individual] {
-        &self.population
+        &self.state.population
     }
 
     fn converged(&self) -> bool {
-        self.collapsed || self.watch.idle_generations() >= self.parameters.stall_generations
-    }
-
-    fn state(&self) -> GenerationsState {
-        GenerationsState::DifferentialEvolution(EvolutionState {
-            stream: self.stream.clone(),
-            population: self.population.clone(),
-            archive: self.archive.clone(),
-            history: self.history.clone(),
-            cursor: self.cursor,
-            watch: self.watch.clone(),
-            collapsed: self.collapsed,
-        })
-    }
-
-    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
-        let GenerationsState::DifferentialEvolution(state) = state else { return false };
-        let size = self.parameters.population;
-        let bounds = problem.bounds();
-        let archived = state.archive.len() <= self.archive_size;
-        let remembered = state.history.len() == self.parameters.history && state.cursor < state.history.len();
-        // Steps drawn around anything else may never be positive.
-        let likely =
-            |one: &Strategy| one.step > 0.0 && one.step <= 1.0 && (0.0..=1.0).contains(&one.crossover);
-        let whole =
-            lie_in(&state.population, size, bounds) && state.archive.iter().all(|x| lies_in(x, bounds));
-        if !(whole && archived && remembered && state.history.iter().all(likely)) {
-            return false;
-        }
-        self.trials.clear();
-        self.trials.resize(size, Individual::blank(bounds.len()));
-        self.strategies.clear();
-        self.strategies.resize(size, FIRST_GUESS);
-        (self.stream, self.population, self.archive) = (state.stream, state.population, state.archive);
-        (self.history, self.cursor) = (state.history, state.cursor);
-        (self.watch, self.collapsed) = (state.watch, state.collapsed);
-        true
+        self.state.collapsed || self.state.watch.idle_generations() >= self.parameters.stall_generations
     }
 }
 
@@ -452,12 +417,12 @@ mod tests {
         let mut search = search(DifferentialEvolutionParameters::default());
         search.initialise(&Constrained, &[], stream(3, 0), 1000);
         for _ in 0..30 {
-            let before = search.population.clone();
+            let before = search.state.population.clone();
             search.advance(&Constrained, 33);
-            for (now, then) in search.population.iter().zip(&before) {
+            for (now, then) in search.state.population.iter().zip(&before) {
                 assert!(now.fitness.compare(&then.fitness).is_le());
             }
-            let mut rest = search.population.iter().zip(&before).skip(33);
+            let mut rest = search.state.population.iter().zip(&before).skip(33);
             assert!(rest.all(|(now, then)| now.x == then.x), "a cut generation");
         }
     }
@@ -476,7 +441,7 @@ mod tests {
             search.advance(&problem, 1000);
         }
         assert!(best_of(search.population()).unwrap().fitness.cost < 1e-3 * first);
-        assert!(search.archive.is_empty());
+        assert!(search.state.archive.is_empty());
     }
 
     #[test]
@@ -485,22 +450,22 @@ mod tests {
         search.initialise(&Constrained, &[], stream(4, 0), 1000);
         for _ in 0..100 {
             search.advance(&Constrained, 1000);
-            assert!(search.archive.len() <= 50);
-            for Strategy { step, crossover } in &search.history {
+            assert!(search.state.archive.len() <= 50);
+            for Strategy { step, crossover } in &search.state.history {
                 assert!(*step > 0.0 && *step <= 1.0 && (0.0..=1.0).contains(crossover));
             }
         }
-        assert_eq!(search.archive.len(), 50);
+        assert_eq!(search.state.archive.len(), 50);
     }
 
     #[test]
     fn gains_of_cost_and_of_violation_have_the_same_say_whatever_their_units() {
         let mut search = search(DifferentialEvolutionParameters::default());
-        search.history = vec![FIRST_GUESS];
+        search.state.history = vec![FIRST_GUESS];
         let strategy = |step| Strategy { step, crossover: step };
         search.successes = vec![(strategy(0.2), Gain::Cost(1e-9)), (strategy(0.6), Gain::Violation(1e9))];
         search.learn();
-        let Strategy { step, crossover } = search.history[0];
+        let Strategy { step, crossover } = search.state.history[0];
         assert!((crossover - 0.4).abs() < 4.0 * f64::EPSILON);
         assert!((step - (0.04 + 0.36) / 0.8).abs() < 4.0 * f64::EPSILON);
     }

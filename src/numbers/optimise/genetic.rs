@@ -27,8 +27,7 @@
 //! (2000).
 
 use super::population::{
-    Fitness, Generations, GenerationsState, Individual, PopulationError, PopulationProblem, StallWatch,
-    admitted, evaluate_generation, lie_in, scatter, sort_best_first,
+    Fitness, Generations, Individual, PopulationError, StallWatch, lie_in, resized, sort_best_first,
 };
 use linkwright_arithmetic::streams::{Stream, below, stream, unit};
 use schemars::JsonSchema;
@@ -111,17 +110,15 @@ impl GeneticParameters {
 #[derive(Clone, Debug)]
 pub struct Genetic {
     parameters: GeneticParameters,
-    stream: Stream,
-    /// The population, best first.
-    population: Vec<Individual>,
+    pub(super) state: GeneticState,
     children: Vec<Individual>,
-    watch: StallWatch,
 }
 
 /// The state of a [`Genetic`] search between two generations, for a checkpoint.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct GeneticState {
     stream: Stream,
+    /// The population, best first.
     population: Vec<Individual>,
     watch: StallWatch,
 }
@@ -133,22 +130,23 @@ impl Genetic {
     /// [`PopulationError::Parameter`] if a parameter is outside its domain.
     pub fn new(parameters: GeneticParameters) -> Result<Self, PopulationError> {
         parameters.check()?;
-        Ok(Self {
-            parameters,
-            stream: stream(0, 0),
-            population: Vec::new(),
-            children: Vec::new(),
-            watch: StallWatch::new(Fitness::UNKNOWN),
-        })
+        let watch = StallWatch::new(Fitness::UNKNOWN);
+        let state = GeneticState { stream: stream(0, 0), population: Vec::new(), watch };
+        Ok(Self { parameters, state, children: Vec::new() })
+    }
+
+    /// Returns whether a search with these parameters in this box can continue from a state.
+    pub(super) fn fits(&self, state: &GeneticState, bounds: &[(f64, f64)]) -> bool {
+        lie_in(&state.population, self.size(), bounds)
     }
 
     /// Selects by tournament: returns the index of the best of a few individuals drawn at random, which is the least
     /// index as the population is sorted.
     fn win_tournament(&mut self) -> usize {
-        let size = self.population.len();
-        let mut winner = below(&mut self.stream, size);
+        let GeneticState { stream, population, .. } = &mut self.state;
+        let mut winner = below(stream, population.len());
         for _ in 1..self.parameters.tournament {
-            winner = winner.min(below(&mut self.stream, size));
+            winner = winner.min(below(stream, population.len()));
         }
         winner
     }
@@ -157,8 +155,8 @@ impl Genetic {
     fn breed(&mut self, pair: usize, bounds: &[(f64, f64)]) {
         let (mother, father) = (self.win_tournament(), self.win_tournament());
         let parameters = &self.parameters;
-        let stream = &mut self.stream;
-        let (mother, father) = (&self.population[mother].x, &self.population[father].x);
+        let GeneticState { stream, population, .. } = &mut self.state;
+        let (mother, father) = (&population[mother].x, &population[father].x);
         let (written, unwritten) = self.children[pair..].split_at_mut(1);
         let daughter = &mut written[0].x;
         let mut son = unwritten.first_mut();
@@ -223,68 +221,43 @@ impl Generations for Genetic {
         "genetic algorithm"
     }
 
-    fn initialise(
-        &mut self,
-        problem: &dyn PopulationProblem,
-        starts: &[Vec<f64>],
-        stream: Stream,
-        allowance: u64,
-    ) -> u64 {
-        self.stream = stream;
-        let GeneticParameters { population: size, elites, .. } = self.parameters;
-        let population = &mut self.population;
-        let spent = scatter(problem, starts, &mut self.stream, allowance, size, population);
-        sort_best_first(&mut self.population);
-        self.children.clear();
-        self.children.resize(size - elites, Individual::blank(problem.bounds().len()));
-        self.watch = StallWatch::new(self.population[0].fitness);
-        spent
+    fn size(&self) -> usize {
+        self.parameters.population
     }
 
-    fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64 {
-        let size = self.population.len();
-        assert!(size == self.parameters.population, "advance needs a whole population");
-        let count = admitted(self.children.len(), allowance);
+    fn offspring(&self) -> usize {
+        self.parameters.population - self.parameters.elites
+    }
+
+    fn begin(&mut self, stream: Stream, mut population: Vec<Individual>) {
+        sort_best_first(&mut population);
+        let watch = StallWatch::new(population[0].fitness);
+        self.state = GeneticState { stream, population, watch };
+    }
+
+    fn propose(&mut self, count: usize, bounds: &[(f64, f64)]) -> &mut [Individual] {
+        resized(&mut self.children, count, bounds.len());
         for pair in (0..count).step_by(2) {
-            self.breed(pair, problem.bounds());
+            self.breed(pair, bounds);
         }
-        let children = &mut self.children[..count];
-        evaluate_generation(problem, children);
+        &mut self.children
+    }
+
+    fn select(&mut self, _: &[(f64, f64)]) {
+        let GeneticState { population, watch, .. } = &mut self.state;
+        let kept = population.len() - self.children.len();
         // The elite is in front; a generation that was cut short replaces the worst only.
-        self.population[size - count..].swap_with_slice(children);
-        sort_best_first(&mut self.population);
-        self.watch.note(self.population[0].fitness);
-        count as u64
+        population[kept..].swap_with_slice(&mut self.children);
+        sort_best_first(population);
+        watch.note(population[0].fitness);
     }
 
     fn population(&self) -> &[Individual] {
-        &self.population
+        &self.state.population
     }
 
     fn converged(&self) -> bool {
-        self.watch.idle_generations() >= self.parameters.stall_generations
-    }
-
-    fn state(&self) -> GenerationsState {
-        GenerationsState::Genetic(GeneticState {
-            stream: self.stream.clone(),
-            population: self.population.clone(),
-            watch: self.watch.clone(),
-        })
-    }
-
-    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
-        let GenerationsState::Genetic(GeneticState { stream, population, watch }) = state else {
-            return false;
-        };
-        let GeneticParameters { population: size, elites, .. } = self.parameters;
-        if !lie_in(&population, size, problem.bounds()) {
-            return false;
-        }
-        self.children.clear();
-        self.children.resize(size - elites, Individual::blank(problem.bounds().len()));
-        (self.stream, self.population, self.watch) = (stream, population, watch);
-        true
+        self.state.watch.idle_generations() >= self.parameters.stall_generations
     }
 }
 
@@ -369,11 +342,11 @@ mod tests {
         let mut search = Genetic::new(GeneticParameters::default()).unwrap();
         search.initialise(&Constrained, &[], stream(14, 0), 1000);
         for allowance in [1000, 1, 7, 180, 1000] {
-            let before = search.population.clone();
+            let before = search.state.population.clone();
             let spent = search.advance(&Constrained, allowance);
             assert_eq!(spent, allowance.min(180));
             for survivor in &before[..20] {
-                assert!(search.population.contains(survivor));
+                assert!(search.state.population.contains(survivor));
             }
         }
     }

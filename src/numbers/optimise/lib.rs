@@ -9,6 +9,7 @@ pub mod argmin_bridge;
 pub mod compact_lm;
 pub mod conic;
 pub mod convex;
+mod damping;
 pub mod differential_evolution;
 pub mod exact_float;
 pub mod genetic;
@@ -17,6 +18,7 @@ pub mod nonnegative;
 pub mod ordered;
 pub mod population;
 pub mod random_search;
+pub mod saved;
 
 #[cfg(test)]
 mod population_tests;

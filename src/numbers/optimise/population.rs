@@ -14,10 +14,7 @@
 //! Source: K. Deb, "An efficient constraint handling method for genetic algorithms", Computer Methods in Applied
 //! Mechanics and Engineering 186 (2000).
 
-use super::differential_evolution::EvolutionState;
 use super::exact_float;
-use super::genetic::GeneticState;
-use super::random_search::SamplingState;
 use linkwright_arithmetic::streams::{Stream, uniform};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -175,6 +172,12 @@ pub enum PopulationError {
         /// The reason.
         why: String,
     },
+    /// The executor of the search failed.
+    #[error("{why}")]
+    Executor {
+        /// Its message.
+        why: String,
+    },
     /// The limit allows no evaluation at all.
     #[error("a limit of zero evaluations leaves nothing to search with")]
     NoEvaluations,
@@ -244,6 +247,29 @@ pub trait Generations {
     /// Returns a short name for people: "differential evolution".
     fn name(&self) -> &'static str;
 
+    /// Returns the number of individuals of a whole population.
+    fn size(&self) -> usize;
+
+    /// Returns the number of individuals that a whole generation evaluates.
+    fn offspring(&self) -> usize {
+        self.size()
+    }
+
+    /// Begins a search at an evaluated population and forgets everything before it.
+    fn begin(&mut self, stream: Stream, population: Vec<Individual>);
+
+    /// Returns the next `count` individuals for evaluation.
+    fn propose(&mut self, count: usize, bounds: &[(f64, f64)]) -> &mut [Individual];
+
+    /// Selects the next population from the present one and the individuals proposed.
+    fn select(&mut self, bounds: &[(f64, f64)]);
+
+    /// Returns the present population, in no particular order; empty before [`initialise`](Self::initialise).
+    fn population(&self) -> &[Individual];
+
+    /// Returns whether the search has converged: the best has stalled or the population has collapsed.
+    fn converged(&self) -> bool;
+
     /// Forgets everything and draws the first population: the `starts`, moved into the box, as far as they fit into
     /// a population, then points uniform in the box. Returns the number of evaluations, from 1 to `allowance`.
     ///
@@ -253,40 +279,26 @@ pub trait Generations {
         &mut self,
         problem: &dyn PopulationProblem,
         starts: &[Vec<f64>],
-        stream: Stream,
+        mut stream: Stream,
         allowance: u64,
-    ) -> u64;
+    ) -> u64 {
+        let count = admitted(self.size(), allowance);
+        let population = scatter(problem, starts, &mut stream, count);
+        self.begin(stream, population);
+        count as u64
+    }
 
     /// Makes one generation. Returns the number of evaluations, from 1 to `allowance`.
     ///
     /// # Panics
     /// If `allowance` is zero, or if [`initialise`](Self::initialise) has not made a whole population.
-    fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64;
-
-    /// Returns the present population, in no particular order; empty before [`initialise`](Self::initialise).
-    fn population(&self) -> &[Individual];
-
-    /// Returns whether the search has converged: the best has stalled or the population has collapsed.
-    fn converged(&self) -> bool;
-
-    /// Returns the state that the next generations depend on, after a whole generation.
-    fn state(&self) -> GenerationsState;
-
-    /// Continues from a state of the same algorithm with the same parameters on a problem with the same box, in place
-    /// of [`initialise`](Self::initialise). Returns `false` and changes nothing if it is no such state.
-    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool;
-}
-
-/// The state of an algorithm between two generations, from which [`Generations::restore`] continues.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum GenerationsState {
-    /// The state of the genetic algorithm.
-    Genetic(GeneticState),
-    /// The state of differential evolution.
-    DifferentialEvolution(EvolutionState),
-    /// The state of uniform sampling.
-    UniformSampling(SamplingState),
+    fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64 {
+        assert!(self.population().len() == self.size(), "advance needs a whole population");
+        let count = admitted(self.offspring(), allowance);
+        evaluate_generation(problem, self.propose(count, problem.bounds()));
+        self.select(problem.bounds());
+        count as u64
+    }
 }
 
 /// Returns whether these are `size` points of the box.
@@ -334,27 +346,20 @@ pub fn sort_best_first(individuals: &mut [Individual]) {
 ///
 /// # Panics
 /// If the allowance is zero.
-pub fn admitted(wanted: usize, allowance: u64) -> usize {
+fn admitted(wanted: usize, allowance: u64) -> usize {
     assert!(allowance > 0, "a generation needs an allowance of at least one evaluation");
     usize::try_from(allowance).map_or(wanted, |allowance| wanted.min(allowance))
 }
 
-/// Fills `population` with `size` evaluated individuals, or as many as `allowance` admits: first the starts, moved
-/// into the box, then points drawn uniformly from it. Returns the number of evaluations.
-///
-/// # Panics
-/// If the allowance is zero.
-pub fn scatter(
+/// Returns `count` evaluated individuals: first the starts, moved into the box, then points drawn uniformly from it.
+fn scatter(
     problem: &dyn PopulationProblem,
     starts: &[Vec<f64>],
     stream: &mut Stream,
-    allowance: u64,
-    size: usize,
-    population: &mut Vec<Individual>,
-) -> u64 {
+    count: usize,
+) -> Vec<Individual> {
     let bounds = problem.bounds();
-    population.clear();
-    population.resize(admitted(size, allowance), Individual::blank(bounds.len()));
+    let mut population = vec![Individual::blank(bounds.len()); count];
     for (index, individual) in population.iter_mut().enumerate() {
         match starts.get(index) {
             Some(start) => {
@@ -365,8 +370,15 @@ pub fn scatter(
             None => draw_uniform(stream, bounds, &mut individual.x),
         }
     }
-    evaluate_generation(problem, population);
-    population.len() as u64
+    evaluate_generation(problem, &mut population);
+    population
+}
+
+/// Returns `count` individuals of `genes` genes to write into, in a buffer that is kept between generations.
+pub fn resized(buffer: &mut Vec<Individual>, count: usize, genes: usize) -> &mut [Individual] {
+    buffer.retain(|individual| individual.x.len() == genes);
+    buffer.resize(count, Individual::blank(genes));
+    buffer
 }
 
 /// Draws `x` uniformly from the box, gene by gene.

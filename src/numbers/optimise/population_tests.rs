@@ -1,27 +1,31 @@
 //! Tests of the properties that every population search has, whichever the algorithm.
 
-use super::argmin_bridge::{Limits, PopulationOutcome, PopulationProgress, StopReason, run, run_restarts};
+use super::argmin_bridge::{
+    Limits, PopulationOutcome, PopulationProgress, RestartsState, SearchArguments, StopReason, run,
+    run_restarts,
+};
 use super::differential_evolution::{DifferentialEvolution, DifferentialEvolutionParameters};
 use super::genetic::{Genetic, GeneticParameters};
-use super::population::{Generations, PopulationError, PopulationProblem};
+use super::population::{PopulationError, PopulationProblem};
 use super::random_search::{UniformSampling, UniformSamplingParameters};
+use super::saved::Resumable;
 use super::test_functions::{Constrained, Counted, Rosenbrock, Sphere};
 use proptest::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-fn differential_evolution() -> Box<dyn Generations> {
+fn differential_evolution() -> Box<dyn Resumable> {
     Box::new(DifferentialEvolution::new(DifferentialEvolutionParameters::default()).unwrap())
 }
 
-fn genetic() -> Box<dyn Generations> {
+fn genetic() -> Box<dyn Resumable> {
     Box::new(Genetic::new(GeneticParameters::default()).unwrap())
 }
 
-fn uniform_sampling() -> Box<dyn Generations> {
+fn uniform_sampling() -> Box<dyn Resumable> {
     Box::new(UniformSampling::new(UniformSamplingParameters::default()).unwrap())
 }
 
-fn every_algorithm() -> [Box<dyn Generations>; 3] {
+fn every_algorithm() -> [Box<dyn Resumable>; 3] {
     [differential_evolution(), genetic(), uniform_sampling()]
 }
 
@@ -29,24 +33,44 @@ fn limit(evaluations: u64) -> Limits {
     Limits { evaluations, target: None }
 }
 
+/// A search with its arguments in a row: whether it restarts, the problem, the algorithm, starts, seed, limits, token
+/// and observer.
+type Asked<'a> = (
+    bool,
+    &'a dyn PopulationProblem,
+    &'a mut dyn Resumable,
+    &'a [Vec<f64>],
+    u64,
+    Limits,
+    &'a AtomicBool,
+    &'a mut dyn FnMut(PopulationProgress<'_>),
+);
+
+fn search(asked: Asked<'_>) -> Result<PopulationOutcome, PopulationError> {
+    let (restarts, problem, algorithm, starts, seed, limits, cancel, observe) = asked;
+    let keep = &mut |_: &dyn Fn() -> RestartsState| {};
+    let arguments = SearchArguments { problem, algorithm, starts, seed, limits, cancel, observe, keep };
+    if restarts { run_restarts(arguments, None) } else { run(arguments) }
+}
+
 fn once(
     problem: &dyn PopulationProblem,
-    mut algorithm: Box<dyn Generations>,
+    mut algorithm: Box<dyn Resumable>,
     seed: u64,
     limits: Limits,
 ) -> PopulationOutcome {
     let cancel = AtomicBool::new(false);
-    run(problem, &mut *algorithm, &[], seed, &limits, &cancel, &mut |_| {}).unwrap()
+    search((false, problem, &mut *algorithm, &[], seed, limits, &cancel, &mut |_| {})).unwrap()
 }
 
 fn restarted(
     problem: &dyn PopulationProblem,
-    mut algorithm: Box<dyn Generations>,
+    mut algorithm: Box<dyn Resumable>,
     seed: u64,
     limits: Limits,
 ) -> PopulationOutcome {
     let cancel = AtomicBool::new(false);
-    run_restarts(problem, &mut *algorithm, &[], seed, &limits, &cancel, &mut |_| {}).unwrap()
+    search((true, problem, &mut *algorithm, &[], seed, limits, &cancel, &mut |_| {})).unwrap()
 }
 
 #[test]
@@ -129,7 +153,7 @@ fn an_algorithm_that_was_used_before_searches_as_a_new_one_does() {
     for (mut used, fresh) in every_algorithm().into_iter().zip(every_algorithm()) {
         let mut again = |seed| {
             let limits = limit(1500);
-            run(&problem, &mut *used, &[], seed, &limits, &cancel, &mut |_| {}).unwrap()
+            search((false, &problem, &mut *used, &[], seed, limits, &cancel, &mut |_| {})).unwrap()
         };
         again(4);
         assert_eq!(again(5), once(&problem, fresh, 5, limit(1500)));
@@ -182,7 +206,7 @@ fn a_cancelled_search_stops_after_the_generation_and_keeps_its_best() {
         };
         let limits = limit(1_000_000);
         let outcome =
-            run_restarts(&problem, &mut *algorithm, &[], 0, &limits, &cancel, &mut observe).unwrap();
+            search((true, &problem, &mut *algorithm, &[], 0, limits, &cancel, &mut observe)).unwrap();
         assert_eq!(outcome.reason, StopReason::Cancelled);
         assert_eq!(outcome.generations, 4);
         assert_eq!(outcome.evaluations, problem.evaluations());
@@ -194,7 +218,7 @@ fn a_cancelled_search_stops_after_the_generation_and_keeps_its_best() {
 fn a_search_that_is_cancelled_beforehand_answers_from_its_first_population() {
     let cancel = AtomicBool::new(true);
     let (problem, limits) = (Sphere::new(5), limit(10_000));
-    let outcome = run_restarts(&problem, &mut *genetic(), &[], 0, &limits, &cancel, &mut |_| {}).unwrap();
+    let outcome = search((true, &problem, &mut *genetic(), &[], 0, limits, &cancel, &mut |_| {})).unwrap();
     assert_eq!((outcome.reason, outcome.evaluations), (StopReason::Cancelled, 200));
 }
 
@@ -209,7 +233,7 @@ fn the_observer_sees_the_count_rise_and_the_best_fall() {
         };
         let problem = Sphere::new(2);
         let outcome =
-            run_restarts(&problem, &mut *algorithm, &[], 3, &limits, &cancel, &mut observe).unwrap();
+            search((true, &problem, &mut *algorithm, &[], 3, limits, &cancel, &mut observe)).unwrap();
         assert_eq!(seen.len() as u64, outcome.generations);
         assert!(seen.is_sorted_by(|one, two| one.0 <= two.0 && one.1 < two.1 && one.2 >= two.2));
         let last = (outcome.restart_bests.len() as u64 - 1, 20_000, outcome.best.fitness.cost);
@@ -239,7 +263,7 @@ fn starts_are_moved_into_the_box_and_never_lost() {
         let (problem, cancel) = (Counted::new(Rosenbrock::new(6)), AtomicBool::new(false));
         let limits = limit(3000);
         let outcome =
-            run_restarts(&problem, &mut *algorithm, &starts, 0, &limits, &cancel, &mut |_| {}).unwrap();
+            search((true, &problem, &mut *algorithm, &starts, 0, limits, &cancel, &mut |_| {})).unwrap();
         assert_eq!(outcome.best.x, answer);
     }
 }
@@ -249,7 +273,7 @@ fn mistakes_of_the_caller_are_errors() {
     let cancel = AtomicBool::new(false);
     let attempt = |starts: &[Vec<f64>], evaluations| {
         let (problem, limits) = (Sphere::new(2), limit(evaluations));
-        run(&problem, &mut *genetic(), starts, 0, &limits, &cancel, &mut |_| {}).unwrap_err()
+        search((false, &problem, &mut *genetic(), starts, 0, limits, &cancel, &mut |_| {})).unwrap_err()
     };
     assert_eq!(attempt(&[], 0), PopulationError::NoEvaluations);
     let length = PopulationError::StartLength { start: 0, genes: 3, expected: 2 };

@@ -5,8 +5,7 @@
 //! evaluation.
 
 use super::population::{
-    Generations, GenerationsState, Individual, PopulationError, PopulationProblem, admitted, draw_uniform,
-    evaluate_generation, lie_in, scatter, sort_best_first,
+    Generations, Individual, PopulationError, draw_uniform, lie_in, resized, sort_best_first,
 };
 use linkwright_arithmetic::streams::{Stream, stream};
 use schemars::JsonSchema;
@@ -43,9 +42,7 @@ impl UniformSamplingParameters {
 #[derive(Clone, Debug)]
 pub struct UniformSampling {
     parameters: UniformSamplingParameters,
-    stream: Stream,
-    /// The best points so far, best first; of equal points the one drawn earlier comes first.
-    best: Vec<Individual>,
+    pub(super) state: SamplingState,
     drawn: Vec<Individual>,
 }
 
@@ -53,6 +50,7 @@ pub struct UniformSampling {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SamplingState {
     stream: Stream,
+    /// The best points so far, best first; of equal points the one drawn earlier comes first.
     best: Vec<Individual>,
 }
 
@@ -63,7 +61,13 @@ impl UniformSampling {
     /// [`PopulationError::Parameter`] if a parameter is outside its domain.
     pub fn new(parameters: UniformSamplingParameters) -> Result<Self, PopulationError> {
         parameters.check()?;
-        Ok(Self { parameters, stream: stream(0, 0), best: Vec::new(), drawn: Vec::new() })
+        let state = SamplingState { stream: stream(0, 0), best: Vec::new() };
+        Ok(Self { parameters, state, drawn: Vec::new() })
+    }
+
+    /// Returns whether a search with these parameters in this box can continue from a state.
+    pub(super) fn fits(&self, state: &SamplingState, bounds: &[(f64, f64)]) -> bool {
+        lie_in(&state.best, self.size(), bounds)
     }
 }
 
@@ -72,66 +76,44 @@ impl Generations for UniformSampling {
         "uniform sampling"
     }
 
-    fn initialise(
-        &mut self,
-        problem: &dyn PopulationProblem,
-        starts: &[Vec<f64>],
-        stream: Stream,
-        allowance: u64,
-    ) -> u64 {
-        self.stream = stream;
-        let size = self.parameters.population;
-        let spent = scatter(problem, starts, &mut self.stream, allowance, size, &mut self.best);
-        sort_best_first(&mut self.best);
-        self.drawn.clear();
-        self.drawn.resize(size, Individual::blank(problem.bounds().len()));
-        spent
+    fn size(&self) -> usize {
+        self.parameters.population
     }
 
-    fn advance(&mut self, problem: &dyn PopulationProblem, allowance: u64) -> u64 {
-        let kept = self.best.len();
-        assert!(kept == self.parameters.population, "advance needs a whole population");
-        let drawn = &mut self.drawn[..admitted(kept, allowance)];
+    fn begin(&mut self, stream: Stream, mut best: Vec<Individual>) {
+        sort_best_first(&mut best);
+        self.state = SamplingState { stream, best };
+    }
+
+    fn propose(&mut self, count: usize, bounds: &[(f64, f64)]) -> &mut [Individual] {
+        let drawn = resized(&mut self.drawn, count, bounds.len());
         for individual in drawn.iter_mut() {
-            draw_uniform(&mut self.stream, problem.bounds(), &mut individual.x);
+            draw_uniform(&mut self.state.stream, bounds, &mut individual.x);
         }
-        evaluate_generation(problem, drawn);
-        for newcomer in drawn.iter_mut() {
+        drawn
+    }
+
+    fn select(&mut self, _: &[(f64, f64)]) {
+        let best = &mut self.state.best;
+        let last = best.len() - 1;
+        for newcomer in &mut self.drawn {
             // A newcomer that beats the worst remembered one takes its place and moves up behind its equals.
             let order = newcomer.fitness;
-            if order.compare(&self.best[kept - 1].fitness).is_lt() {
-                std::mem::swap(newcomer, &mut self.best[kept - 1]);
-                let place = self.best[..kept - 1].partition_point(|one| one.fitness.compare(&order).is_le());
-                self.best[place..].rotate_right(1);
+            if order.compare(&best[last].fitness).is_lt() {
+                std::mem::swap(newcomer, &mut best[last]);
+                let place = best[..last].partition_point(|one| one.fitness.compare(&order).is_le());
+                best[place..].rotate_right(1);
             }
         }
-        drawn.len() as u64
     }
 
     fn population(&self) -> &[Individual] {
-        &self.best
+        &self.state.best
     }
 
     /// Returns false: a restarted sampler is the same sampler.
     fn converged(&self) -> bool {
         false
-    }
-
-    fn state(&self) -> GenerationsState {
-        let (stream, best) = (self.stream.clone(), self.best.clone());
-        GenerationsState::UniformSampling(SamplingState { stream, best })
-    }
-
-    fn restore(&mut self, problem: &dyn PopulationProblem, state: GenerationsState) -> bool {
-        let GenerationsState::UniformSampling(SamplingState { stream, best }) = state else { return false };
-        let size = self.parameters.population;
-        if !lie_in(&best, size, problem.bounds()) {
-            return false;
-        }
-        self.drawn.clear();
-        self.drawn.resize(size, Individual::blank(problem.bounds().len()));
-        (self.stream, self.best) = (stream, best);
-        true
     }
 }
 
@@ -151,7 +133,7 @@ mod tests {
             sampler.advance(&problem, u64::MAX);
             // The buffer of newcomers also holds the points pushed out: none of them may be better than those kept.
             all.extend(sampler.drawn.iter().cloned());
-            all.extend(sampler.best.iter().cloned());
+            all.extend(sampler.state.best.iter().cloned());
         }
         sort_best_first(&mut all);
         all.dedup();

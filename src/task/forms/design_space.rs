@@ -7,6 +7,7 @@
 //! derived bound).
 
 use crate::mechanism::four_bar::mobility::wrapped;
+use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
 use crate::task::PathTask;
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
@@ -64,6 +65,18 @@ impl Shape {
             [self.crank_pivot, self.follower_pivot],
             [self.crank, self.coupler, self.follower],
             self.offset,
+            assembly,
+        )
+    }
+
+    /// Returns the position solver of the shape in an assembly.
+    #[inline]
+    pub fn kernel(&self, assembly: AssemblyMode) -> Kernel {
+        Kernel::from_parts(
+            xy(self.crank_pivot),
+            xy(self.follower_pivot),
+            [self.crank, self.coupler, self.follower],
+            xy(self.offset / self.coupler),
             assembly,
         )
     }

@@ -16,7 +16,7 @@ use super::rows::{Motion, Requirements, nearest_type};
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::mobility::{linkage_type, wrapped};
 use crate::mechanism::four_bar::position::Kernel;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, cross, xy};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, cross};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
@@ -179,16 +179,6 @@ impl<'a> PathFitness<'a> {
         arc == 0.0 || cross(ground, crank) * arc > 0.0
     }
 
-    fn kernel(&self, shape: &Shape) -> Kernel {
-        Kernel::from_parts(
-            xy(shape.crank_pivot),
-            xy(shape.follower_pivot),
-            [shape.crank, shape.coupler, shape.follower],
-            xy(shape.offset / shape.coupler),
-            AssemblyMode::Plus,
-        )
-    }
-
     /// Returns the angle added to every prescribed one: `offset` if it is free.
     fn angle_offset(&self, offset: f64, shape: &Shape) -> f64 {
         match self.problem.task().timing() {
@@ -213,17 +203,19 @@ impl<'a> PathFitness<'a> {
         let (direction, cos, sin) = self.clocks.get(direction)?;
         let offset = self.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
-        let sums = timed_sums(&self.kernel(shape), turn, cos, sin, &self.targets, self.deviation);
+        let sums =
+            timed_sums(&shape.kernel(AssemblyMode::Plus), turn, cos, sin, &self.targets, self.deviation);
         let aim = nearest_type(shape.links(), self.problem.types());
-        let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
-        let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
+        let motion = self.timed_motion(*direction, offset, assembly);
         let lack = self.requirements.lack(aim, shape, &motion);
-        let cost = sums.cost[usize::from(assembly == AssemblyMode::Minus)];
-        Some(Reading {
-            fitness: Fitness { violation: sums.open + lack, cost },
-            setting: Setting { aim, assembly, direction: *direction, side },
-            arc: 0.0,
-        })
+        let setting = Setting { aim, assembly, direction: *direction, side };
+        Some(sums.reading(setting, lack))
+    }
+
+    /// Returns the motion through the prescribed angles in a direction.
+    fn timed_motion(&self, direction: f64, offset: f64, assembly: AssemblyMode) -> Motion<'static> {
+        let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
+        Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly)
     }
 
     /// Returns the opening of the loop, summed over the points, in one direction: 0 if it closes at all of them. `turn`
@@ -231,7 +223,7 @@ impl<'a> PathFitness<'a> {
     pub fn open(&self, shape: &Shape, turn: f64, direction: usize) -> f64 {
         let Some((_, cos, sin)) = self.clocks.get(direction) else { return f64::INFINITY };
         let turn = Complex::from_polar(1.0, turn);
-        timed_sums(&self.kernel(shape), turn, cos, sin, &self.targets, None).open
+        timed_sums(&shape.kernel(AssemblyMode::Plus), turn, cos, sin, &self.targets, None).open
     }
 
     /// Returns the best reading of a shape with free timing. Bounds of the design do not enter.
@@ -256,28 +248,23 @@ impl<'a> PathFitness<'a> {
     }
 
     fn timed_readings(&self, side: CouplerSide, offset: f64, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
-        let kernel = self.kernel(shape);
+        let kernel = shape.kernel(AssemblyMode::Plus);
         let offset = self.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
         let aim = nearest_type(shape.links(), self.problem.types());
         let mut shared = None;
         for (direction, cos, sin) in &self.clocks {
             let sums = timed_sums(&kernel, turn, cos, sin, &self.targets, self.deviation);
-            for (sum, assembly) in sums.cost.into_iter().zip([AssemblyMode::Plus, AssemblyMode::Minus]) {
-                let ends = (direction * self.span.0 + offset, direction * self.span.1 + offset);
-                let motion = Motion::Stretch(ends.0.min(ends.1), ends.0.max(ends.1), assembly);
+            for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
+                let motion = self.timed_motion(*direction, offset, assembly);
                 let lack = self.lack(aim, shape, &motion, &mut shared);
-                offer(Reading {
-                    fitness: Fitness { violation: sums.open + lack, cost: sum },
-                    setting: Setting { aim, assembly, direction: *direction, side },
-                    arc: 0.0,
-                });
+                offer(sums.reading(Setting { aim, assembly, direction: *direction, side }, lack));
             }
         }
     }
 
     fn free_readings(&self, side: CouplerSide, shape: &Shape, offer: &mut dyn FnMut(Reading)) {
-        let kernel = self.kernel(shape);
+        let kernel = shape.kernel(AssemblyMode::Plus);
         let links = shape.links();
         let aim = nearest_type(links, self.problem.types());
         let own = linkage_type(links);
@@ -336,7 +323,7 @@ impl<'a> PathFitness<'a> {
         let assembly = reading.setting.assembly;
         let ground = shape.follower_pivot - shape.crank_pivot;
         let linkage = shape.linkage(assembly).ok()?;
-        let kernel = self.kernel(shape);
+        let kernel = shape.kernel(AssemblyMode::Plus);
         let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
         self.problem
             .task()
@@ -383,6 +370,14 @@ struct TimedSums {
     cost: [f64; 2],
     /// The opening of the loop, summed over the points; 0 if it closes at all of them.
     open: f64,
+}
+
+impl TimedSums {
+    /// Returns the reading of a setting with a violation of the requirements.
+    fn reading(&self, setting: Setting, lack: f64) -> Reading {
+        let cost = self.cost[usize::from(setting.assembly == AssemblyMode::Minus)];
+        Reading { fitness: Fitness { violation: self.open + lack, cost }, setting, arc: 0.0 }
+    }
 }
 
 /// Number of points whose errors are computed before they are summed.

@@ -75,6 +75,109 @@ pub fn coupler_direction(ratios: &Ratios, e: Complex, t: f64) -> Option<Complex>
     Some(w * Complex::new(sigma, t * h2.sqrt()) / (f2 * q))
 }
 
+/// The six real unknowns v = (A, K, Z) as v = T w + v0 with `used` unknowns w; further columns of T are zero.
+struct Unknowns {
+    t: SMatrix<f64, 6, 6>,
+    v0: SVector<f64, 6>,
+    used: usize,
+}
+
+/// The first rows of A, K and Z among the real unknowns.
+const A: usize = 0;
+const K: usize = 2;
+const Z: usize = 4;
+
+impl Unknowns {
+    /// Returns the unknowns that known pivots and ground leave, with the crank ratio p.
+    fn of(known: &KnownPivots, p: f64) -> Self {
+        let (t, v0) = (SMatrix::zeros(), SVector::zeros());
+        let mut unknowns = Unknowns { t, v0, used: 0 };
+        let axes = [Complex::new(1.0, 0.0), Complex::new(0.0, 1.0)];
+        axes.into_iter().for_each(|axis| unknowns.free(&[(Z, axis)]));
+        let (a, b) = (known.crank_pivot, known.follower_pivot);
+        match a.or(b) {
+            Some(pivot) => unknowns.fix(A, pivot),
+            None => axes.into_iter().for_each(|axis| unknowns.free(&[(A, axis)])),
+        }
+        // With B known alone, A = B - K/p.
+        let column = |axis: Complex| [(K, axis), (A, axis * (-1.0 / p))];
+        let tied = if a.is_none() && b.is_some() { 2 } else { 1 };
+        match (a, b, known.ground_angle, known.ground) {
+            (Some(a), Some(b), ..) => unknowns.fix(K, (b - a) * p),
+            (_, _, Some(angle), Some(ground)) => {
+                for (row, part) in &column(Complex::from_polar(1.0, angle))[..tied] {
+                    unknowns.fix(*row, part * (p * ground));
+                }
+            }
+            (_, _, Some(angle), None) => unknowns.free(&column(Complex::from_polar(1.0, angle))[..tied]),
+            (_, _, None, _) => axes.into_iter().for_each(|axis| unknowns.free(&column(axis)[..tied])),
+        }
+        unknowns
+    }
+
+    /// Adds an unknown with these entries in its column of T.
+    fn free(&mut self, entries: &[(usize, Complex)]) {
+        for &(row, value) in entries {
+            (self.t[(row, self.used)], self.t[(row + 1, self.used)]) = (value.re, value.im);
+        }
+        self.used += 1;
+    }
+
+    /// Adds a known part of A, K or Z.
+    fn fix(&mut self, row: usize, value: Complex) {
+        self.v0[row] += value.re;
+        self.v0[row + 1] += value.im;
+    }
+
+    /// Solves the normal equations of v for w and returns A, K and Z; `None` if they are singular.
+    fn solve(&self, matrix: &SMatrix<f64, 6, 6>, right: &SVector<f64, 6>) -> Option<[Complex; 3]> {
+        let (t, v0) = (&self.t, &self.v0);
+        let mut reduced = t.transpose() * matrix * t;
+        let reduced_right = t.transpose() * (right - matrix * v0);
+        let scale = (0..self.used).map(|i| reduced[(i, i)]).fold(0.0, f64::max);
+        for i in 0..6 {
+            reduced[(i, i)] = if i < self.used { reduced[(i, i)] + RIDGE * scale } else { 1.0 };
+        }
+        let v = t * reduced.cholesky()?.solve(&reduced_right) + v0;
+        Some([A, K, Z].map(|row| Complex::new(v[row], v[row + 1])))
+    }
+}
+
+/// The ridge relative to the largest diagonal entry. u nearly affine in e (a parallelogram, a tiny crank) makes the
+/// system singular, and the ridge keeps it solvable: it is well above the rounding of the sums, about 1e-15 of that
+/// entry, and so small that a well-posed start moves by parts in 1e10, which the fit that follows undoes.
+const RIDGE: f64 = 1e-10;
+
+/// Returns the normal equations of the real unknowns (A, K, Z): complex sums over the columns 1, e, u, from which
+/// everything real follows.
+fn normal_equations(
+    directions: &[[Complex; 2]],
+    targets: impl Iterator<Item = Complex>,
+    weights: &[f64],
+) -> (SMatrix<f64, 6, 6>, SVector<f64, 6>) {
+    let mut sums = [[Complex::new(0.0, 0.0); 3]; 3];
+    let mut right = [Complex::new(0.0, 0.0); 3];
+    for (([e, u], target), &weight) in directions.iter().zip(targets).zip(weights) {
+        let columns = [Complex::new(1.0, 0.0), *e, *u];
+        for i in 0..3 {
+            let conjugate = columns[i].conj() * weight;
+            right[i] += conjugate * target;
+            for k in 0..3 {
+                sums[i][k] += conjugate * columns[k];
+            }
+        }
+    }
+    let matrix = SMatrix::from_fn(|row, column| {
+        let s = sums[row / 2][column / 2];
+        match (row % 2, column % 2) {
+            (0, 0) | (1, 1) => s.re,
+            (0, _) => -s.im,
+            _ => s.im,
+        }
+    });
+    (matrix, SVector::from_fn(|row, _| if row % 2 == 0 { right[row / 2].re } else { right[row / 2].im }))
+}
+
 /// Fits the six real numbers (A, K, Z) by linear least squares through `targets` at directions (e_j, u_j) with weights.
 ///
 /// Returns the shape; the positions of the points are the directions turned by the ground's direction. `None` if the
@@ -94,124 +197,25 @@ pub fn fit(
         follower_pivot: known.follower_pivot.map(|p| p - mean),
         ..*known
     };
-    // Complex normal sums over the columns 1, e, u; everything real follows from them.
-    let mut sums = [[Complex::new(0.0, 0.0); 3]; 3];
-    let mut right = [Complex::new(0.0, 0.0); 3];
-    for (([e, u], target), &weight) in directions.iter().zip(targets).zip(weights) {
-        let columns = [Complex::new(1.0, 0.0), *e, *u];
-        for i in 0..3 {
-            let conjugate = columns[i].conj() * weight;
-            right[i] += conjugate * (target - mean);
-            for k in 0..3 {
-                sums[i][k] += conjugate * columns[k];
-            }
-        }
-    }
-    let mut matrix = SMatrix::<f64, 6, 6>::zeros();
-    let mut vector = SVector::<f64, 6>::zeros();
-    for i in 0..3 {
-        vector[2 * i] = right[i].re;
-        vector[2 * i + 1] = right[i].im;
-        for k in 0..3 {
-            let s = sums[i][k];
-            matrix[(2 * i, 2 * k)] = s.re;
-            matrix[(2 * i, 2 * k + 1)] = -s.im;
-            matrix[(2 * i + 1, 2 * k)] = s.im;
-            matrix[(2 * i + 1, 2 * k + 1)] = s.re;
-        }
-    }
-    // v = T w + v0; unused columns of T stay zero and get a unit diagonal.
-    let mut t = SMatrix::<f64, 6, 6>::zeros();
-    let mut v0 = SVector::<f64, 6>::zeros();
-    let (mut used, p) = (0, ratios.crank);
-    let mut free = |entries: &[(usize, f64)]| {
-        for &(row, value) in entries {
-            t[(row, used)] = value;
-        }
-        used += 1;
-    };
-    free(&[(4, 1.0)]);
-    free(&[(5, 1.0)]);
-    let direction = known.ground_angle.map(|angle| Complex::from_polar(1.0, angle));
-    match (known.crank_pivot, known.follower_pivot, direction) {
-        (Some(a), Some(b), _) => {
-            let k = (b - a) * p;
-            (v0[0], v0[1], v0[2], v0[3]) = (a.re, a.im, k.re, k.im);
-        }
-        (a, b, Some(direction)) => {
-            // K = kappa e^{i angle}; with B known A = B - K/p.
-            match (a, b) {
-                (Some(a), _) => (v0[0], v0[1]) = (a.re, a.im),
-                (None, Some(b)) => (v0[0], v0[1]) = (b.re, b.im),
-                (None, None) => {
-                    free(&[(0, 1.0)]);
-                    free(&[(1, 1.0)]);
-                }
-            }
-            let tied = if a.is_none() && b.is_some() { -1.0 / p } else { 0.0 };
-            let column =
-                [(2, direction.re), (3, direction.im), (0, tied * direction.re), (1, tied * direction.im)];
-            match known.ground {
-                Some(ground) => column.iter().for_each(|&(row, value)| v0[row] += p * ground * value),
-                None if tied == 0.0 => free(&column[..2]),
-                None => free(&column),
-            }
-        }
-        (a, b, None) => {
-            match (a, b) {
-                (Some(a), _) => (v0[0], v0[1]) = (a.re, a.im),
-                (None, Some(b)) => {
-                    (v0[0], v0[1]) = (b.re, b.im);
-                    free(&[(2, 1.0), (0, -1.0 / p)]);
-                    free(&[(3, 1.0), (1, -1.0 / p)]);
-                }
-                (None, None) => {
-                    free(&[(0, 1.0)]);
-                    free(&[(1, 1.0)]);
-                }
-            }
-            if b.is_none() || a.is_some() {
-                free(&[(2, 1.0)]);
-                free(&[(3, 1.0)]);
-            }
-        }
-    }
-    let mut reduced = t.transpose() * matrix * t;
-    let reduced_right = t.transpose() * (vector - matrix * v0);
-    let scale = (0..used).map(|i| reduced[(i, i)]).fold(0.0, f64::max);
-    for i in 0..6 {
-        if i >= used {
-            reduced[(i, i)] = 1.0;
-        } else {
-            // u nearly affine in e (a parallelogram, a tiny crank) makes the system singular: keep it solvable.
-            reduced[(i, i)] += 1e-10 * scale;
-        }
-    }
-    let v = t * reduced.cholesky()?.solve(&reduced_right) + v0;
-    let crank_pivot = Complex::new(v[0], v[1]);
-    let k = Complex::new(v[2], v[3]);
+    let (matrix, right) = normal_equations(directions, targets.iter().map(|target| target - mean), weights);
+    let [crank_pivot, k, z] = Unknowns::of(&known, ratios.crank).solve(&matrix, &right)?;
     let ground = match (known.crank_pivot, known.follower_pivot) {
         (Some(a), Some(b)) => b - a,
-        _ => k / p,
+        _ => k / ratios.crank,
     };
-    if let Some(direction) = direction
-        && (ground * direction.conj()).re <= 0.0
-    {
-        return None;
-    }
+    let reversed = |angle| (ground * Complex::from_polar(1.0, angle).conj()).re <= 0.0;
     let g = ground.norm();
-    if !g.is_finite() || g == 0.0 {
+    if known.ground_angle.is_some_and(reversed) || !g.is_finite() || g == 0.0 {
         return None;
     }
-    // Z is the offset turned by the ground's direction.
-    let offset = Complex::new(v[4], v[5]) * unit(ground).conj();
     Some(Shape {
         crank_pivot: crank_pivot + mean,
         follower_pivot: crank_pivot + mean + ground,
-        crank: p * g,
+        crank: ratios.crank * g,
         coupler: ratios.coupler * g,
         follower: ratios.follower * g,
-        offset,
+        // Z is the offset turned by the ground's direction.
+        offset: z * unit(ground).conj(),
     })
 }
 

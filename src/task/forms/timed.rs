@@ -4,11 +4,10 @@
 //! The offset is an unknown ([`AngleOffset::Free`]), zero ([`AngleOffset::Fixed`]) or the direction of the
 //! ground line ([`AngleOffset::Ground`], which adds its derivative (<i g, dB - dA>)/|AB|).
 
-use super::design_space::{DESIGN, Design, DesignSpace, Shape, unit};
+use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
 use super::rows::{Motion, Requirements};
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
-use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{Complex, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
 use crate::task::{AngleOffset, Timing};
@@ -80,15 +79,33 @@ impl<'a> TimedFit<'a> {
         Motion::Stretch(low + offset, high + offset, self.setting.assembly)
     }
 
-    fn kernel(&self, shape: &Shape) -> Kernel {
-        let ratio = shape.offset / shape.coupler;
-        Kernel::from_parts(
-            xy(shape.crank_pivot),
-            xy(shape.follower_pivot),
-            [shape.crank, shape.coupler, shape.follower],
-            xy(ratio),
-            self.setting.assembly,
-        )
+    /// Returns the derivative of the ground line's direction by B.
+    fn by_ground_angle(shape: &Shape) -> Complex {
+        let ground = shape.follower_pivot - shape.crank_pivot;
+        turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE)
+    }
+
+    /// Returns the derivative by the design vector from those by the shape and by the crank angle.
+    fn pull_back(
+        &self,
+        x: &Design,
+        shape: &Shape,
+        mut row: [f64; SHAPE],
+        by_crank: f64,
+        by_ground_angle: Complex,
+    ) -> Design {
+        let mut by_offset = 0.0;
+        match self.offset {
+            AngleOffset::Free => by_offset = by_crank,
+            AngleOffset::Fixed => {}
+            AngleOffset::Ground => {
+                row[0] -= by_crank * by_ground_angle.re;
+                row[1] -= by_crank * by_ground_angle.im;
+                row[2] += by_crank * by_ground_angle.re;
+                row[3] += by_crank * by_ground_angle.im;
+            }
+        }
+        self.space.pull_back(x, shape, &row, by_offset)
     }
 }
 
@@ -105,7 +122,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
 
     fn cost(&self, x: &Design, _: &()) -> Option<f64> {
         let shape = self.space.shape(x)?;
-        let kernel = self.kernel(&shape);
+        let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let task = self.problem.task();
         computed(task.len());
@@ -125,11 +142,10 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
 
     fn linearise(&self, x: &Design, _: &(), each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
-        let kernel = self.kernel(&shape);
+        let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
         let task = self.problem.task();
-        let ground = shape.follower_pivot - shape.crank_pivot;
-        let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+        let by_ground_angle = Self::by_ground_angle(&shape);
         computed(task.len());
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
@@ -147,20 +163,8 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             let mut jacobian = [[0.0; DESIGN]; 2];
             for (axis, out) in jacobian.iter_mut().enumerate() {
                 let component = |z: Complex| if axis == 0 { z.re } else { z.im };
-                let mut row = gradient.shape.map(|z| -component(z));
-                let by_crank = -component(gradient.crank_angle);
-                let mut by_offset = 0.0;
-                match self.offset {
-                    AngleOffset::Free => by_offset = by_crank,
-                    AngleOffset::Fixed => {}
-                    AngleOffset::Ground => {
-                        row[0] -= by_crank * by_ground_angle.re;
-                        row[1] -= by_crank * by_ground_angle.im;
-                        row[2] += by_crank * by_ground_angle.re;
-                        row[3] += by_crank * by_ground_angle.im;
-                    }
-                }
-                *out = self.space.pull_back(x, &shape, &row, by_offset);
+                let row = gradient.shape.map(|z| -component(z));
+                *out = self.pull_back(x, &shape, row, -component(gradient.crank_angle), by_ground_angle);
             }
             let residual = target - p;
             each(&PointBlock { residual: xy(residual), jacobian, tangent: [0.0, 0.0], weight: *weight });
@@ -174,24 +178,11 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
 
     fn constraints(&self, x: &Design, _: &(), each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
         let Some(shape) = self.space.shape(x) else { return };
-        let ground = shape.follower_pivot - shape.crank_pivot;
-        let by_ground_angle = turned(unit(ground)) / ground.norm().max(f64::MIN_POSITIVE);
+        let by_ground_angle = Self::by_ground_angle(&shape);
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {
-            let (mut by_shape, by_turn) = (row.shape, row.by_turn());
-            let mut by_offset = 0.0;
-            match self.offset {
-                AngleOffset::Free => by_offset = by_turn,
-                AngleOffset::Fixed => {}
-                AngleOffset::Ground => {
-                    by_shape[0] -= by_turn * by_ground_angle.re;
-                    by_shape[1] -= by_turn * by_ground_angle.im;
-                    by_shape[2] += by_turn * by_ground_angle.re;
-                    by_shape[3] += by_turn * by_ground_angle.im;
-                }
-            }
             each(&ConstraintRow {
                 value: row.value,
-                gradient: self.space.pull_back(x, &shape, &by_shape, by_offset),
+                gradient: self.pull_back(x, &shape, row.shape, row.by_turn(), by_ground_angle),
                 own: [None; MOST_OWN],
             });
         });

@@ -16,7 +16,7 @@
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape};
 use super::rows::{Motion, Place, Requirements, assembly_of};
 use crate::mechanism::effort::computed;
-use crate::mechanism::four_bar::mobility::linkage_type;
+use crate::mechanism::four_bar::mobility::{linkage_type, ways_round};
 use crate::mechanism::{AssemblyMode, Complex, LinkageType, dot, turned, xy};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
@@ -116,16 +116,9 @@ impl<'a> TorusFit<'a> {
         if task.closed() || task.repeats_first() {
             return whole;
         }
-        let total = |direction: f64| -> f64 {
-            let step = |w: &[[Complex; 2]]| (direction * (w[1][0] * w[0][0].conj()).arg()).rem_euclid(TAU);
-            // Points that share a place make no step, and rounding must not turn that into a full turn.
-            positions
-                .windows(2)
-                .map(step)
-                .map(|step| if step > TAU - ORDER_TOLERANCE { 0.0 } else { step })
-                .sum()
-        };
-        let (forward, backward) = (total(1.0), total(-1.0));
+        // Points that share a place make no step, and rounding must not turn that into a full turn.
+        let steps = positions.windows(2).map(|w| (w[1][0] * w[0][0].conj()).arg());
+        let [forward, backward] = ways_round(steps, ORDER_TOLERANCE);
         let last = positions.len() - 1;
         if forward.min(backward) >= TAU {
             whole
@@ -216,13 +209,8 @@ fn orientation(shape: &Shape, positions: &Positions) -> f64 {
         None => e.arg(),
         Some(arc) => arc.parameter(e.arg(), assembly_of(shape, *e, *u)),
     };
-    let total = |direction: f64| -> f64 {
-        positions
-            .windows(2)
-            .map(|w| (direction * (parameter(&w[1]) - parameter(&w[0]))).rem_euclid(TAU))
-            .sum()
-    };
-    let (forward, backward) = (total(1.0), total(-1.0));
+    let steps = positions.windows(2).map(|w| parameter(&w[1]) - parameter(&w[0]));
+    let [forward, backward] = ways_round(steps, 0.0);
     let runs = if backward < forward { -1.0 } else { 1.0 };
     // dphi/dparameter has the sign of t1 if the crank rocks; the tangent's crank part is c_w.
     let (_, _, by_u) = frame(shape, *first);

@@ -20,6 +20,7 @@
 
 mod model;
 
+use super::damping::{clamped, moved};
 use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 use model::{Curvature, Model, Step};
 
@@ -210,10 +211,7 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     stop: &dyn Fn() -> bool,
 ) -> ConvexResult<N, P::State> {
     assert!(goal.tolerances().is_none_or(|t| t.len() >= problem.points()), "a tolerance a point");
-    let mut x = start;
-    for (value, &(low, high)) in x.iter_mut().zip(problem.bounds()) {
-        *value = value.max(low).min(high);
-    }
+    let x = clamped(start, problem.bounds());
     let Some(at) = look(problem, goal, options.length, x, state.clone()) else {
         return ConvexResult {
             x,
@@ -282,21 +280,25 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
         if self.met() { ConvexOutcome::Converged } else { ConvexOutcome::Infeasible }
     }
 
+    /// Returns the outcome of a solve that ends before a step.
+    fn ended_before(&self, trust: f64, stop: &dyn Fn() -> bool) -> Option<ConvexOutcome> {
+        if stop() {
+            Some(ConvexOutcome::Stopped)
+        } else if self.met() && self.at.objective <= self.options.good_enough {
+            Some(ConvexOutcome::GoodEnough)
+        } else if self.evaluations >= self.options.max_evaluations {
+            Some(ConvexOutcome::StepLimit)
+        } else {
+            (trust < LEAST_TRUST).then_some(ConvexOutcome::Stalled)
+        }
+    }
+
     fn iterate(&mut self, stop: &dyn Fn() -> bool) -> ConvexOutcome {
         let mut trust = 1.0;
         let (mut quiet, mut failed) = (0, 0);
         while self.steps < self.options.max_steps {
-            if stop() {
-                return ConvexOutcome::Stopped;
-            }
-            if self.met() && self.at.objective <= self.options.good_enough {
-                return ConvexOutcome::GoodEnough;
-            }
-            if self.evaluations >= self.options.max_evaluations {
-                return ConvexOutcome::StepLimit;
-            }
-            if trust < LEAST_TRUST {
-                return ConvexOutcome::Stalled;
+            if let Some(outcome) = self.ended_before(trust, stop) {
+                return outcome;
             }
             self.steps += 1;
             // The objective is measured in parts of its present value.
@@ -312,79 +314,78 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
                 continue;
             };
             failed = 0;
-            let merit = |objective: f64, lack: f64| objective / unit + self.price * lack.max(0.0);
-            let now = merit(self.at.objective, self.at.lack);
-            let promised = now - merit(step.objective, step.lack);
-            let price = self.price;
+            let now = self.merit(self.at.objective, self.at.lack, unit);
+            let promised = now - self.merit(step.objective, step.lack, unit);
             self.multipliers = Some(step.multipliers.clone());
-            if promised <= self.options.relative_reduction * now.min(1.0) {
+            let hardly = self.options.relative_reduction * now.min(1.0);
+            if promised <= hardly {
                 return self.ended();
             }
-            let trial = self.trial(&step);
-            let mut won = self.won(trial.as_ref(), now, unit, price);
-            let mut chosen = trial;
-            if won < KEEP * promised
-                && let Some(refused) = &chosen
-                && self.evaluations < self.options.max_evaluations
-            {
-                self.curvature.learn(
-                    self.options,
-                    &self.at.x,
-                    &self.at.blocks,
-                    &self.at.rows,
-                    refused,
-                    &step,
-                );
-                model.correct(&refused.blocks, &refused.rows, &step);
-                if let Some(second) = model.solve(&self.curvature, price) {
-                    let corrected = self.trial(&second);
-                    let gain = self.won(corrected.as_ref(), now, unit, price);
-                    if gain > won {
-                        (won, chosen) = (gain, corrected);
-                    }
-                }
-            }
-            let reach = step.reach;
+            let (won, chosen) = self.evaluated(&mut model, &step, [now, promised, unit]);
             match chosen {
                 Some(next) if won >= KEEP * promised => {
-                    self.curvature.learn(
-                        self.options,
-                        &self.at.x,
-                        &self.at.blocks,
-                        &self.at.rows,
-                        &next,
-                        &step,
-                    );
+                    self.curvature.learn(self.options, &self.at, &next, &step);
                     self.at = next;
-                    let ratio = won / promised;
-                    trust = if ratio < 0.25 {
-                        0.5 * trust * reach.clamp(0.1, 1.0)
-                    } else if ratio > 0.5 {
-                        (ROOM * trust * reach).clamp(0.1 * trust, ROOM * trust)
-                    } else {
-                        trust
-                    };
-                    quiet = if won <= self.options.relative_reduction * now.min(1.0) { quiet + 1 } else { 0 };
+                    trust = trust_after(trust, won / promised, step.reach);
+                    quiet = if won <= hardly { quiet + 1 } else { 0 };
                     if quiet >= QUIET_STEPS {
                         return self.ended();
                     }
                     if self.met() {
-                        // A price of twice the multipliers is enough to keep to the limits.
-                        let length = self.options.length;
-                        let rows: f64 = step.multipliers.rows.iter().sum::<f64>() * length / unit;
-                        let points = match self.goal {
-                            Goal::SumOfSquaresWithin { .. } => {
-                                step.multipliers.points.iter().sum::<f64>() / unit
-                            }
-                            Goal::SumOfSquares | Goal::MaxDeviation { .. } => 0.0,
-                        };
-                        self.price = (2.0 * (rows + points)).clamp(FIRST_PRICE, HIGHEST_PRICE);
+                        self.price = self.sufficient_price(&step.multipliers, unit);
                     }
                 }
-                _ => trust *= 0.25 * reach.clamp(0.1, 1.0),
+                _ => trust *= 0.25 * step.reach.clamp(0.1, 1.0),
             }
         }
         ConvexOutcome::StepLimit
+    }
+
+    /// Computes the merit of an objective, measured in `unit`, with a lack at the present price.
+    fn merit(&self, objective: f64, lack: f64, unit: f64) -> f64 {
+        objective / unit + self.price * lack.max(0.0)
+    }
+
+    /// Evaluates a step and, if it gains too little, its second-order correction; returns the better of both with its
+    /// gain over the merit `now`.
+    fn evaluated(
+        &mut self,
+        model: &mut Model<'_, N>,
+        step: &Step<N>,
+        [now, promised, unit]: [f64; 3],
+    ) -> (f64, Option<At<N, P::State>>) {
+        let won = |solve: &Self, trial: &Option<At<N, P::State>>| {
+            trial
+                .as_ref()
+                .map_or(f64::NEG_INFINITY, |next| now - solve.merit(next.objective, next.lack, unit))
+        };
+        let trial = self.trial(step);
+        let gain = won(self, &trial);
+        if gain < KEEP * promised
+            && let Some(refused) = &trial
+            && self.evaluations < self.options.max_evaluations
+        {
+            self.curvature.learn(self.options, &self.at, refused, step);
+            model.correct(&refused.blocks, &refused.rows, step);
+            if let Some(second) = model.solve(&self.curvature, self.price) {
+                let corrected = self.trial(&second);
+                let of_corrected = won(self, &corrected);
+                if of_corrected > gain {
+                    return (of_corrected, corrected);
+                }
+            }
+        }
+        (gain, trial)
+    }
+
+    /// Returns a price of twice the multipliers, which is enough to keep to the limits.
+    fn sufficient_price(&self, multipliers: &Multipliers<N>, unit: f64) -> f64 {
+        let rows: f64 = multipliers.rows.iter().sum::<f64>() * self.options.length / unit;
+        let points = match self.goal {
+            Goal::SumOfSquaresWithin { .. } => multipliers.points.iter().sum::<f64>() / unit,
+            Goal::SumOfSquares | Goal::MaxDeviation { .. } => 0.0,
+        };
+        (2.0 * (rows + points)).clamp(FIRST_PRICE, HIGHEST_PRICE)
     }
 
     /// Solves the program for a step, raising the price of the slack until the lack falls.
@@ -405,22 +406,26 @@ impl<const N: usize, P: BlockLeastSquares<N>> Solve<'_, N, P> {
         Some(step)
     }
 
-    fn won(&self, trial: Option<&At<N, P::State>>, now: f64, unit: f64, price: f64) -> f64 {
-        trial.map_or(f64::NEG_INFINITY, |next| now - (next.objective / unit + price * next.lack.max(0.0)))
-    }
-
     /// Evaluates the true residuals and inequalities after a step; `None` if they do not exist.
     fn trial(&mut self, step: &Step<N>) -> Option<At<N, P::State>> {
         self.evaluations += 1;
-        let mut x = self.at.x;
-        for (value, (by, &(low, high))) in x.iter_mut().zip(step.dx.iter().zip(self.problem.bounds())) {
-            *value = (*value + by).max(low).min(high);
-        }
+        let x = moved(&self.at.x, &step.dx, self.problem.bounds());
         let mut state = self.at.state.clone();
         if !self.problem.retract(&self.at.x, &self.at.state, &step.tau, &x, &mut state) {
             return None;
         }
         look(self.problem, self.goal, self.options.length, x, state)
+    }
+}
+
+/// Returns the trust box after an accepted step with a ratio of actual to predicted reduction.
+fn trust_after(trust: f64, ratio: f64, reach: f64) -> f64 {
+    if ratio < 0.25 {
+        0.5 * trust * reach.clamp(0.1, 1.0)
+    } else if ratio > 0.5 {
+        (ROOM * trust * reach).clamp(0.1 * trust, ROOM * trust)
+    } else {
+        trust
     }
 }
 

@@ -1,7 +1,7 @@
 //! The convex model of a step: its linear and quadratic terms, and the points and rows that enter it.
 
 use super::{At, ConvexOptions, Goal, MAX_TAU, Multipliers, norm};
-use crate::conic::{ConicProgram, LinearForm};
+use crate::conic::{ConicProgram, ConicSolution, LinearForm};
 use crate::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
 
@@ -45,19 +45,11 @@ impl<const N: usize> Curvature<N> {
 
     /// Applies the symmetric rank-one correction from a step that was evaluated, whether it was accepted or not:
     /// B s = sum_j (J_j' - J_j)^T z_j - sum_i mu_i (dg_i' - dg_i).
-    pub fn learn<S>(
-        &mut self,
-        options: &ConvexOptions<N>,
-        from: &[f64; N],
-        blocks: &[PointBlock<N>],
-        rows: &[ConstraintRow<N>],
-        to: &At<N, S>,
-        step: &Step<N>,
-    ) {
+    pub fn learn<S>(&mut self, options: &ConvexOptions<N>, from: &At<N, S>, to: &At<N, S>, step: &Step<N>) {
         let scale = &options.trust;
-        let moved = SVector::<f64, N>::from_fn(|i, _| (to.x[i] - from[i]) / scale[i]);
+        let moved = SVector::<f64, N>::from_fn(|i, _| (to.x[i] - from.x[i]) / scale[i]);
         let mut change = [0.0; N];
-        for ((old, new), force) in blocks.iter().zip(&to.blocks).zip(&step.forces) {
+        for ((old, new), force) in from.blocks.iter().zip(&to.blocks).zip(&step.forces) {
             for (axis, z) in force.iter().enumerate().filter(|(_, z)| **z != 0.0) {
                 for (out, (n, o)) in change.iter_mut().zip(new.jacobian[axis].iter().zip(&old.jacobian[axis]))
                 {
@@ -65,7 +57,7 @@ impl<const N: usize> Curvature<N> {
                 }
             }
         }
-        for ((old, new), mu) in rows.iter().zip(&to.rows).zip(&step.multipliers.rows) {
+        for ((old, new), mu) in from.rows.iter().zip(&to.rows).zip(&step.multipliers.rows) {
             if *mu != 0.0 {
                 for (out, (n, o)) in change.iter_mut().zip(new.gradient.iter().zip(&old.gradient)) {
                     *out -= mu * (n - o);
@@ -171,8 +163,7 @@ impl<'a, const N: usize> Model<'a, N> {
             .blocks
             .iter()
             .map(|block| {
-                let t = block.tangent;
-                let t_sq = t[0] * t[0] + t[1] * t[1];
+                let (t, t_sq) = (block.tangent, block.tangent_sq());
                 let along = t[0] * block.residual[0] + t[1] * block.residual[1];
                 // Beyond its reach a point's own unknown cannot be relied on to take up the residual.
                 let within = t_sq > 0.0 && along.abs() <= 0.5 * MAX_TAU * t_sq;
@@ -260,7 +251,7 @@ impl<'a, const N: usize> Model<'a, N> {
                 return Some(step);
             }
             let top = chosen.iter().map(|&j| size(j, &step.dx)).fold(0.0, f64::max);
-            let top = if matches!(self.goal, Goal::MaxDeviation { .. }) { top } else { top.max(1.0) };
+            let top = if self.is_minimax() { top } else { top.max(1.0) };
             let mut above: Vec<(f64, usize)> = (0..n)
                 .filter(|j| chosen.binary_search(j).is_err())
                 .map(|j| (size(j, &step.dx), j))
@@ -303,27 +294,31 @@ impl<'a, const N: usize> Model<'a, N> {
         (matrix, gradient)
     }
 
+    fn is_minimax(&self) -> bool {
+        matches!(self.goal, Goal::MaxDeviation { .. })
+    }
+
+    /// Minimises the model with cones for the chosen points only.
+    ///
+    /// The variables are v = (y, [theta], sigma) with dx_i = widths_i y_i, T = unit theta, and sigma the slack.
     fn solve_with(&self, curvature: &Curvature<N>, price: f64, chosen: &[usize]) -> Option<Step<N>> {
-        let minimax = matches!(self.goal, Goal::MaxDeviation { .. });
-        let n_free = self.free.len();
-        // v = (y, [theta], sigma) with dx_i = widths_i y_i, T = unit theta, and sigma the slack.
-        let (theta, sigma) = (n_free, n_free + usize::from(minimax));
+        let theta = self.free.len();
+        let sigma = theta + usize::from(self.is_minimax());
         let mut linear = vec![0.0; sigma + 1];
         linear[sigma] = price;
-        let widths = SVector::<f64, N>::from_fn(|i, _| self.widths[i]);
         let learnt = curvature.matrix * (self.trust * self.trust / self.unit);
-        let mut squares = None;
-        let quadratic = if minimax {
+        let mut gradient = None;
+        let quadratic = if self.is_minimax() {
             linear[theta] = 1.0;
             positive_part(learnt)
         } else {
-            let (matrix, gradient) = self.least_squares();
+            let (matrix, of_squares) = self.least_squares();
             for (at, &i) in self.free.iter().enumerate() {
-                linear[at] = gradient[i] * self.widths[i] / self.unit;
+                linear[at] = of_squares[i] * self.widths[i] / self.unit;
             }
-            let scaled = matrix.component_mul(&(widths * widths.transpose())) / self.unit;
-            squares = Some(gradient);
-            positive_part(scaled + learnt)
+            gradient = Some(of_squares);
+            let widths = SVector::<f64, N>::from_fn(|i, _| self.widths[i]);
+            positive_part(matrix.component_mul(&(widths * widths.transpose())) / self.unit + learnt)
         };
         let mut program = ConicProgram::new(linear);
         for (row, &i) in self.free.iter().enumerate() {
@@ -331,37 +326,64 @@ impl<'a, const N: usize> Model<'a, N> {
                 program.add_quadratic(column, row, quadratic[(i, k)]);
             }
         }
+        let near = self.near_rows();
+        self.add_rows(&mut program, &near, sigma);
+        self.add_points(&mut program, chosen, theta);
+        let solution = program.solve()?;
+
+        let mut dx = [0.0; N];
+        let mut reach: f64 = 0.0;
+        for (at, &i) in self.free.iter().enumerate() {
+            dx[i] = (solution.v[at] * self.widths[i]).clamp(self.sides[i].0, self.sides[i].1);
+            reach = reach.max((dx[i] / self.widths[i]).abs());
+        }
+        let (multipliers, forces) = self.duals(&solution, &near, chosen)?;
+        self.predicted(
+            Step { dx, tau: Vec::new(), objective: 0.0, lack: 0.0, reach, multipliers, forces },
+            &quadratic,
+            gradient,
+        )
+    }
+
+    /// Returns the terms of a row by the free unknowns, in half widths of the trust box.
+    fn terms(&self, row: &dyn Fn(usize) -> f64, factor: f64) -> Vec<(usize, f64)> {
+        let scaled = |(at, &i): (usize, &usize)| (at, factor * row(i) * self.widths[i]);
+        self.free.iter().enumerate().map(scaled).collect()
+    }
+
+    /// Adds the sides of the trust box, the slack and the inequalities near their limits.
+    fn add_rows(&self, program: &mut ConicProgram, near: &[usize], sigma: usize) {
         for (at, &i) in self.free.iter().enumerate() {
             let (down, up) = (self.sides[i].0 / self.widths[i], self.sides[i].1 / self.widths[i]);
             program.add_row(LinearForm { terms: vec![(at, 1.0)], constant: -down });
             program.add_row(LinearForm { terms: vec![(at, -1.0)], constant: up });
         }
         program.add_row(LinearForm { terms: vec![(sigma, 1.0)], constant: 0.0 });
-        let near = self.near_rows();
-        let terms = |row: &dyn Fn(usize) -> f64, factor: f64| -> Vec<(usize, f64)> {
-            let scaled = |(at, &i): (usize, &usize)| (at, factor * row(i) * self.widths[i]);
-            self.free.iter().enumerate().map(scaled).collect()
-        };
-        for &i in &near {
+        for &i in near {
             let row = &self.rows[i];
-            let mut list = terms(&|k| row.gradient[k], 1.0 / self.length);
-            list.push((sigma, 1.0));
-            program.add_row(LinearForm { terms: list, constant: row.value / self.length });
+            let mut terms = self.terms(&|k| row.gradient[k], 1.0 / self.length);
+            terms.push((sigma, 1.0));
+            program.add_row(LinearForm { terms, constant: row.value / self.length });
         }
-        // |r + J dx| <= unit theta tol, or <= tol (1 + sigma).
+    }
+
+    /// Returns the factor of a point's residual in its cone.
+    fn factor(&self, j: usize) -> f64 {
         let tolerances = self.goal.tolerances().unwrap_or(&[]);
-        let ceiling = if minimax {
-            LinearForm { terms: vec![(theta, 1.0)], constant: 0.0 }
-        } else {
-            LinearForm { terms: vec![(sigma, 1.0)], constant: 1.0 }
-        };
-        let factor = |j: usize| 1.0 / (tolerances[j] * if minimax { self.unit } else { 1.0 });
+        1.0 / (tolerances[j] * if self.is_minimax() { self.unit } else { 1.0 })
+    }
+
+    /// Adds the cones |r + J dx| <= unit theta tol, or <= tol (1 + sigma), of the chosen points; `top` is the variable
+    /// theta or sigma.
+    fn add_points(&self, program: &mut ConicProgram, chosen: &[usize], top: usize) {
+        let constant = if self.is_minimax() { 0.0 } else { 1.0 };
+        let ceiling = LinearForm { terms: vec![(top, 1.0)], constant };
         for &j in chosen {
-            let point = &self.points[j];
+            let (point, factor) = (&self.points[j], self.factor(j));
             let component = |n: [f64; 2]| {
                 let row = |i: usize| n[0] * point.jacobian[0][i] + n[1] * point.jacobian[1][i];
-                let constant = factor(j) * (n[0] * point.residual[0] + n[1] * point.residual[1]);
-                LinearForm { terms: terms(&row, factor(j)), constant }
+                let constant = factor * (n[0] * point.residual[0] + n[1] * point.residual[1]);
+                LinearForm { terms: self.terms(&row, factor), constant }
             };
             match point.across() {
                 None => program.add_cone([ceiling.clone(), component([1.0, 0.0]), component([0.0, 1.0])]),
@@ -376,14 +398,16 @@ impl<'a, const N: usize> Model<'a, N> {
                 }
             }
         }
-        let solution = program.solve()?;
+    }
 
-        let mut dx = [0.0; N];
-        let mut reach: f64 = 0.0;
-        for (at, &i) in self.free.iter().enumerate() {
-            dx[i] = (solution.v[at] * self.widths[i]).clamp(self.sides[i].0, self.sides[i].1);
-            reach = reach.max((dx[i] / self.widths[i]).abs());
-        }
+    /// Returns the multipliers, and the derivative of the Lagrangian by each residual without the squares' own, from
+    /// the dual variables of a program in the order of its rows and cones.
+    fn duals(
+        &self,
+        solution: &ConicSolution,
+        near: &[usize],
+        chosen: &[usize],
+    ) -> Option<(Multipliers<N>, Vec<[f64; 2]>)> {
         let mut multipliers = Multipliers {
             rows: vec![0.0; self.rows.len()],
             lower: [0.0; N],
@@ -399,45 +423,59 @@ impl<'a, const N: usize> Model<'a, N> {
                 multipliers.upper[i] = rate * solution.rows[2 * at + 1];
             }
         }
-        let mut duals = solution.rows[2 * n_free + 1..].iter();
-        for &i in &near {
-            multipliers.rows[i] = duals.next()? * self.unit / self.length;
+        let mut rows = solution.rows[2 * self.free.len() + 1..].iter();
+        for &i in near {
+            multipliers.rows[i] = rows.next()? * self.unit / self.length;
         }
-        let (mut forces, mut tau) = (vec![[0.0; 2]; self.points.len()], vec![0.0; self.points.len()]);
+        let mut forces = vec![[0.0; 2]; self.points.len()];
         let mut cones = solution.cones.iter();
+        let unit = if self.is_minimax() { 1.0 } else { self.unit };
         for &j in chosen {
-            let per_residual = factor(j) * self.unit;
+            let per_residual = self.factor(j) * self.unit;
             match self.points[j].across() {
                 None => {
                     let [z, x, y] = *cones.next()?;
-                    multipliers.points[j] = z * if minimax { 1.0 } else { self.unit };
+                    multipliers.points[j] = z * unit;
                     forces[j] = [-x * per_residual, -y * per_residual];
                 }
                 Some(n) => {
-                    let (above, below) = (duals.next()?, duals.next()?);
-                    multipliers.points[j] = (above + below) * if minimax { 1.0 } else { self.unit };
+                    let (above, below) = (rows.next()?, rows.next()?);
+                    multipliers.points[j] = (above + below) * unit;
                     forces[j] = n.map(|c| c * (above - below) * per_residual);
                 }
             }
         }
+        Some((multipliers, forces))
+    }
+
+    /// Completes a step by the points' own steps, the squares' own forces, and the objective and lack that the model
+    /// predicts; `gradient` is that of the sum of squares. `None` if a number is not finite.
+    fn predicted(
+        &self,
+        mut step: Step<N>,
+        quadratic: &SMatrix<f64, N, N>,
+        gradient: Option<SVector<f64, N>>,
+    ) -> Option<Step<N>> {
+        let tolerances = self.goal.tolerances().unwrap_or(&[]);
+        let dx = &step.dx;
         let (mut deviation, mut lack) = (0.0_f64, 0.0_f64);
         for (j, point) in self.points.iter().enumerate() {
-            let (r, own) = point.after(&dx, self.tau_limit);
-            tau[j] = self.taken[j] + own;
+            let (r, own) = point.after(dx, self.tau_limit);
+            step.tau.push(self.taken[j] + own);
             if let Some(tolerance) = tolerances.get(j) {
                 deviation = deviation.max(norm(r) / tolerance);
             }
-            if !minimax {
-                forces[j] = [0, 1].map(|axis| forces[j][axis] + 2.0 * point.weight * r[axis]);
+            if !self.is_minimax() {
+                step.forces[j] = [0, 1].map(|axis| step.forces[j][axis] + 2.0 * point.weight * r[axis]);
             }
         }
         for row in &self.rows {
-            let value: f64 = row.gradient.iter().zip(&dx).map(|(g, d)| g * d).sum();
+            let value: f64 = row.gradient.iter().zip(dx).map(|(g, d)| g * d).sum();
             lack = lack.max(-(row.value + value) / self.length);
         }
         let y = SVector::<f64, N>::from_fn(|i, _| dx[i] / self.widths[i]);
         let bent = 0.5 * self.unit * y.dot(&(quadratic * y));
-        let objective = match squares {
+        step.objective = match gradient {
             None => deviation + bent,
             Some(gradient) => {
                 if !tolerances.is_empty() {
@@ -452,11 +490,12 @@ impl<'a, const N: usize> Model<'a, N> {
                         Some(p.weight * (t[0] * p.residual[0] + t[1] * p.residual[1]).powi(2) / t_sq)
                     })
                     .sum();
-                let slope: f64 = gradient.iter().zip(&dx).map(|(g, d)| g * d).sum();
+                let slope: f64 = gradient.iter().zip(dx).map(|(g, d)| g * d).sum();
                 self.objective - along + slope + bent
             }
         };
-        let finite = objective.is_finite() && lack.is_finite() && tau.iter().all(|t| t.is_finite());
-        finite.then_some(Step { dx, tau, objective, lack, reach, multipliers, forces })
+        step.lack = lack;
+        let finite = step.objective.is_finite() && lack.is_finite() && step.tau.iter().all(|t| t.is_finite());
+        finite.then_some(step)
     }
 }

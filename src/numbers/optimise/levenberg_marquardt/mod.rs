@@ -18,11 +18,12 @@
 //! the tangents of a pool are eliminated together, and the pools are determined anew in every step by isotonic
 //! regression (pool adjacent violators, Ayer et al. 1955), see [`super::ordered`]. Inequalities enter by an augmented
 //! Lagrangian (Powell 1969, Hestenes 1969, Rockafellar 1974): a row sqrt(rho) max(0, m_i - g_i) each, with m_i moved
-//! to max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping follows
-//! Nielsen (1999), *Damping parameter in Marquardt's method*.
+//! to max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping is
+//! Nielsen's ([`super::damping`]).
 
 mod system;
 
+use super::damping::{Damping, clamped, moved};
 use super::ordered::Ordered;
 use nalgebra::SVector;
 use system::{Normal, Workspace, assemble, bounded_step};
@@ -38,6 +39,14 @@ pub struct PointBlock<const N: usize> {
     pub tangent: [f64; 2],
     /// The weight w_j.
     pub weight: f64,
+}
+
+impl<const N: usize> PointBlock<N> {
+    /// Returns |t_j|^2.
+    #[inline(always)]
+    pub(super) fn tangent_sq(&self) -> f64 {
+        self.tangent[0] * self.tangent[0] + self.tangent[1] * self.tangent[1]
+    }
 }
 
 /// An inequality g >= 0 with its derivatives.
@@ -69,8 +78,7 @@ impl<const N: usize> ConstraintRow<N> {
         let own = std::mem::replace(&mut self.own, [None; MOST_OWN]);
         for (block, by) in own.into_iter().flatten().filter_map(|(point, by)| Some((blocks.get(point)?, by)))
         {
-            let t = block.tangent;
-            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let (t, t_sq) = (block.tangent, block.tangent_sq());
             if t_sq > 0.0 {
                 let by = by / (t_sq + nu);
                 for (i, slope) in self.gradient.iter_mut().enumerate() {
@@ -194,8 +202,6 @@ pub struct LmResult<const N: usize, S> {
 
 /// The longest step of a point's own unknown, in radians: beyond it the tangent is no approximation.
 const MAX_TAU: f64 = 0.6;
-/// The first damping, relative to the diagonal of the normal matrix.
-const FIRST_DAMPING: f64 = 1e-3;
 /// The part of a step at which its geodesic acceleration is measured.
 const AHEAD: f64 = 0.1;
 /// The largest bend (half the acceleration) relative to the step, in the norm of the normal matrix' diagonal; a
@@ -257,10 +263,7 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     options: &LmOptions,
     stop: &dyn Fn() -> bool,
 ) -> LmResult<N, P::State> {
-    let mut x = start;
-    for (value, &(low, high)) in x.iter_mut().zip(problem.bounds()) {
-        *value = value.max(low).min(high);
-    }
+    let x = clamped(start, problem.bounds());
     let mut shift = Vec::new();
     problem.constraints(&x, &state, &mut |_| shift.push(0.0));
     let unconstrained = shift.is_empty();
@@ -278,7 +281,8 @@ pub fn solve<const N: usize, P: BlockLeastSquares<N>>(
     let mut penalty = Penalty { rho: FIRST_RHO * problem.points() as f64, shift };
     let mut last_violation = f64::INFINITY;
     for round in 0..options.max_rounds.max(1) {
-        inner(problem, &mut result, &penalty, options, stop);
+        let outcome = Inner::new(problem, &mut result, &penalty, options, stop).run();
+        result.outcome = outcome;
         result.violation = violation(problem, &result.x, &result.state);
         if unconstrained || matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned) {
             return result;
@@ -312,147 +316,197 @@ const FIRST_RHO: f64 = 1.0;
 /// The factor by which the penalty weight grows if a round did not reduce the violation to a quarter.
 const RHO_GROWTH: f64 = 8.0;
 
-fn inner<const N: usize, P: BlockLeastSquares<N>>(
-    problem: &P,
-    result: &mut LmResult<N, P::State>,
-    penalty: &Penalty,
-    options: &LmOptions,
-    stop: &dyn Fn() -> bool,
-) {
-    let bounds = *problem.bounds();
-    let mut merit = result.cost + penalty.of(problem, &result.x, &result.state);
-    let mut work = Workspace::new(problem.points());
-    let mut trial_state = result.state.clone();
-    let (mut damping, mut growth) = (FIRST_DAMPING, 2.0);
-    let mut normal: Option<Normal<N>> = None;
-    // The damping of the points' own unknowns follows the shared one: nu = damping * mean |t_j|^2.
-    let (mut nu, mut tangent_sq) = (0.0, 0.0);
-    let (mut quiet, mut slow) = (0, false);
-    for step in 0..options.max_steps {
-        if result.cost <= options.exact_cost
-            && penalty.shift.iter().all(|m| *m == 0.0)
-            && violation(problem, &result.x, &result.state) <= options.feasibility
-        {
-            result.outcome = LmOutcome::Exact;
-            return;
-        }
-        if result.evaluations >= options.max_evaluations {
-            result.outcome = LmOutcome::StepLimit;
-            return;
-        }
-        if stop() || (step == options.max_steps / 2 && result.cost > options.hopeless_cost) {
-            result.outcome = LmOutcome::Abandoned;
-            return;
-        }
-        if normal.is_none() {
-            nu = damping * tangent_sq;
-            match assemble(problem, result, penalty, nu, &mut work) {
-                Some(assembled) => {
-                    tangent_sq = assembled.tangent_sq;
-                    normal = Some(assembled);
-                }
-                None => {
-                    result.outcome = LmOutcome::NoDerivative;
-                    return;
-                }
-            }
-        }
-        let Some(system) = &normal else { return };
-        let Some(dx) = bounded_step(system, &result.x, &bounds, damping) else {
-            damping *= growth;
-            growth *= 2.0;
-            if damping > LAST_DAMPING {
-                result.outcome = LmOutcome::Stalled;
-                return;
-            }
-            continue;
-        };
-        let mut trial = result.x;
-        for i in 0..N {
-            trial[i] = (result.x[i] + dx[i]).max(bounds[i].0).min(bounds[i].1);
-        }
-        let shared = dx.into();
-        work.own_steps_after(&shared, nu, !work.gaps.is_empty());
-        let promised = work.promised(&shared, penalty.rho);
-        let evaluate = |work: &Workspace<N>, trial: &[f64; N], state: &mut P::State| {
-            if !problem.retract(&result.x, &result.state, &work.tau, trial, state) {
-                return None;
-            }
-            if stop() {
-                return None;
-            }
-            if !work.gaps.is_empty() {
-                problem.join(state, work.order.leaders());
-                if !put_in_order(problem, trial, state, &work.stiffness, stop) {
-                    return None;
-                }
-            }
-            problem.cost(trial, state).map(|cost| (cost, cost + penalty.of(problem, trial, state)))
-        };
-        let mut trial_merit = None;
-        let mut evaluations = 0;
-        // Three evaluations at most: the acceleration, the bent step and the straight one.
-        if slow && !work.order.any() && result.evaluations + 3 <= options.max_evaluations {
-            evaluations += 1;
-            if let Some(bent) = bend(problem, result, system, &dx, (damping, nu), &mut work, &mut trial_state)
-            {
-                evaluations += 1;
-                trial_merit = evaluate(&work, &bent, &mut trial_state).filter(|(_, new)| *new < merit);
-                if trial_merit.is_some() {
-                    trial = bent;
-                } else {
-                    work.own_steps_after(&shared, nu, !work.gaps.is_empty());
-                }
-            }
-        }
-        if stop() {
-            result.evaluations += evaluations;
-            result.outcome = LmOutcome::Abandoned;
-            return;
-        }
-        if trial_merit.is_none() {
-            evaluations += 1;
-            trial_merit = evaluate(&work, &trial, &mut trial_state);
-        }
-        result.evaluations += evaluations;
-        match trial_merit {
-            Some((cost, new_merit)) if new_merit < merit => {
-                let gain = (merit - new_merit) / promised.max(f64::MIN_POSITIVE);
-                let reduction = merit - new_merit;
-                result.x = trial;
-                std::mem::swap(&mut result.state, &mut trial_state);
-                result.cost = cost;
-                slow = reduction < SLOW * merit;
-                merit = new_merit;
-                damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
-                damping = damping.max(1e-15);
-                growth = 2.0;
-                normal = None;
-                quiet = if reduction <= options.relative_reduction * merit { quiet + 1 } else { 0 };
-                if quiet >= QUIET_STEPS {
-                    result.outcome = LmOutcome::Converged;
-                    return;
-                }
-            }
-            _ => {
-                if promised <= options.relative_reduction * 1e-3 * merit {
-                    result.outcome = LmOutcome::Converged;
-                    return;
-                }
-                damping *= growth;
-                growth *= 2.0;
-                if damping > LAST_DAMPING {
-                    result.outcome = LmOutcome::Stalled;
-                    return;
-                }
-                // The elimination depends on nu: assemble again where points have unknowns of their own.
-                if system.tangent_sq > 0.0 {
-                    normal = None;
-                }
-            }
+/// An inner solve: the best point so far, the merit (cost and penalty) there, and the state of the step control.
+struct Inner<'a, const N: usize, P: BlockLeastSquares<N>> {
+    problem: &'a P,
+    result: &'a mut LmResult<N, P::State>,
+    penalty: &'a Penalty,
+    options: &'a LmOptions,
+    stop: &'a dyn Fn() -> bool,
+    work: Workspace<N>,
+    trial_state: P::State,
+    merit: f64,
+    damping: Damping,
+    /// The damping of the points' own unknowns, which follows the shared one: nu = damping * mean |t_j|^2.
+    nu: f64,
+    tangent_sq: f64,
+    /// The number of steps in a row with hardly any reduction.
+    quiet: usize,
+    /// Whether the last accepted step was slow.
+    slow: bool,
+}
+
+/// The end of a step with its cost and merit; the points' own unknowns are in [`Inner::trial_state`].
+struct Trial<const N: usize> {
+    x: [f64; N],
+    cost: f64,
+    merit: f64,
+}
+
+impl<'a, const N: usize, P: BlockLeastSquares<N>> Inner<'a, N, P> {
+    fn new(
+        problem: &'a P,
+        result: &'a mut LmResult<N, P::State>,
+        penalty: &'a Penalty,
+        options: &'a LmOptions,
+        stop: &'a dyn Fn() -> bool,
+    ) -> Self {
+        Inner {
+            merit: result.cost + penalty.of(problem, &result.x, &result.state),
+            work: Workspace::new(problem.points()),
+            trial_state: result.state.clone(),
+            damping: Damping::up_to(LAST_DAMPING),
+            nu: 0.0,
+            tangent_sq: 0.0,
+            quiet: 0,
+            slow: false,
+            problem,
+            result,
+            penalty,
+            options,
+            stop,
         }
     }
-    result.outcome = LmOutcome::StepLimit;
+
+    fn run(mut self) -> LmOutcome {
+        let mut normal: Option<Normal<N>> = None;
+        for step in 0..self.options.max_steps {
+            if let Some(outcome) = self.ended(step) {
+                return outcome;
+            }
+            let Some(system) = normal.take().or_else(|| self.assembled()) else {
+                return LmOutcome::NoDerivative;
+            };
+            let bounds = self.problem.bounds();
+            let Some(dx) = bounded_step(&system, &self.result.x, bounds, self.damping.value) else {
+                if self.damping.raise() {
+                    return LmOutcome::Stalled;
+                }
+                normal = Some(system);
+                continue;
+            };
+            let shared = dx.into();
+            self.work.own_steps_after(&shared, self.nu);
+            let promised = self.work.promised(&shared, self.penalty.rho);
+            let bent = self.bent_trial(&system, &dx);
+            if (self.stop)() {
+                return LmOutcome::Abandoned;
+            }
+            match bent.or_else(|| self.trial(moved(&self.result.x, &shared, bounds))) {
+                Some(trial) => {
+                    self.accept(trial, promised);
+                    if self.quiet >= QUIET_STEPS {
+                        return LmOutcome::Converged;
+                    }
+                }
+                None if promised <= self.options.relative_reduction * 1e-3 * self.merit => {
+                    return LmOutcome::Converged;
+                }
+                None if self.damping.raise() => return LmOutcome::Stalled,
+                // The elimination depends on nu: it is assembled again where points have unknowns of their own.
+                None => normal = Some(system).filter(|system| system.tangent_sq <= 0.0),
+            }
+        }
+        LmOutcome::StepLimit
+    }
+
+    /// Returns the outcome of a solve that ends before a step.
+    fn ended(&self, step: usize) -> Option<LmOutcome> {
+        let (result, options) = (&*self.result, self.options);
+        if result.cost <= options.exact_cost
+            && self.penalty.shift.iter().all(|m| *m == 0.0)
+            && violation(self.problem, &result.x, &result.state) <= options.feasibility
+        {
+            return Some(LmOutcome::Exact);
+        }
+        if result.evaluations >= options.max_evaluations {
+            return Some(LmOutcome::StepLimit);
+        }
+        let hopeless = step == options.max_steps / 2 && result.cost > options.hopeless_cost;
+        ((self.stop)() || hopeless).then_some(LmOutcome::Abandoned)
+    }
+
+    /// Assembles the normal equations at the best point with the present damping.
+    fn assembled(&mut self) -> Option<Normal<N>> {
+        self.nu = self.damping.value * self.tangent_sq;
+        let system = assemble(self.problem, self.result, self.penalty, self.nu, &mut self.work)?;
+        self.tangent_sq = system.tangent_sq;
+        Some(system)
+    }
+
+    /// Evaluates the end of a step; `None` if it does not exist or its merit is no better.
+    fn trial(&mut self, x: [f64; N]) -> Option<Trial<N>> {
+        self.result.evaluations += 1;
+        let (problem, work, state) = (self.problem, &self.work, &mut self.trial_state);
+        if !problem.retract(&self.result.x, &self.result.state, &work.tau, &x, state) || (self.stop)() {
+            return None;
+        }
+        if !work.gaps.is_empty() {
+            problem.join(state, work.order.leaders());
+            if !put_in_order(problem, &x, state, &work.stiffness, self.stop) {
+                return None;
+            }
+        }
+        let cost = problem.cost(&x, state)?;
+        let merit = cost + self.penalty.of(problem, &x, state);
+        (merit < self.merit).then_some(Trial { x, cost, merit })
+    }
+
+    /// Evaluates the end of the step bent by its geodesic acceleration, if progress is slow; the points' own steps are
+    /// those of the straight step again if there is no better one.
+    fn bent_trial(&mut self, system: &Normal<N>, dx: &SVector<f64, N>) -> Option<Trial<N>> {
+        // Three evaluations at most: the acceleration, the bent step and the straight one.
+        let allowed = self.result.evaluations + 3 <= self.options.max_evaluations;
+        if !self.slow || self.work.order.any() || !allowed {
+            return None;
+        }
+        self.result.evaluations += 1;
+        let bent = self.bend(system, dx)?;
+        let trial = self.trial(bent);
+        if trial.is_none() {
+            self.work.own_steps_after(&(*dx).into(), self.nu);
+        }
+        trial
+    }
+
+    /// Computes the end of a step bent by half its geodesic acceleration, inside the bounds, and bends the points' own
+    /// steps with it; `None` if the acceleration cannot be measured or is too large.
+    fn bend(&mut self, system: &Normal<N>, dx: &SVector<f64, N>) -> Option<[f64; N]> {
+        let (problem, at, nu) = (self.problem, &*self.result, self.nu);
+        let shared: [f64; N] = (*dx).into();
+        let ahead: [f64; N] = std::array::from_fn(|i| at.x[i] + AHEAD * shared[i]);
+        let own: Vec<f64> = self.work.tau.iter().map(|tau| AHEAD * tau).collect();
+        if !problem.retract(&at.x, &at.state, &own, &ahead, &mut self.trial_state) {
+            return None;
+        }
+        let (mut residuals, mut second) = (Vec::with_capacity(own.len()), Vec::with_capacity(own.len()));
+        if !problem.residuals(&ahead, &self.trial_state, &mut residuals) {
+            return None;
+        }
+        let gradient = self.work.bending(&residuals, &shared, nu, &mut second);
+        let after: [f64; N] = std::array::from_fn(|i| at.x[i] + shared[i]);
+        let bent = Normal { matrix: system.matrix, gradient, tangent_sq: system.tangent_sq };
+        let half = 0.5 * bounded_step(&bent, &after, problem.bounds(), self.damping.value)?;
+        let length = |v: &SVector<f64, N>| (0..N).map(|i| system.matrix[(i, i)] * v[i] * v[i]).sum::<f64>();
+        if length(&half).is_nan() || length(&half) > MOST_BENT * MOST_BENT * length(dx) {
+            return None;
+        }
+        let half = half.into();
+        self.work.bend_own_steps(&half, &second, nu);
+        Some(moved(&after, &half, problem.bounds()))
+    }
+
+    /// Takes a trial as the best point and adapts the damping.
+    fn accept(&mut self, trial: Trial<N>, promised: f64) {
+        let reduction = self.merit - trial.merit;
+        (self.result.x, self.result.cost) = (trial.x, trial.cost);
+        std::mem::swap(&mut self.result.state, &mut self.trial_state);
+        self.slow = reduction < SLOW * self.merit;
+        self.merit = trial.merit;
+        self.damping.accept(reduction / promised.max(f64::MIN_POSITIVE));
+        let hardly = reduction <= self.options.relative_reduction * self.merit;
+        self.quiet = if hardly { self.quiet + 1 } else { 0 };
+    }
 }
 
 /// Pools points that have passed each other in a step after all, because the way back to the curves is not straight;
@@ -488,40 +542,6 @@ fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
         problem.join(state, order.leaders());
     }
     true
-}
-
-/// Computes the end of a step bent by half its geodesic acceleration, inside the bounds, and bends the points' own
-/// steps with it; `None` if the acceleration cannot be measured or is too large.
-fn bend<const N: usize, P: BlockLeastSquares<N>>(
-    problem: &P,
-    at: &LmResult<N, P::State>,
-    system: &Normal<N>,
-    dx: &SVector<f64, N>,
-    (damping, nu): (f64, f64),
-    work: &mut Workspace<N>,
-    scratch: &mut P::State,
-) -> Option<[f64; N]> {
-    let shared: [f64; N] = (*dx).into();
-    let ahead: [f64; N] = std::array::from_fn(|i| at.x[i] + AHEAD * shared[i]);
-    let own: Vec<f64> = work.tau.iter().map(|tau| AHEAD * tau).collect();
-    if !problem.retract(&at.x, &at.state, &own, &ahead, scratch) {
-        return None;
-    }
-    let (mut residuals, mut second) = (Vec::with_capacity(own.len()), Vec::with_capacity(own.len()));
-    if !problem.residuals(&ahead, scratch, &mut residuals) {
-        return None;
-    }
-    let gradient = work.bending(&residuals, &shared, nu, &mut second);
-    let after: [f64; N] = std::array::from_fn(|i| at.x[i] + shared[i]);
-    let bent = Normal { matrix: system.matrix, gradient, tangent_sq: system.tangent_sq };
-    let half = 0.5 * bounded_step(&bent, &after, problem.bounds(), damping)?;
-    let length = |v: &SVector<f64, N>| (0..N).map(|i| system.matrix[(i, i)] * v[i] * v[i]).sum::<f64>();
-    if length(&half).is_nan() || length(&half) > MOST_BENT * MOST_BENT * length(dx) {
-        return None;
-    }
-    work.bend_own_steps(&half.into(), &second, nu);
-    let bounds = problem.bounds();
-    Some(std::array::from_fn(|i| (after[i] + half[i]).max(bounds[i].0).min(bounds[i].1)))
 }
 
 /// The number of steps in a row with hardly any reduction after which a solve counts as converged.

@@ -2,6 +2,7 @@
 //! not pass each other, the geodesic acceleration of a step, and the step inside the bounds.
 
 use super::{AHEAD, BlockLeastSquares, LmResult, MAX_TAU, Penalty, PointBlock};
+use crate::damping::held;
 use crate::ordered::Ordered;
 use nalgebra::{SMatrix, SVector};
 
@@ -40,10 +41,9 @@ impl<const N: usize> Workspace<N> {
     }
 
     /// Computes each point's own step that is best for its present residual.
-    pub(super) fn own_steps(&mut self, nu: f64) {
+    fn own_steps(&mut self, nu: f64) {
         for (j, block) in self.blocks.iter().enumerate() {
-            let t = block.tangent;
-            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let (t, t_sq) = (block.tangent, block.tangent_sq());
             self.stiffness[j] = block.weight * (t_sq + nu);
             self.tau[j] = if t_sq == 0.0 {
                 0.0
@@ -54,24 +54,14 @@ impl<const N: usize> Workspace<N> {
     }
 
     /// Computes each point's own step after a shared step `dx`; pooled points end in one place.
-    pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64, ordered: bool) {
-        let along = |block: &PointBlock<N>| {
-            let mut moved = block.residual;
-            for (value, row) in moved.iter_mut().zip(&block.jacobian) {
-                let mut sum = 0.0;
-                for (by, d) in row.iter().zip(dx) {
-                    sum += by * d;
-                }
-                *value += sum;
-            }
-            block.tangent[0] * moved[0] + block.tangent[1] * moved[1]
-        };
+    pub(super) fn own_steps_after(&mut self, dx: &[f64; N], nu: f64) {
         for (j, block) in self.blocks.iter().enumerate() {
-            let t_sq = block.tangent[0].powi(2) + block.tangent[1].powi(2);
-            self.tau[j] =
-                if t_sq == 0.0 { 0.0 } else { (-along(block) / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
+            let (t, t_sq) = (block.tangent, block.tangent_sq());
+            let moved = |axis: usize| block.residual[axis] + change(0.0, &block.jacobian[axis], dx);
+            let along = t[0] * moved(0) + t[1] * moved(1);
+            self.tau[j] = if t_sq == 0.0 { 0.0 } else { (-along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU) };
         }
-        if ordered {
+        if !self.gaps.is_empty() {
             self.order.pool(&self.gaps, &mut self.tau, &self.stiffness);
         }
     }
@@ -89,18 +79,13 @@ impl<const N: usize> Workspace<N> {
         let mut gradient = SVector::<f64, N>::zeros();
         bend.clear();
         for ((block, tau), r) in self.blocks.iter().zip(&self.tau).zip(ahead) {
-            let t = block.tangent;
-            let mut second = [0.0; 2];
-            for axis in 0..2 {
-                let mut slope = t[axis] * tau;
-                for (by, d) in block.jacobian[axis].iter().zip(dx) {
-                    slope += by * d;
-                }
-                second[axis] = 2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope);
-            }
+            let (t, t_sq) = (block.tangent, block.tangent_sq());
+            let second = [0, 1].map(|axis| {
+                let slope = change(t[axis] * tau, &block.jacobian[axis], dx);
+                2.0 / AHEAD * ((r[axis] - block.residual[axis]) / AHEAD - slope)
+            });
             bend.push(second);
             // The part that the point's own unknown does not take up.
-            let t_sq = t[0] * t[0] + t[1] * t[1];
             let taken = if t_sq > 0.0 { (t[0] * second[0] + t[1] * second[1]) / (t_sq + nu) } else { 0.0 };
             for axis in 0..2 {
                 let left = block.weight * (second[axis] - t[axis] * taken);
@@ -115,19 +100,12 @@ impl<const N: usize> Workspace<N> {
     /// Adds half the geodesic acceleration to the points' own steps.
     pub(super) fn bend_own_steps(&mut self, half: &[f64; N], bend: &[[f64; 2]], nu: f64) {
         for ((block, tau), second) in self.blocks.iter().zip(&mut self.tau).zip(bend) {
-            let t = block.tangent;
-            let t_sq = t[0] * t[0] + t[1] * t[1];
+            let (t, t_sq) = (block.tangent, block.tangent_sq());
             if t_sq == 0.0 {
                 continue;
             }
-            let mut along = 0.0;
-            for axis in 0..2 {
-                let mut moved = 0.5 * second[axis];
-                for (by, d) in block.jacobian[axis].iter().zip(half) {
-                    moved += by * d;
-                }
-                along += t[axis] * moved;
-            }
+            let moved = |axis: usize| change(0.5 * second[axis], &block.jacobian[axis], half);
+            let along = t[0] * moved(0) + t[1] * moved(1);
             *tau = (*tau - along / (t_sq + nu)).clamp(-MAX_TAU, MAX_TAU);
         }
     }
@@ -137,10 +115,7 @@ impl<const N: usize> Workspace<N> {
         let mut promised = 0.0;
         for (block, tau) in self.blocks.iter().zip(&self.tau) {
             for axis in 0..2 {
-                let mut change = block.tangent[axis] * tau;
-                for (by, d) in block.jacobian[axis].iter().zip(dx) {
-                    change += by * d;
-                }
+                let change = change(block.tangent[axis] * tau, &block.jacobian[axis], dx);
                 promised -= block.weight * change * (2.0 * block.residual[axis] + change);
             }
         }
@@ -150,6 +125,12 @@ impl<const N: usize> Workspace<N> {
         }
         promised
     }
+}
+
+/// Returns `from` plus the scalar product of a row and a step, added in the order of the unknowns.
+#[inline(always)]
+fn change<const N: usize>(from: f64, row: &[f64; N], dx: &[f64; N]) -> f64 {
+    row.iter().zip(dx).fold(from, |sum, (by, d)| sum + by * d)
 }
 
 /// The number of lanes in which a sum of products runs.
@@ -188,6 +169,31 @@ impl<const N: usize> Rows<N> {
             }
             residuals[lane] = residual;
         }
+    }
+
+    /// Adds the rows of a point whose own unknown is eliminated: the one across its tangent, and the one along it with
+    /// the weight that is left.
+    #[inline(always)]
+    fn push_point(&mut self, block: &PointBlock<N>, nu: f64) {
+        let (t, t_sq, r, j) = (block.tangent, block.tangent_sq(), &block.residual, &block.jacobian);
+        if t_sq == 0.0 {
+            return self.push_both(block, r);
+        }
+        let length = t_sq.sqrt();
+        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
+        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
+            let scale = (block.weight * weight).sqrt();
+            let axis = [scale * axis[0], scale * axis[1]];
+            self.push(|i| axis[0] * j[0][i] + axis[1] * j[1][i], axis[0] * r[0] + axis[1] * r[1]);
+        }
+    }
+
+    /// Adds both rows of a point with a residual `r`.
+    #[inline(always)]
+    fn push_both(&mut self, block: &PointBlock<N>, r: &[f64; 2]) {
+        let (scale, j) = (block.weight.sqrt(), &block.jacobian);
+        self.push(|i| scale * j[0][i], scale * r[0]);
+        self.push(|i| scale * j[1][i], scale * r[1]);
     }
 
     /// Computes J^T J and J^T r. Each sum runs in [`LANES`] lanes on every machine, so its rounding is the same
@@ -236,6 +242,41 @@ fn add_row<const N: usize>(
     }
 }
 
+/// The common unknown of a pool in the normal equations, which is eliminated: its diagonal entry, its row, and its
+/// right-hand side.
+struct Pool<const N: usize> {
+    stiffness: f64,
+    by_tau: [f64; N],
+    along: f64,
+}
+
+impl<const N: usize> Workspace<N> {
+    /// Adds the rows of all pooled points, r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and
+    /// one tau for a pool.
+    fn push_pools(&mut self) -> Vec<Pool<N>> {
+        let mut eliminated = Vec::new();
+        for members in self.order.pools() {
+            let mut pool = Pool { stiffness: 0.0, by_tau: [0.0; N], along: 0.0 };
+            for &(index, way) in members {
+                let block = &self.blocks[index];
+                let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
+                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
+                self.rows.push_both(block, &r);
+                for (sum, (x, y)) in pool.by_tau.iter_mut().zip(j[0].iter().zip(&j[1])) {
+                    *sum += w * (t[0] * x + t[1] * y);
+                }
+                pool.along += w * (t[0] * r[0] + t[1] * r[1]);
+                pool.stiffness += self.stiffness[index];
+            }
+            if pool.stiffness > 0.0 {
+                eliminated.push(pool);
+            }
+        }
+        eliminated
+    }
+}
+
+/// Assembles the normal equations at a point; `None` if a derivative does not exist or a number is not finite.
 pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
     problem: &P,
     at: &LmResult<N, P::State>,
@@ -255,60 +296,21 @@ pub(super) fn assemble<const N: usize, P: BlockLeastSquares<N>>(
         work.order.pool(&work.gaps, &mut work.tau, &work.stiffness);
     }
     let mut tangent_sum = 0.0;
-    let Workspace { blocks, rows, order, stiffness, .. } = work;
-    rows.clear();
-    for (index, block) in blocks.iter().enumerate() {
-        let t = block.tangent;
-        let t_sq = t[0] * t[0] + t[1] * t[1];
-        tangent_sum += t_sq;
-        if ordered && !order.is_alone(index) {
-            continue;
-        }
-        let (r, j) = (&block.residual, &block.jacobian);
-        if t_sq == 0.0 {
-            let scale = block.weight.sqrt();
-            rows.push(|i| scale * j[0][i], scale * r[0]);
-            rows.push(|i| scale * j[1][i], scale * r[1]);
-            continue;
-        }
-        let length = t_sq.sqrt();
-        let (along, normal) = ([t[0] / length, t[1] / length], [-t[1] / length, t[0] / length]);
-        for (axis, weight) in [(normal, 1.0), (along, nu / (t_sq + nu))] {
-            let scale = (block.weight * weight).sqrt();
-            let axis = [scale * axis[0], scale * axis[1]];
-            rows.push(|i| axis[0] * j[0][i] + axis[1] * j[1][i], axis[0] * r[0] + axis[1] * r[1]);
+    work.rows.clear();
+    for (index, block) in work.blocks.iter().enumerate() {
+        tangent_sum += block.tangent_sq();
+        if !ordered || work.order.is_alone(index) {
+            work.rows.push_point(block, nu);
         }
     }
-    let mut eliminated = Vec::new();
-    if ordered {
-        for pool in order.pools() {
-            // r_j + t_j m_j + J_j dx + t_j tau with the step m_j to the common place and one tau for all.
-            let mut by_tau = [0.0; N];
-            let (mut along, mut stiff) = (0.0, 0.0);
-            for &(index, way) in pool {
-                let block = &blocks[index];
-                let (t, j, w) = (block.tangent, &block.jacobian, block.weight);
-                let r = [block.residual[0] + t[0] * way, block.residual[1] + t[1] * way];
-                let scale = w.sqrt();
-                rows.push(|i| scale * j[0][i], scale * r[0]);
-                rows.push(|i| scale * j[1][i], scale * r[1]);
-                for i in 0..N {
-                    by_tau[i] += w * (t[0] * j[0][i] + t[1] * j[1][i]);
-                }
-                along += w * (t[0] * r[0] + t[1] * r[1]);
-                stiff += stiffness[index];
-            }
-            if stiff > 0.0 {
-                eliminated.push((stiff, by_tau, along));
-            }
-        }
-    }
+    let eliminated = if ordered { work.push_pools() } else { Vec::new() };
+    let rows = &work.rows;
     let (mut matrix, mut gradient) = problem.wide(
         #[inline(always)]
         || rows.squared(),
     );
-    for (stiff, by_tau, along) in &eliminated {
-        add_row(&mut matrix, &mut gradient, -1.0 / stiff, by_tau, *along);
+    for pool in &eliminated {
+        add_row(&mut matrix, &mut gradient, -1.0 / pool.stiffness, &pool.by_tau, pool.along);
     }
     let mut i = 0;
     work.lacking.clear();
@@ -340,14 +342,10 @@ pub(super) fn bounded_step<const N: usize>(
 ) -> Option<SVector<f64, N>> {
     let mut damped = system.matrix;
     let diagonal_max = (0..N).map(|i| damped[(i, i)]).fold(f64::MIN_POSITIVE, f64::max);
-    let mut held = [false; N];
+    let mut held = held(x, bounds, &system.gradient.into());
     let mut dx = SVector::<f64, N>::zeros();
     for i in 0..N {
-        let (low, high) = bounds[i];
-        held[i] = low == high
-            || damped[(i, i)] == 0.0
-            || (x[i] <= low && system.gradient[i] >= 0.0)
-            || (x[i] >= high && system.gradient[i] <= 0.0);
+        held[i] |= damped[(i, i)] == 0.0;
         damped[(i, i)] += damping * damped[(i, i)].max(1e-10 * diagonal_max);
     }
     for _ in 0..=N {

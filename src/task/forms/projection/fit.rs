@@ -17,66 +17,15 @@
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex, turned};
+use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
 use crate::task::forms::design_space::{Shape, unit};
 use std::array::from_fn;
 
-/// A column of complex numbers.
-#[derive(Clone, Debug)]
-struct Column([Vec<f64>; 2]);
-
-type Pair = [F64x8; 2];
-
-impl Column {
-    fn new(n: usize) -> Self {
-        Column([vec![0.0; n], vec![0.0; n]])
-    }
-    #[inline(always)]
-    fn load(&self, at: usize) -> Pair {
-        [F64x8::load(&self.0[0], at), F64x8::load(&self.0[1], at)]
-    }
-    #[inline(always)]
-    fn store(&mut self, at: usize, value: Pair) {
-        value[0].store(&mut self.0[0], at);
-        value[1].store(&mut self.0[1], at);
-    }
-}
-
-#[inline(always)]
-fn splat(z: Complex) -> Pair {
-    [F64x8::splat(z.re), F64x8::splat(z.im)]
-}
-#[inline(always)]
-fn add(x: Pair, y: Pair) -> Pair {
-    [x[0] + y[0], x[1] + y[1]]
-}
-#[inline(always)]
-fn sub(x: Pair, y: Pair) -> Pair {
-    [x[0] - y[0], x[1] - y[1]]
-}
-#[inline(always)]
-fn mul(x: Pair, y: Pair) -> Pair {
-    [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]]
-}
-#[inline(always)]
-fn scale(x: Pair, by: F64x8) -> Pair {
-    [x[0] * by, x[1] * by]
-}
-/// Returns conj(x) y.
-#[inline(always)]
-fn dot(x: Pair, y: Pair) -> Pair {
-    [x[0] * y[0] + x[1] * y[1], x[0] * y[1] - x[1] * y[0]]
-}
-#[inline(always)]
-fn norm_sqr(x: Pair) -> F64x8 {
-    x[0] * x[0] + x[1] * x[1]
-}
-#[inline(always)]
-fn total(x: Pair) -> Complex {
-    Complex::new(x[0].sum(), x[1].sum())
-}
+/// A column of complex numbers: real parts and imaginary parts.
+type Column = [Vec<f64>; 2];
 
 /// The physical solution at a point of the reduced form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,7 +90,7 @@ impl<'a> ProjectedFit<'a> {
     /// Creates the fit on an assembly.
     pub fn new(form: &'a Projection, assembly: AssemblyMode) -> Self {
         let n = form.columns.weight.len();
-        let column = || Column::new(n);
+        let column = || [vec![0.0; n], vec![0.0; n]];
         ProjectedFit {
             form,
             assembly,
@@ -194,31 +143,30 @@ impl<'a> ProjectedFit<'a> {
     fn place(&mut self, [p, q, r]: [f64; 3], turn: Complex) -> Option<[Complex; 2]> {
         let c = &self.form.columns;
         let s = F64x8::splat;
-        let (turn, p_, q_sq) = (splat(turn), s(p), s(q * q));
+        let (turn, p_, q_sq) = (ComplexLanes::splat(turn), s(p), s(q * q));
         let half = s(0.5 * (q * q - r * r));
         let (by_q, t) = (s(1.0 / q), s(self.assembly.sign()));
-        let zero = splat(Complex::new(0.0, 0.0));
+        let zero = ComplexLanes::ZERO;
         let (mut gap, mut e_sum, mut u_sum) = (s(f64::INFINITY), zero, zero);
         for at in (0..c.weight.len()).step_by(LANES) {
-            let phase = [F64x8::load(&c.phase[0], at), F64x8::load(&c.phase[1], at)];
-            let e = mul(phase, turn);
-            let w = [s(1.0) - p_ * e[0], -(p_ * e[1])];
-            let f2 = norm_sqr(w);
+            let e = ComplexLanes::load(&c.phase, at) * turn;
+            let w = ComplexLanes { re: s(1.0) - p_ * e.re, im: -(p_ * e.im) };
+            let f2 = w.norm_sq();
             let sigma = half + s(0.5) * f2;
             let height_sq = q_sq * f2 - sigma * sigma;
             gap = height_sq.min(gap);
             let height = t * height_sq.positive_part().sqrt();
             let by = f2.recip() * by_q;
-            let u = scale(mul(w, [sigma, height]), by);
+            let u = (w * ComplexLanes { re: sigma, im: height }).scale(by);
             let weight = F64x8::load(&c.weight, at);
-            e_sum = add(e_sum, scale(e, weight));
-            u_sum = add(u_sum, scale(u, weight));
-            self.e.store(at, e);
-            self.u.store(at, u);
+            e_sum = e_sum + e.scale(weight);
+            u_sum = u_sum + u.scale(weight);
+            e.store(&mut self.e, at);
+            u.store(&mut self.u, at);
             height.recip().store(&mut self.by_height, at);
         }
         let open = gap.0.iter().any(|gap| gap.is_nan() || *gap <= 0.0);
-        let sums = [total(e_sum), total(u_sum)];
+        let sums = [e_sum.sum(), u_sum.sum()];
         (!open && sums.iter().all(|z| z.re.is_finite() && z.im.is_finite())).then_some(sums)
     }
 
@@ -231,42 +179,42 @@ impl<'a> ProjectedFit<'a> {
         let c = &form.columns;
         let s = F64x8::splat;
         let n = c.weight.len();
-        let zero = splat(Complex::new(0.0, 0.0));
+        let zero = ComplexLanes::ZERO;
         let centred = form.centred();
         let back = if form.measured_from_b() { 1.0 / ratio[0] } else { 0.0 };
         let (u_mean, a_mean) =
             if centred { (u_sum, e_sum) } else { (Complex::new(0.0, 0.0), Complex::new(back, 0.0)) };
-        let (u_mean, a_mean) = (splat(u_mean), splat(a_mean));
+        let (u_mean, a_mean) = (ComplexLanes::splat(u_mean), ComplexLanes::splat(a_mean));
         let (mut u_sq, mut a_raw, mut u_a, mut u_t) = (s(0.0), s(0.0), zero, zero);
         for at in (0..n).step_by(LANES) {
             let root = F64x8::load(&c.root_weight, at);
-            let u = scale(sub(self.u.load(at), u_mean), root);
-            let a = scale(sub(self.e.load(at), a_mean), root);
-            let target = scale([F64x8::load(&c.target[0], at), F64x8::load(&c.target[1], at)], root);
-            u_sq = u_sq + norm_sqr(u);
-            a_raw = a_raw + norm_sqr(a);
-            u_a = add(u_a, dot(u, a));
-            u_t = add(u_t, dot(u, target));
-            self.u_off.store(at, u);
-            self.a_off.store(at, a);
-            self.rest.store(at, target);
+            let u = (ComplexLanes::load(&self.u, at) - u_mean).scale(root);
+            let a = (ComplexLanes::load(&self.e, at) - a_mean).scale(root);
+            let target = ComplexLanes::load(&c.target, at).scale(root);
+            u_sq = u_sq + u.norm_sq();
+            a_raw = a_raw + a.norm_sq();
+            u_a = u_a + u.dot(a);
+            u_t = u_t + u.dot(target);
+            u.store(&mut self.u_off, at);
+            a.store(&mut self.a_off, at);
+            target.store(&mut self.rest, at);
         }
-        let (u_sq, a_raw, u_a, u_t) = (u_sq.sum(), a_raw.sum(), total(u_a), total(u_t));
+        let (u_sq, a_raw, u_a, u_t) = (u_sq.sum(), a_raw.sum(), u_a.sum(), u_t.sum());
         if u_sq.is_nan() || u_sq <= SINGULAR {
             return None;
         }
-        let (along_a, along_t) = (splat(u_a / u_sq), splat(u_t / u_sq));
+        let (along_a, along_t) = (ComplexLanes::splat(u_a / u_sq), ComplexLanes::splat(u_t / u_sq));
         let (mut a_sq, mut a_t) = (s(0.0), zero);
         for at in (0..n).step_by(LANES) {
-            let u = self.u_off.load(at);
-            let a = sub(self.a_off.load(at), mul(u, along_a));
-            let rest = sub(self.rest.load(at), mul(u, along_t));
-            a_sq = a_sq + norm_sqr(a);
-            a_t = add(a_t, dot(a, rest));
-            self.a_off.store(at, a);
-            self.rest.store(at, rest);
+            let u = ComplexLanes::load(&self.u_off, at);
+            let a = ComplexLanes::load(&self.a_off, at) - u * along_a;
+            let rest = ComplexLanes::load(&self.rest, at) - u * along_t;
+            a_sq = a_sq + a.norm_sq();
+            a_t = a_t + a.dot(rest);
+            a.store(&mut self.a_off, at);
+            rest.store(&mut self.rest, at);
         }
-        let (a_sq, a_t) = (a_sq.sum(), total(a_t));
+        let (a_sq, a_t) = (a_sq.sum(), a_t.sum());
         let singular = a_sq.is_nan() || a_sq <= SINGULAR * a_raw;
         let (free, column) = match form.ground {
             GroundKnown::Both(length) => (direction * (ratio[0] * length), KColumn::Known),
@@ -293,12 +241,12 @@ impl<'a> ProjectedFit<'a> {
         if k.norm_sqr().is_nan() || k.norm_sqr() <= 0.0 {
             return None;
         }
-        let k_ = splat(k);
+        let k_ = ComplexLanes::splat(k);
         let mut cost = s(0.0);
         for at in (0..n).step_by(LANES) {
-            let rest = sub(self.rest.load(at), mul(self.a_off.load(at), k_));
-            cost = cost + norm_sqr(rest);
-            self.rest.store(at, rest);
+            let rest = ComplexLanes::load(&self.rest, at) - ComplexLanes::load(&self.a_off, at) * k_;
+            cost = cost + rest.norm_sq();
+            rest.store(&mut self.rest, at);
         }
         let z = (u_t - u_a * k) / u_sq;
         self.linear = Some(Linear { ratio, turn, column, slope, e_sum, u_sum, u_sq, a_sq, k, z });
@@ -314,8 +262,8 @@ impl<'a> ProjectedFit<'a> {
         let s = F64x8::splat;
         let n = c.weight.len();
         let [p, q, r] = at.ratio;
-        let zero = splat(Complex::new(0.0, 0.0));
-        let i_z = splat(turned(at.z));
+        let zero = ComplexLanes::ZERO;
+        let i_z = ComplexLanes::splat(turned(at.z));
         let (k, i_k) = (at.k, turned(at.k));
         let from_b = form.measured_from_b();
         let nothing = Complex::new(0.0, 0.0);
@@ -333,9 +281,9 @@ impl<'a> ProjectedFit<'a> {
         };
         let angle_by_e = i_k * (on_e + on_a);
         let angle_constant = if from_b { -i_k * (on_a / p) } else { nothing };
-        let [e_p, e_q, e_r] = by_ratio.map(splat);
-        let [c_p, c_q, c_r] = ratio_constant.map(splat);
-        let (e_angle, c_angle) = (splat(angle_by_e), splat(angle_constant));
+        let [e_p, e_q, e_r] = by_ratio.map(ComplexLanes::splat);
+        let [c_p, c_q, c_r] = ratio_constant.map(ComplexLanes::splat);
+        let (e_angle, c_angle) = (ComplexLanes::splat(angle_by_e), ComplexLanes::splat(angle_constant));
         let (p_, q_, r_sq) = (s(p), s(q), s(r * r));
         let angle_free = form.role != AngleRole::None;
         let sense = s(sense);
@@ -343,63 +291,67 @@ impl<'a> ProjectedFit<'a> {
         let mut on_u = [zero; UNKNOWNS];
         let mut on_a = [zero; UNKNOWNS];
         for at in (0..n).step_by(LANES) {
-            let (e, u) = (self.e.load(at), self.u.load(at));
+            let (e, u) = (ComplexLanes::load(&self.e, at), ComplexLanes::load(&self.u, at));
             let root = F64x8::load(&c.root_weight, at);
-            let pe = scale(e, p_);
-            let v = [pe[0] + q_ * u[0] - s(1.0), pe[1] + q_ * u[1]];
+            let pe = e.scale(p_);
+            let v = ComplexLanes { re: pe.re + q_ * u.re - s(1.0), im: pe.im + q_ * u.im };
             // k of the equations.
             let by = -F64x8::load(&self.by_height, at);
-            let by_p = by * (v[0] * pe[0] + v[1] * pe[1]);
-            let by_phi = by * (v[1] * pe[0] - v[0] * pe[1]);
-            let by_q = by * q_ * (v[0] * u[0] + v[1] * u[1]);
+            let by_p = by * (v.re * pe.re + v.im * pe.im);
+            let by_phi = by * (v.im * pe.re - v.re * pe.im);
+            let by_q = by * q_ * (v.re * u.re + v.im * u.im);
             let by_r = -(by * r_sq);
-            let turning = mul(i_z, u);
-            let with =
-                |by: F64x8, on_e: Pair, constant: Pair| add(scale(turning, by), add(mul(on_e, e), constant));
+            let turning = i_z * u;
+            let with = |by, on_e: ComplexLanes, constant| turning.scale(by) + (on_e * e + constant);
             let moved = [
                 with(by_p, e_p, c_p),
                 with(by_q, e_q, c_q),
                 with(by_r, e_r, c_r),
                 with(by_phi * sense, e_angle, c_angle),
             ];
-            let (u_off, a_off) = (self.u_off.load(at), self.a_off.load(at));
+            let (u_off, a_off) = (ComplexLanes::load(&self.u_off, at), ComplexLanes::load(&self.a_off, at));
             for x in 0..UNKNOWNS {
                 if x == 3 && !angle_free {
                     continue;
                 }
-                let m = scale(moved[x], root);
-                mean[x] = add(mean[x], scale(m, root));
-                on_u[x] = add(on_u[x], dot(u_off, m));
-                on_a[x] = add(on_a[x], dot(a_off, m));
-                self.moved[x].store(at, m);
+                let m = moved[x].scale(root);
+                mean[x] = mean[x] + m.scale(root);
+                on_u[x] = on_u[x] + u_off.dot(m);
+                on_a[x] = on_a[x] + a_off.dot(m);
+                m.store(&mut self.moved[x], at);
             }
         }
         let mut off = [[zero; 3]; UNKNOWNS];
         for x in 0..UNKNOWNS {
-            let along_a = total(on_a[x]) / at.a_sq;
+            let along_a = on_a[x].sum() / at.a_sq;
             let along_a = match at.column {
                 KColumn::Complex => along_a,
                 KColumn::Real(direction) => direction * (direction.conj() * along_a).re,
                 KColumn::Known => nothing,
             };
-            let centre = if form.centred() { total(mean[x]) } else { nothing };
-            off[x] = [splat(centre), splat(total(on_u[x]) / at.u_sq), splat(along_a)];
+            let centre = if form.centred() { mean[x].sum() } else { nothing };
+            off[x] = [
+                ComplexLanes::splat(centre),
+                ComplexLanes::splat(on_u[x].sum() / at.u_sq),
+                ComplexLanes::splat(along_a),
+            ];
         }
         let unknowns = if angle_free { UNKNOWNS } else { UNKNOWNS - 1 };
         let mut matrix = [[s(0.0); UNKNOWNS]; UNKNOWNS];
         let mut gradient = [s(0.0); UNKNOWNS];
         for at in (0..n).step_by(LANES) {
             let root = F64x8::load(&c.root_weight, at);
-            let (u_off, a_off, rest) = (self.u_off.load(at), self.a_off.load(at), self.rest.load(at));
+            let [u_off, a_off, rest] =
+                [&self.u_off, &self.a_off, &self.rest].map(|column| ComplexLanes::load(column, at));
             let mut off_m = [zero; UNKNOWNS];
             for x in 0..unknowns {
                 let [centre, along_u, along_a] = off[x];
-                let m = sub(self.moved[x].load(at), scale(centre, root));
-                let m = sub(sub(m, mul(u_off, along_u)), mul(a_off, along_a));
-                gradient[x] = gradient[x] + (m[0] * rest[0] + m[1] * rest[1]);
+                let m = ComplexLanes::load(&self.moved[x], at) - centre.scale(root);
+                let m = m - u_off * along_u - a_off * along_a;
+                gradient[x] = gradient[x] + (m.re * rest.re + m.im * rest.im);
                 off_m[x] = m;
                 for (sum, other) in matrix[x].iter_mut().zip(&off_m).take(x + 1) {
-                    *sum = *sum + (m[0] * other[0] + m[1] * other[1]);
+                    *sum = *sum + (m.re * other.re + m.im * other.im);
                 }
             }
         }

@@ -15,6 +15,7 @@
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex};
+use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 
@@ -56,68 +57,29 @@ impl Batch {
     }
 }
 
-/// A complex number per lane.
-#[derive(Clone, Copy)]
-struct Pair<L> {
-    re: L,
-    im: L,
-}
-
-impl<L: Lane> Pair<L> {
-    #[inline(always)]
-    fn splat(z: Complex) -> Self {
-        Pair { re: L::splat(z.re), im: L::splat(z.im) }
-    }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Pair { re: self.re + other.re, im: self.im + other.im }
-    }
-    #[inline(always)]
-    fn minus(self, other: Self) -> Self {
-        Pair { re: self.re - other.re, im: self.im - other.im }
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        Pair { re: self.re * other.re - self.im * other.im, im: self.re * other.im + self.im * other.re }
-    }
-    /// Returns conj(self) other.
-    #[inline(always)]
-    fn dot(self, other: Self) -> Self {
-        Pair { re: self.re * other.re + self.im * other.im, im: self.re * other.im - self.im * other.re }
-    }
-    #[inline(always)]
-    fn scaled(self, by: L) -> Self {
-        Pair { re: self.re * by, im: self.im * by }
-    }
-    #[inline(always)]
-    fn norm_sqr(self) -> L {
-        self.re * self.re + self.im * self.im
-    }
-}
-
 /// The sums of one assembly.
 #[derive(Clone, Copy)]
 struct Sums<L> {
     /// The sum of w u.
-    u: Pair<L>,
+    u: ComplexLanes<L>,
     /// The sum of w conj(phase) u.
-    phase_u: Pair<L>,
+    phase_u: ComplexLanes<L>,
     /// The sum of w conj(u) T.
-    u_target: Pair<L>,
+    u_target: ComplexLanes<L>,
 }
 
 impl<L: Lane> Sums<L> {
     #[inline(always)]
     fn zero() -> Self {
-        let zero = Pair { re: L::splat(0.0), im: L::splat(0.0) };
+        let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
         Sums { u: zero, phase_u: zero, u_target: zero }
     }
 
     #[inline(always)]
-    fn add(&mut self, u: Pair<L>, weight: L, phase: Pair<L>, target: Pair<L>) {
-        self.u = self.u.plus(u.scaled(weight));
-        self.phase_u = self.phase_u.plus(phase.dot(u));
-        self.u_target = self.u_target.plus(u.dot(target));
+    fn add(&mut self, u: ComplexLanes<L>, weight: L, phase: ComplexLanes<L>, target: ComplexLanes<L>) {
+        self.u = self.u + u.scale(weight);
+        self.phase_u = self.phase_u + phase.dot(u);
+        self.u_target = self.u_target + u.dot(target);
     }
 }
 
@@ -125,9 +87,9 @@ impl<L: Lane> Sums<L> {
 struct Drawn<L> {
     ratio: [L; 3],
     /// The turn e^{i turn}: the crank from the ground line against the prescribed angle.
-    turn: Pair<L>,
+    turn: ComplexLanes<L>,
     /// The ground's direction e^{i theta}.
-    direction: Pair<L>,
+    direction: ComplexLanes<L>,
 }
 
 impl Projection {
@@ -151,8 +113,7 @@ impl Projection {
                     }
                     computed(2 * LANES * self.points);
                     let ratio = [0, 1, 2].map(|k| F64x8::load(&batch.ratio[k], at));
-                    let angle =
-                        Pair { re: F64x8::load(&batch.angle[0], at), im: F64x8::load(&batch.angle[1], at) };
+                    let angle = ComplexLanes::load(&batch.angle, at);
                     let [p, m] = self.cost_of(&self.drawn(ratio, angle));
                     p.store(plus, at);
                     m.store(minus, at);
@@ -172,16 +133,16 @@ impl Projection {
     /// Returns the cost of [`Projection::screen`] for a single draw, in scalar arithmetic: the same bits.
     pub fn screen_one(&self, x: &Reduced, assembly: AssemblyMode) -> f64 {
         let ratio = [0, 1, 2].map(|k: usize| x[k].exp());
-        let angle = Pair { re: x[3].cos(), im: x[3].sin() };
+        let angle = ComplexLanes { re: x[3].cos(), im: x[3].sin() };
         let [plus, minus] = self.cost_of::<f64>(&self.drawn(ratio, angle));
         if assembly == AssemblyMode::Plus { plus } else { minus }
     }
 
     #[inline(always)]
-    fn drawn<L: Lane>(&self, ratio: [L; 3], angle: Pair<L>) -> Drawn<L> {
+    fn drawn<L: Lane>(&self, ratio: [L; 3], angle: ComplexLanes<L>) -> Drawn<L> {
         use super::AngleRole;
-        let known = |angle: f64| Pair::splat(Complex::from_polar(1.0, angle));
-        let back = Pair { re: angle.re, im: -angle.im };
+        let known = |angle: f64| ComplexLanes::splat(Complex::from_polar(1.0, angle));
+        let back = ComplexLanes { re: angle.re, im: -angle.im };
         let (turn, direction) = match self.role {
             AngleRole::None => (known(self.turn), known(self.theta)),
             AngleRole::Crank => (angle, known(self.theta)),
@@ -204,18 +165,18 @@ impl Projection {
             let phase = Complex::new(c.phase[0][j], c.phase[1][j]);
             let target = Complex::new(c.target[0][j], c.target[1][j]);
             let weight = c.weight[j];
-            let e = Pair::splat(phase).times(drawn.turn);
-            let w = Pair { re: s(1.0) - p * e.re, im: -(p * e.im) };
-            let f2 = w.norm_sqr();
+            let e = ComplexLanes::splat(phase) * drawn.turn;
+            let w = ComplexLanes { re: s(1.0) - p * e.re, im: -(p * e.im) };
+            let f2 = w.norm_sq();
             let sigma = half + s(0.5) * f2;
             let height_sq = q_sq * f2 - sigma * sigma;
             gap = height_sq.min(gap);
             let root = height_sq.positive_part().sqrt();
-            let v = w.scaled(f2.recip());
-            let (along, across) = (v.scaled(sigma), v.scaled(root));
-            let up = Pair { re: along.re - across.im, im: along.im + across.re };
-            let down = Pair { re: along.re + across.im, im: along.im - across.re };
-            let (phase, target) = (Pair::splat(phase * weight), Pair::splat(target * weight));
+            let v = w.scale(f2.recip());
+            let (along, across) = (v.scale(sigma), v.scale(root));
+            let up = ComplexLanes { re: along.re - across.im, im: along.im + across.re };
+            let down = ComplexLanes { re: along.re + across.im, im: along.im - across.re };
+            let (phase, target) = (ComplexLanes::splat(phase * weight), ComplexLanes::splat(target * weight));
             sums[0].add(up, s(weight), phase, target);
             sums[1].add(down, s(weight), phase, target);
         }
@@ -227,14 +188,14 @@ impl Projection {
         let s = L::splat;
         let [p, q, _] = drawn.ratio;
         let q_sq = q * q;
-        let turned_sum = drawn.turn.times(Pair::splat(self.phase_sum));
+        let turned_sum = drawn.turn * ComplexLanes::splat(self.phase_sum);
         let raw_au = drawn.turn.dot(sums.phase_u);
-        let raw_at = drawn.turn.dot(Pair::splat(self.phase_target));
+        let raw_at = drawn.turn.dot(ComplexLanes::splat(self.phase_target));
         let (m_aa, m_au, m_uu, r_a) = match self.origin {
             Origin::Mean(_) => (
-                s(1.0) - turned_sum.norm_sqr(),
-                raw_au.minus(turned_sum.dot(sums.u)),
-                q_sq - sums.u.norm_sqr(),
+                s(1.0) - turned_sum.norm_sq(),
+                raw_au - turned_sum.dot(sums.u),
+                q_sq - sums.u.norm_sq(),
                 raw_at,
             ),
             Origin::CrankPivot(_) => (s(1.0), raw_au, q_sq, raw_at),
@@ -242,18 +203,18 @@ impl Projection {
                 let back = p.recip();
                 (
                     s(1.0) + back * back - s(2.0) * back * turned_sum.re,
-                    raw_au.minus(sums.u.scaled(back)),
+                    raw_au - sums.u.scale(back),
                     q_sq,
-                    raw_at.minus(Pair::splat(self.target_sum).scaled(back)),
+                    raw_at - ComplexLanes::splat(self.target_sum).scale(back),
                 )
             }
         };
         let by_u = m_uu.recip();
-        let left = m_aa - m_au.norm_sqr() * by_u;
-        let right = r_a.minus(m_au.times(sums.u_target).scaled(by_u));
-        let rest = s(self.target_sq) - sums.u_target.norm_sqr() * by_u;
+        let left = m_aa - m_au.norm_sq() * by_u;
+        let right = r_a - (m_au * sums.u_target).scale(by_u);
+        let rest = s(self.target_sq) - sums.u_target.norm_sq() * by_u;
         let along = match self.ground {
-            GroundKnown::Nothing => right.norm_sqr().sqrt(),
+            GroundKnown::Nothing => right.norm_sq().sqrt(),
             GroundKnown::Direction | GroundKnown::Both(_) => drawn.direction.dot(right).re,
         };
         let length = match self.ground {
