@@ -1,7 +1,7 @@
 //! An analysis as text: the mobility in words, and the tables of positions, motion and methods.
 
 use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{clean, significant, wrapped};
+use super::text::{capitalised, clean, significant, wrapped};
 use crate::mechanism::Unit;
 use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Row, Status};
 use crate::mechanism::four_bar::transmission::ForceTransmission;
@@ -162,11 +162,6 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
         words.push_str(" The two fixed pivots coincide.");
     }
     wrapped("  ", "  ", &words, COLUMNS)
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn plain(text: String) -> (String, Ink) {

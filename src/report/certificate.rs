@@ -2,7 +2,7 @@
 
 use super::grid::{Colour, Ink};
 use super::table::COLUMNS;
-use super::text::{at_most, clean, clean_sentence, grouped, percent_up, significant, wrapped};
+use super::text::{at_most, capitalised, clean, clean_sentence, grouped, percent_up, significant, wrapped};
 use crate::record::{Certificate, CertificatePart, Record, Repeats};
 
 /// The largest gap with which a best answer is called a proved optimum.
@@ -50,10 +50,7 @@ pub fn repeats_text(repeats: &Repeats) -> String {
 
 /// Returns the reason why there is no certificate, as a sentence.
 pub(super) fn reason(why: &str) -> String {
-    let why = clean_sentence(why);
-    let mut letters = why.chars();
-    let capital = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
-    format!("{}.", capital.trim_end_matches('.'))
+    format!("{}.", capitalised(&clean_sentence(why)).trim_end_matches('.'))
 }
 
 /// Returns `Proved optimum: no linkage that the proof covers is better by more than 0.01 %`, or the state of an open

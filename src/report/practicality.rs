@@ -1,7 +1,7 @@
 //! The practicality of a linkage as text: layers, distances, sensitivities.
 
 use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{brief, significant, wrapped};
+use super::text::{brief, capitalised, significant, wrapped};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
@@ -293,9 +293,4 @@ fn at(closest: &Closest) -> String {
 pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
     format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -230,6 +230,12 @@ fn columns_of_char(c: char) -> usize {
     }
 }
 
+/// Returns the text with a capital first letter.
+pub(super) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Returns cleaned foreign text as XML character data or attribute value.
 ///
 /// ```
