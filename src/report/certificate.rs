@@ -1,8 +1,9 @@
 //! The certificate of a result, and the number of times its best answer was found, in words.
 
 use super::grid::{Colour, Ink};
-use super::table::COLUMNS;
-use super::text::{at_most, capitalised, clean, clean_sentence, grouped, percent_up, significant, wrapped};
+use super::text::{
+    COLUMNS, at_most, capitalised, clean, clean_sentence, grouped, percent_up, significant, wrapped,
+};
 use crate::record::{Certificate, CertificatePart, Record, Repeats};
 
 /// The largest gap with which a best answer is called a proved optimum.

@@ -1,8 +1,8 @@
 //! The linkages through nine points (exact synthesis), in words and as a table.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::table::COLUMNS;
-use super::text::{clean, grouped, shortened, significant, wrapped};
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain, verdict};
+use super::text::{COLUMNS, clean, grouped, shortened, significant, wrapped};
 use super::words;
 use crate::mechanism::AssemblyMode;
 use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
@@ -216,36 +216,27 @@ pub(super) fn others(linkage: &ExactLinkage) -> Vec<String> {
 }
 
 fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
-    use Align::{Left, Right};
     let mut grid = Grid::new(&[
-        ("", Right),
-        ("#", Right),
-        ("curve", Left),
-        ("type", Left),
-        ("t1", Left),
-        ("defects", Left),
-        ("transmission", Right),
-        ("ratio", Right),
-        ("radius", Right),
-        ("verdict", Left),
+        (Right, &["", "#"]),
+        (Left, &["curve", "type", "t1", "defects"]),
+        (Right, &["transmission", "ratio", "radius"]),
+        (Left, &["verdict"]),
     ]);
     for (i, linkage) in linkages.iter().enumerate() {
-        let plain = |text: String| (text, Ink::Plain);
         let signs = linkage.t1_at.iter().take(COLUMNS / 4);
-        let signs = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
-        let ink = if linkage.accepted { Ink::Good } else { Ink::Bad };
+        let signs: String = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
         let others = others(linkage);
-        let verdict = match (linkage.accepted, others.as_slice()) {
+        let said = match (linkage.accepted, others.as_slice()) {
             (true, _) => "accepted".to_owned(),
             (false, []) => "no".to_owned(),
             (false, [only]) => format!("no: {only}"),
             (false, [first, rest @ ..]) => format!("no: {first} +{}", rest.len()),
         };
-        grid.row(vec![
+        grid.row([
             plain((i + 1).to_string()),
             (if linkage.rank > 0 { format!("#{}", linkage.rank) } else { String::new() }, Ink::Strong),
-            plain(ability(linkage).to_owned()),
-            plain(linkage.linkage_type.name().to_owned()),
+            plain(ability(linkage)),
+            plain(linkage.linkage_type.name()),
             plain(signs),
             plain(defects(linkage)),
             plain(format!("{}°", significant(linkage.transmission_worst_deg, 3))),
@@ -253,7 +244,7 @@ fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
             plain(linkage.certified.map_or("no proof".to_owned(), |c| {
                 format!("{}{}", significant(c.radius, 1), words::unit_suffix(record))
             })),
-            (shortened(&verdict, 22), ink),
+            verdict(shortened(&said, 22), linkage.accepted),
         ]);
     }
     grid.render(colour)

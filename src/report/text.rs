@@ -256,6 +256,21 @@ pub fn xml(text: &str) -> String {
     escaped
 }
 
+/// Returns clean text as Markdown, with its markup characters escaped.
+pub(super) fn markdown(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        if matches!(c, '|' | '*' | '_' | '`' | '<' | '[' | '\\' | '#') {
+            out.push('\\');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// The width of all text output, in columns.
+pub const COLUMNS: usize = 100;
+
 /// Returns cleaned foreign text for a CSV cell: a text that a spreadsheet would take for a formula gets an apostrophe.
 pub fn cell(text: &str) -> String {
     let clean = clean(text);

@@ -11,7 +11,7 @@ use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
 use crate::judge::verify::{Checked, unchecked};
 use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
-use crate::report::table::COLUMNS;
+use crate::report::text::COLUMNS;
 use crate::report::text::wrapped;
 use std::fs::File;
 use std::io::{self, Read};

@@ -5,9 +5,10 @@ use super::overlay;
 use super::overlay::Overlay;
 use super::trade_off;
 use super::trade_off::trade_off;
-use super::{Comparison, Ranked, SortKey, data, strokes, tables};
+use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
+use crate::report::csv::PARAMETERS;
 use crate::report::html::page::Page;
 use crate::report::text::{NO_NUMBER, brief, clean, exact, significant};
 use crate::report::words::{defect_names, length_suffix};
@@ -121,7 +122,7 @@ impl Comparison {
         };
         let mut heads: Vec<Head> = vec![
             ("behind", Some("behind the best, per cent")),
-            (self.first_head(), None),
+            (self.sum_head(), None),
             ("rms", None),
             ("max", None),
             ("at", Some("at which point")),
@@ -142,7 +143,7 @@ impl Comparison {
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
         let heads =
-            plain_heads(&[self.first_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"]);
+            plain_heads(&[self.sum_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"]);
         let cells = |i: usize, row: &Ranked| {
             let is_reference = self.reference == Some(i);
             let cells = self.shown_figures().map(|key| {
@@ -163,14 +164,13 @@ impl Comparison {
     }
 
     fn parameter_section(&self) -> Markup {
-        let heads = plain_heads(&["type", "Ax", "Ay", "Bx", "By", "a", "b", "c", "d", "e", "t1", "t2"]);
+        let mut heads = plain_heads(&["type"]);
+        heads.extend(PARAMETERS.map(|(name, _)| (name, None)));
         let cells = |_: usize, row: &Ranked| {
-            let linkage = &row.entry.candidate.linkage;
-            let mut cells = vec![Cell::word(row.entry.candidate.linkage_type.name())];
-            cells.extend(data::lengths(linkage).map(|x| Cell::of(Some(x), brief(x, 6))));
-            let signs = [linkage.assembly().sign(), linkage.side().sign()];
-            cells.extend(signs.map(|sign| Cell::of(Some(sign), format!("{sign:+}"))));
-            cells
+            let candidate = &row.entry.candidate;
+            let numbers = tables::parameters(&candidate.linkage, |x| brief(x, 6));
+            let numbers = numbers.map(|(value, shown)| Cell::of(Some(value), shown));
+            [Cell::word(candidate.linkage_type.name())].into_iter().chain(numbers).collect()
         };
         html! {
             section id="parameters" {
@@ -184,7 +184,7 @@ impl Comparison {
         }
     }
 
-    fn first_head(&self) -> &'static str {
+    fn sum_head(&self) -> &'static str {
         self.minimised().map_or("sum of squares", |(head, _)| head)
     }
 
