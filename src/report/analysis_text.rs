@@ -4,7 +4,7 @@ use super::analysis_csv::{POSE, RATES};
 use super::csv::{Column, names};
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Grid, Ink, plain};
-use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, significant, wrapped};
+use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, significant, wrapped};
 use crate::mechanism::Unit;
 use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
 use crate::mechanism::four_bar::transmission::ForceTransmission;
@@ -68,35 +68,27 @@ fn linkage_line(linkage: &FourBar, unit: Option<Unit>) -> String {
     let n = linkage.natural_coordinates();
     let s = |x: f64| significant(x, 6);
     let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
-    wrapped(
-        "  ",
-        "  ",
-        &format!(
-            "A ({}, {}), B ({}, {}), ground {}, a {}, b {}, c {}, d {}, e {}{unit}",
-            s(n.crank_pivot[0]),
-            s(n.crank_pivot[1]),
-            s(n.follower_pivot[0]),
-            s(n.follower_pivot[1]),
-            s(linkage.ground()),
-            s(n.crank),
-            s(n.coupler),
-            s(n.follower),
-            s(n.crank_side),
-            s(n.follower_side)
-        ),
-        COLUMNS,
-    )
+    indented(&format!(
+        "A ({}, {}), B ({}, {}), ground {}, a {}, b {}, c {}, d {}, e {}{unit}",
+        s(n.crank_pivot[0]),
+        s(n.crank_pivot[1]),
+        s(n.follower_pivot[0]),
+        s(n.follower_pivot[1]),
+        s(linkage.ground()),
+        s(n.crank),
+        s(n.coupler),
+        s(n.follower),
+        s(n.crank_side),
+        s(n.follower_side)
+    ))
 }
 
 /// Returns the mobility of a linkage in words: type, margin, input range, toggles, circuits and branches, transmission,
 /// warnings.
 pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     let Some(kind) = mobility.linkage_type else {
-        return wrapped(
-            "  ",
-            "  ",
+        return indented(
             "These links cannot be joined: the longest is longer than the other three together.",
-            COLUMNS,
         );
     };
     let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
@@ -155,7 +147,7 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     } else {
         words.push_str(" The two fixed pivots coincide.");
     }
-    wrapped("  ", "  ", &words, COLUMNS)
+    indented(&words)
 }
 
 fn degrees(value: f64) -> String {

@@ -2,7 +2,7 @@
 
 use super::grid::{Colour, Ink};
 use super::text::{
-    COLUMNS, at_most, capitalised, clean, clean_sentence, grouped, percent_up, significant, wrapped,
+    COLUMNS, at_most, capitalised, clean, clean_sentence, grouped, indented, percent_up, significant, wrapped,
 };
 use crate::record::{Certificate, CertificatePart, Record, Repeats};
 
@@ -46,7 +46,7 @@ pub fn certificate_text(record: &Record, colour: Colour) -> String {
 
 /// Returns the statement about the number of times the best answer was found, for a terminal.
 pub fn repeats_text(repeats: &Repeats) -> String {
-    repeats_sentences(repeats).iter().map(|sentence| wrapped("  ", "  ", sentence, COLUMNS)).collect()
+    repeats_sentences(repeats).iter().map(|sentence| indented(sentence)).collect()
 }
 
 /// Returns the reason why there is no certificate, as a sentence.

@@ -4,7 +4,7 @@ use super::analysis_text::{DIGITS, input, reach, status_cell};
 use super::csv::written;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain};
-use super::text::{COLUMNS, NO_NUMBER, clean, exact, significant, wrapped};
+use super::text::{COLUMNS, NO_NUMBER, clean, exact, indented, significant, wrapped};
 use crate::mechanism::analysis::chain::{ChainAnalysis, ChainRow};
 
 /// Returns the mechanism in words: stages, input range, the box of the traced path.
@@ -32,7 +32,7 @@ pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
         };
         words.push_str(&format!(" Over a turn {trace} moves {} in x and {} in y{unit}.", along(0), along(1)));
     }
-    format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), wrapped("  ", "  ", &words, COLUMNS))
+    format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), indented(&words))
 }
 
 /// Returns the whole output of `analyze` for a chain: the head and the motion of the traced point.

@@ -2,7 +2,7 @@
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, clean, grouped, shortened, significant, wrapped};
+use super::text::{COLUMNS, clean, grouped, indented, shortened, significant, wrapped};
 use super::words;
 use crate::mechanism::AssemblyMode;
 use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
@@ -36,7 +36,7 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
         ));
     }
     out.push('\n');
-    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    out.push_str(&indented(&key));
     out
 }
 

@@ -2,7 +2,7 @@
 
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain};
-use super::text::{COLUMNS, brief, capitalised, significant, wrapped};
+use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
@@ -22,7 +22,7 @@ pub fn practicality_text(
 ) -> String {
     let words = Words { unit, colour };
     let mut out = words.head("Layers");
-    out.push_str(&wrapped("  ", "  ", &words.made(practicality), COLUMNS));
+    out.push_str(&indented(&words.made(practicality)));
     match &practicality.layering {
         Some(layering) => {
             for line in words.layers(layering) {
@@ -182,7 +182,7 @@ impl Words {
             ]);
         }
         let mut out = grid.render(self.colour);
-        out.push_str(&wrapped("  ", "  ", &held(distances), COLUMNS));
+        out.push_str(&indented(&held(distances)));
         out
     }
 
@@ -202,9 +202,9 @@ impl Words {
             grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
         }
         grid.row(row(&felt.ground, Ink::Faint));
-        let mut out = wrapped("  ", "  ", &shift(felt), COLUMNS);
+        let mut out = indented(&shift(felt));
         out.push_str(&grid.render(self.colour));
-        out.push_str(&wrapped("  ", "  ", &self.together(felt, at_points, tolerance), COLUMNS));
+        out.push_str(&indented(&self.together(felt, at_points, tolerance)));
         out
     }
 

@@ -3,7 +3,7 @@
 use super::csv::PARAMETERS;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, brief, exact, grouped, significant, wrapped};
+use super::text::{COLUMNS, brief, exact, grouped, indented, significant, wrapped};
 use crate::mechanism::Unit;
 use crate::record::Candidate;
 use crate::synthesis::snap::{Length, Request, Snapped};
@@ -24,7 +24,7 @@ pub fn snap_text(
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
     let text =
         format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
-    let mut out = wrapped("  ", "  ", &text, COLUMNS);
+    let mut out = indented(&text);
     out.push_str(&dimensions(before, after, snapped, request, colour));
     out.push('\n');
     out.push_str(&figures(before, snapped, colour));
@@ -59,7 +59,7 @@ pub fn snap_text(
         let unmet: Vec<&str> =
             after.requirements.iter().filter(|r| !r.met).map(|r| r.name.as_str()).collect();
         let text = format!("Not accepted, none of them: {} not met.", unmet.join(", "));
-        out.push_str(&colour.paint(Ink::Bad, &wrapped("  ", "  ", &text, COLUMNS)));
+        out.push_str(&colour.paint(Ink::Bad, &indented(&text)));
     }
     out
 }

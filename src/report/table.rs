@@ -3,7 +3,7 @@
 use super::beside;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, brief, clean, exact, grouped, shortened, significant, wrapped};
+use super::text::{COLUMNS, brief, clean, exact, grouped, indented, shortened, significant, wrapped};
 use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
@@ -31,7 +31,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     out.push_str(&price::relaxations(record, COLUMNS));
     if let Some(said) = words::without_advice(record) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", said, COLUMNS));
+        out.push_str(&indented(said));
     }
     out.push('\n');
     out.push_str(&ending(record));
@@ -42,9 +42,9 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
 fn heading(record: &Record, colour: Colour) -> String {
     let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
     out.push('\n');
-    out.push_str(&wrapped("  ", "  ", &facts(record), COLUMNS));
+    out.push_str(&indented(&facts(record)));
     if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
-        out.push_str(&wrapped("  ", "  ", &source, COLUMNS));
+        out.push_str(&indented(&source));
     }
     out
 }
@@ -136,14 +136,14 @@ fn notes(record: &Record) -> String {
          transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
          (used). ratio: longest to shortest link.{unit}"
     );
-    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    out.push_str(&indented(&key));
     if let Some(tolerances) = words::tolerances(record) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &tolerances, COLUMNS));
+        out.push_str(&indented(&tolerances));
     }
     for sentence in against_raw(record).into_iter().chain(words::fewer(record)) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &sentence, COLUMNS));
+        out.push_str(&indented(&sentence));
     }
     // A hundred refusals for the same reason are combined into one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
@@ -245,7 +245,7 @@ fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
 
 /// Returns method, seed, cost and the reason why the search ended.
 fn ending(record: &Record) -> String {
-    wrapped("  ", "  ", &ending_sentences(record), COLUMNS)
+    indented(&ending_sentences(record))
 }
 
 /// Returns method, seed, cost and the reason why the search ended, on one line.

@@ -277,6 +277,11 @@ pub fn cell(text: &str) -> String {
     if clean.starts_with(['=', '+', '-', '@']) { format!("'{clean}") } else { clean }
 }
 
+/// Returns words in lines of at most [`COLUMNS`] columns, each after two spaces.
+pub(super) fn indented(text: &str) -> String {
+    wrapped("  ", "  ", text, COLUMNS)
+}
+
 /// Returns words in lines of at most `columns` columns, each after `indent`, the first after `lead`.
 pub fn wrapped(lead: &str, indent: &str, text: &str, columns: usize) -> String {
     let mut out = String::new();

@@ -4,7 +4,7 @@
 use super::{between, closed, degrees, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::mechanism::{Complex, cross};
-use crate::report::canvas::{Anchor, Canvas, Spot, palette};
+use crate::report::canvas::{Anchor, Canvas, Corners, Spot, font, haloed, palette};
 use crate::report::labels::Labels;
 use crate::report::parts::{away, bars, letter, mark_path, plus, stand};
 use crate::report::scene::Bounds;
@@ -168,12 +168,7 @@ fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2]
     let towards = Spot::new((0.5 * turn).cos(), -(0.5 * turn).sin());
     let near = Spot::new(pivot.x + radius * towards.x, pivot.y + radius * towards.y);
     if let Some(at) = labels.place(text, 12.0, near, 8.0, towards, true) {
-        let attributes = format!(
-            r#"font-size="12" fill="{}" stroke="{}" stroke-width="2.5" paint-order="stroke""#,
-            palette::INK,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, text);
+        canvas.text(at, Anchor::Middle, &haloed(&font(12, palette::INK), "2.5", Corners::Sharp), text);
     }
 }
 
@@ -182,15 +177,8 @@ fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, t
     let length = from.distance(to).max(f64::MIN_POSITIVE);
     let normal = Spot::new((to.y - from.y) / length, (from.x - to.x) / length);
     if let Some(at) = labels.place(name, 14.0, between(from, to), 7.0, normal, false) {
-        let attributes = format!(
-            concat!(
-                r#"font-size="14" font-style="italic" fill="{}" "#,
-                r#"stroke="{}" stroke-width="2.5" paint-order="stroke""#
-            ),
-            colour,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, name);
+        let italic = format!(r#"font-size="14" font-style="italic" fill="{colour}""#);
+        canvas.text(at, Anchor::Middle, &haloed(&italic, "2.5", Corners::Sharp), name);
     }
 }
 

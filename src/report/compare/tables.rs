@@ -5,7 +5,7 @@ use crate::mechanism::FourBar;
 use crate::report::csv::PARAMETERS;
 use crate::report::grid::Align::{Left, Right};
 use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
-use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, shortened_in_front, significant, wrapped};
+use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
 
 /// The headings of the figures after the first.
 const SHOWN: [&str; 6] = ["rms", "max", "to curve", "transm.", "ratio", "size"];
@@ -52,7 +52,7 @@ impl Comparison {
         let front = self.front_words().map(|words| format!("* {words}"));
         for note in front.into_iter().chain(self.notes()) {
             out.push('\n');
-            out.push_str(&wrapped("  ", "  ", &note, COLUMNS));
+            out.push_str(&indented(&note));
         }
         out
     }

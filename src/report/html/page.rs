@@ -4,6 +4,8 @@
 //! this way or as JSON in a script element that is not executed. The policy lets the browser use only the style and the
 //! script that were put in here.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -110,22 +112,7 @@ pub(in crate::report) fn joined(modules: &[&str]) -> String {
 
 /// Returns the hash `sha256-..` of an inline style or script, as a security policy names it.
 fn source_hash(text: &str) -> String {
-    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
-}
-
-/// Returns bytes in base64 (RFC 4648), with padding.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for group in bytes.chunks(3) {
-        let [x, y, z] = [0, 1, 2].map(|i| group.get(i).copied().map_or(0, u32::from));
-        let bits = x << 16 | y << 8 | z;
-        for i in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * i) & 63) as usize];
-            text.push(if i <= group.len() { letter as char } else { '=' });
-        }
-    }
-    text
+    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
 #[cfg(test)]
@@ -133,18 +120,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_writes_the_vectors_of_its_standard() {
-        let vectors = [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-        ];
-        for (text, encoded) in vectors {
-            assert_eq!(base64(text.as_bytes()), encoded);
-        }
+    fn a_policy_names_a_script_by_its_hash() {
+        assert_eq!(source_hash(""), "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
     }
 
     #[test]
