@@ -3,7 +3,7 @@
 
 use super::{between, closed, degrees, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
-use crate::mechanism::{Complex, cross};
+use crate::mechanism::{Complex, FourBar, cross};
 use crate::report::canvas::{Anchor, Canvas, Corners, Spot, font, haloed, palette};
 use crate::report::labels::Labels;
 use crate::report::parts::{away, bars, letter, mark_path, plus, stand};
@@ -24,8 +24,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     let (row, joints) = closed(configuration).into_iter().next()?;
     let [a, b, c, d, _] = joints;
     let phi = row.crank_deg.to_radians();
-    let other_assembly = linkage.assembly().opposite();
-    let other = linkage.position_with(phi, other_assembly).joints().map(|j| j.follower_pin);
+    let other = linkage.position_with(phi, linkage.assembly().opposite()).joints().map(|j| j.follower_pin);
     let coincide = other.is_none_or(|other| (other - d).norm() <= 1e-6 * linkage.longest_link());
     let other = other.filter(|_| !coincide);
 
@@ -87,6 +86,24 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     crank_angle(&mut body, &mut labels, [sa, sc], phi, &format!("φ = {}", degrees(row.crank_deg)));
     scale_bar(&mut body, &view, analysis.unit, width, bottom);
 
+    Some(Sheet {
+        title: "Construction by arcs".to_owned(),
+        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
+        body,
+        foot: steps(analysis, linkage, joints, other),
+        width,
+        bottom,
+    })
+}
+
+/// Returns the steps of the construction in words.
+fn steps(
+    analysis: &Analysis,
+    linkage: &FourBar,
+    joints: [Complex; 5],
+    other: Option<Complex>,
+) -> Vec<String> {
+    let [a, b, c, d, _] = joints;
     let unit = words::length_suffix(analysis.unit);
     let length = |x: f64| format!("{}{unit}", brief(x, 6));
     let shape = |pin: Complex| if crosses_itself([a, b, c, pin]) { "crossed" } else { "open" };
@@ -95,27 +112,20 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
         Some(other) => format!(
             "D (t1 = {own}, {}) and D′ (t1 = {}, {})",
             shape(d),
-            sign(other_assembly.sign()),
+            sign(linkage.assembly().opposite().sign()),
             shape(other)
         ),
         None => "D alone: C, D and B are in line, a toggle".to_owned(),
     };
-    Some(Sheet {
-        title: "Construction by arcs".to_owned(),
-        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
-        body,
-        foot: vec![
-            format!(
-                "1. crank a = {} gives C; 2. arc b = {} about C;",
-                length(linkage.crank()),
-                length(linkage.coupler())
-            ),
-            format!("3. arc c = {} about B; they meet in", length(linkage.follower())),
-            found,
-        ],
-        width,
-        bottom,
-    })
+    vec![
+        format!(
+            "1. crank a = {} gives C; 2. arc b = {} about C;",
+            length(linkage.crank()),
+            length(linkage.coupler())
+        ),
+        format!("3. arc c = {} about B; they meet in", length(linkage.follower())),
+        found,
+    ]
 }
 
 /// Returns the arcs about `centre` through the two intersections, which lie on both sides of the line to `towards`.
@@ -185,7 +195,7 @@ fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, t
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{AssemblyMode, FourBar};
+    use crate::mechanism::AssemblyMode;
 
     fn romero() -> FourBar {
         let pivots = [Complex::new(0.0, 0.0), Complex::new(4.0, 1.0)];

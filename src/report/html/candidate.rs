@@ -1,13 +1,13 @@
 //! One candidate in words: figures, mobility and defects, requirements, dimensions, other linkages with the same curve.
 
 use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
-use super::page::paragraph;
+use super::page::{paragraph, still};
 use super::table::{Cell, Row, minus, scrolling};
 use super::{dimensions, mobility, page, requirements};
 use crate::record::{Alternative, Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::words;
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 /// The largest number of candidates with a drawing for readers without a script.
 const MOST_DRAWN: usize = 10;
@@ -67,12 +67,6 @@ fn article(
             }
         } "\n"
     }
-}
-
-/// Returns a drawing as it is embedded in a page, in which it needs no name space.
-pub(super) fn still(drawing: &str) -> Markup {
-    let inline = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    html! { figure.still { (PreEscaped(inline)) } }
 }
 
 /// Returns the most important figures.

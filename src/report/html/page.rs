@@ -90,6 +90,12 @@ pub(super) fn figures<T: maud::Render>(pairs: impl IntoIterator<Item = (&'static
     html! { dl.figures { @for (key, value) in pairs { div { dt { (key) } dd { (value) } } } } }
 }
 
+/// Returns a drawing as it is embedded in a page, in which it needs no name space.
+pub(super) fn still(drawing: &str) -> Markup {
+    let inline = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    html! { figure.still { (PreEscaped(inline)) } }
+}
+
 /// Returns data as JSON that no text inside can break out of: every `<` is written as `\u003c`.
 pub(in crate::report) fn embedded(data: &impl Serialize) -> String {
     // The data has string keys and no maps, so that it can always be written.

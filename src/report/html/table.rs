@@ -1,7 +1,7 @@
 //! The table of the candidates side by side, each figure in a column of its own.
 
 use super::data::{BUILDABLE_KEY, candidate_key};
-use super::page::{paragraph, section};
+use super::page::{paragraph, section, still};
 use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
@@ -104,7 +104,7 @@ pub(super) fn candidates(record: &Record) -> Markup {
         return section(
             "candidates",
             "Candidates",
-            html! { p { "No candidate was found." } (super::candidate::still(&drawing)) },
+            html! { p { "No candidate was found." } (still(&drawing)) },
         );
     }
     let measure = record.problem.resolved.measure();
