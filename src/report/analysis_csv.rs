@@ -1,86 +1,62 @@
 //! An analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty.
 
-use super::csv::written;
+use super::csv::{Column, names, written};
 use super::text::exact;
 use crate::mechanism::FourBar;
-use crate::mechanism::analysis::{Analysis, Row};
+use crate::mechanism::analysis::{Analysis, Pose, Rates, Row};
 
-/// The header row of [`analysis_csv`].
-pub const ANALYSIS_COLUMNS: [&str; 29] = [
-    "crank_deg",
-    "t1",
-    "t2",
-    "Cx",
-    "Cy",
-    "Dx",
-    "Dy",
-    "Px",
-    "Py",
-    "coupler_deg",
-    "follower_deg",
-    "transmission_deg",
-    "omega3_rad_s",
-    "omega4_rad_s",
-    "vCx",
-    "vCy",
-    "vDx",
-    "vDy",
-    "vPx",
-    "vPy",
-    "alpha3_rad_s2",
-    "alpha4_rad_s2",
-    "aCx",
-    "aCy",
-    "aDx",
-    "aDy",
-    "aPx",
-    "aPy",
-    "status",
+/// The columns of a position: the moving joints, then the angles of coupler, follower and transmission.
+pub(super) const POSE: [Column<Pose, f64>; 9] = [
+    ("Cx", |p| p.crank_pin[0]),
+    ("Cy", |p| p.crank_pin[1]),
+    ("Dx", |p| p.follower_pin[0]),
+    ("Dy", |p| p.follower_pin[1]),
+    ("Px", |p| p.coupler_point[0]),
+    ("Py", |p| p.coupler_point[1]),
+    ("coupler_deg", |p| p.coupler_deg),
+    ("follower_deg", |p| p.follower_deg),
+    ("transmission_deg", |p| p.transmission_deg),
+];
+
+/// The columns of velocities and of accelerations, eight each: those of the links, then those of the joints.
+pub(super) const RATES: [[Column<Rates, f64>; 8]; 2] = [
+    [
+        ("omega3_rad_s", |r| r.omega3_rad_s),
+        ("omega4_rad_s", |r| r.omega4_rad_s),
+        ("vCx", |r| r.vC[0]),
+        ("vCy", |r| r.vC[1]),
+        ("vDx", |r| r.vD[0]),
+        ("vDy", |r| r.vD[1]),
+        ("vPx", |r| r.vP[0]),
+        ("vPy", |r| r.vP[1]),
+    ],
+    [
+        ("alpha3_rad_s2", |r| r.alpha3_rad_s2),
+        ("alpha4_rad_s2", |r| r.alpha4_rad_s2),
+        ("aCx", |r| r.aC[0]),
+        ("aCy", |r| r.aC[1]),
+        ("aDx", |r| r.aD[0]),
+        ("aDy", |r| r.aD[1]),
+        ("aPx", |r| r.aP[0]),
+        ("aPy", |r| r.aP[1]),
+    ],
 ];
 
 /// Returns every row of every configuration as CSV.
 pub fn analysis_csv(analysis: &Analysis) -> String {
+    let head = ["crank_deg", "t1", "t2"].into_iter().chain(names(&POSE));
+    let head = head.chain(RATES.iter().flat_map(|rates| names(rates))).chain(["status"]);
     let rows = analysis.configurations.iter().flat_map(|c| c.rows.iter().map(|r| cells(&c.linkage, r)));
-    written(&ANALYSIS_COLUMNS, rows)
+    written(head, rows)
 }
 
 fn cells(linkage: &FourBar, row: &Row) -> Vec<String> {
-    let natural = linkage.natural_coordinates();
-    let mut cells = vec![
-        exact(row.crank_deg),
-        format!("{}", natural.assembly.sign()),
-        format!("{}", natural.side.sign()),
-    ];
-    let mut push = |numbers: Option<&[f64]>, count: usize| match numbers {
-        Some(numbers) => cells.extend(numbers.iter().map(|n| exact(*n))),
-        None => cells.extend(std::iter::repeat_n(String::new(), count)),
-    };
-    let pose = row.pose.map(|p| {
-        let ([cx, cy], [dx, dy], [px, py]) = (p.crank_pin, p.follower_pin, p.coupler_point);
-        [cx, cy, dx, dy, px, py, p.coupler_deg, p.follower_deg, p.transmission_deg]
-    });
-    push(pose.as_ref().map(|p| p.as_slice()), 9);
-    let rates = row.rates.map(|r| {
-        [
-            r.omega3_rad_s,
-            r.omega4_rad_s,
-            r.vC[0],
-            r.vC[1],
-            r.vD[0],
-            r.vD[1],
-            r.vP[0],
-            r.vP[1],
-            r.alpha3_rad_s2,
-            r.alpha4_rad_s2,
-            r.aC[0],
-            r.aC[1],
-            r.aD[0],
-            r.aD[1],
-            r.aP[0],
-            r.aP[1],
-        ]
-    });
-    push(rates.as_ref().map(|r| r.as_slice()), 16);
+    let signs = [linkage.assembly().sign(), linkage.side().sign()];
+    let mut cells = vec![exact(row.crank_deg)];
+    cells.extend(signs.map(|sign| sign.to_string()));
+    cells.extend(POSE.map(|(_, of)| row.pose.as_ref().map_or(String::new(), |pose| exact(of(pose)))));
+    let rate = |of: fn(&Rates) -> f64| row.rates.as_ref().map_or(String::new(), |rates| exact(of(rates)));
+    cells.extend(RATES.iter().flatten().map(|(_, of)| rate(*of)));
     cells.push(row.status.word().to_owned());
     cells
 }

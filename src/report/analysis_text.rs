@@ -1,16 +1,17 @@
 //! An analysis as text: the mobility in words, and the tables of positions, motion and methods.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{clean, significant, wrapped};
+use super::analysis_csv::{POSE, RATES};
+use super::csv::{Column, names};
+use super::grid::Align::{Left, Right};
+use super::grid::{Cell, Colour, Grid, Ink, plain};
+use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, significant, wrapped};
 use crate::mechanism::Unit;
-use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Row, Status};
+use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
 use crate::mechanism::four_bar::transmission::ForceTransmission;
 use crate::mechanism::{FourBar, LinkageType};
 
-/// The width of the page, in columns.
-const COLUMNS: usize = 100;
 /// The number of significant digits of lengths and rates.
-const DIGITS: usize = 7;
+pub(super) const DIGITS: usize = 7;
 
 /// Returns the linkage and its mobility in words.
 pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
@@ -40,10 +41,10 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
         out.push_str(&colour.paint(Ink::Strong, &signs));
         out.push_str(&positions(configuration, colour));
         if analysis.omega2_rad_s != 0.0 || analysis.alpha2_rad_s2 != 0.0 {
-            out.push('\n');
-            out.push_str(&velocities(configuration, colour));
-            out.push('\n');
-            out.push_str(&accelerations(configuration, colour));
+            for columns in &RATES {
+                out.push('\n');
+                out.push_str(&rates(configuration, colour, columns));
+            }
         }
         out.push_str(&methods(configuration, colour));
         out.push_str(&conditions(configuration));
@@ -53,11 +54,10 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
         "\n  ",
         "  ",
         &format!(
-            "Crank speed {} rad/s, acceleration {} rad/s2. Angles in degrees from the x axis, \
+            "Crank {}. Angles in degrees from the x axis, \
              counter-clockwise; lengths in {unit}. status: ok; singular: a toggle, velocities are not decided by \
              the crank; open: the loop does not close; undetermined: C lies on B.",
-            significant(analysis.omega2_rad_s, DIGITS),
-            significant(analysis.alpha2_rad_s2, DIGITS),
+            input(analysis.omega2_rad_s, analysis.alpha2_rad_s2),
         ),
         COLUMNS,
     ));
@@ -68,35 +68,27 @@ fn linkage_line(linkage: &FourBar, unit: Option<Unit>) -> String {
     let n = linkage.natural_coordinates();
     let s = |x: f64| significant(x, 6);
     let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
-    wrapped(
-        "  ",
-        "  ",
-        &format!(
-            "A ({}, {}), B ({}, {}), ground {}, a {}, b {}, c {}, d {}, e {}{unit}",
-            s(n.crank_pivot[0]),
-            s(n.crank_pivot[1]),
-            s(n.follower_pivot[0]),
-            s(n.follower_pivot[1]),
-            s(linkage.ground()),
-            s(n.crank),
-            s(n.coupler),
-            s(n.follower),
-            s(n.crank_side),
-            s(n.follower_side)
-        ),
-        COLUMNS,
-    )
+    indented(&format!(
+        "A ({}, {}), B ({}, {}), ground {}, a {}, b {}, c {}, d {}, e {}{unit}",
+        s(n.crank_pivot[0]),
+        s(n.crank_pivot[1]),
+        s(n.follower_pivot[0]),
+        s(n.follower_pivot[1]),
+        s(linkage.ground()),
+        s(n.crank),
+        s(n.coupler),
+        s(n.follower),
+        s(n.crank_side),
+        s(n.follower_side)
+    ))
 }
 
 /// Returns the mobility of a linkage in words: type, margin, input range, toggles, circuits and branches, transmission,
 /// warnings.
 pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     let Some(kind) = mobility.linkage_type else {
-        return wrapped(
-            "  ",
-            "  ",
+        return indented(
             "These links cannot be joined: the longest is longer than the other three together.",
-            COLUMNS,
         );
     };
     let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
@@ -113,19 +105,13 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
         capitalised(kind.name()),
         significant(mobility.grashof_margin, 5)
     );
-    let degrees = |x: f64| format!("{}°", significant(x, 6));
     if mobility.input_turns_fully {
         words.push_str(" The crank reaches every angle.");
     } else if !mobility.input_arcs_deg.is_empty() {
-        let arcs: Vec<String> = mobility
-            .input_arcs_deg
-            .iter()
-            .map(|[from, to]| format!("{} to {}", degrees(*from), degrees(*to)))
-            .collect();
         let ends: Vec<String> = mobility.toggles_deg.iter().map(|t| degrees(*t)).collect();
         words.push_str(&format!(
             " The crank reaches {}; toggles, with coupler and follower in line, at {}.",
-            arcs.join(" or "),
+            reach(&mobility.input_arcs_deg),
             ends.join(", ")
         ));
     }
@@ -161,156 +147,102 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
     } else {
         words.push_str(" The two fixed pivots coincide.");
     }
-    wrapped("  ", "  ", &words, COLUMNS)
+    indented(&words)
 }
 
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+fn degrees(value: f64) -> String {
+    format!("{}°", significant(value, 6))
 }
 
-fn plain(text: String) -> (String, Ink) {
-    (text, Ink::Plain)
+/// Returns the ranges of the input: `30° to 60° or 90° to 120°`.
+pub(super) fn reach(arcs_deg: &[[f64; 2]]) -> String {
+    let arcs = arcs_deg.iter().map(|[from, to]| format!("{} to {}", degrees(*from), degrees(*to)));
+    arcs.collect::<Vec<_>>().join(" or ")
+}
+
+/// Returns the input's motion: `speed 1.000000 rad/s, acceleration 0 rad/s2`.
+pub(super) fn input(omega2_rad_s: f64, alpha2_rad_s2: f64) -> String {
+    let [speed, acceleration] = [omega2_rad_s, alpha2_rad_s2].map(|rate| significant(rate, DIGITS));
+    format!("speed {speed} rad/s, acceleration {acceleration} rad/s2")
 }
 
 /// Returns a number shown beside others of the given size; a number that is only rounding in comparison is shown as 0.
-fn number(value: Option<f64>, size: f64) -> (String, Ink) {
+fn number(value: Option<f64>, size: f64) -> Cell {
     let shown = |v: f64| if v.abs() <= ROUNDING * size { 0.0 } else { v };
-    plain(value.map_or_else(|| "-".to_owned(), |v| significant(shown(v), DIGITS)))
+    plain(value.map_or_else(|| NO_NUMBER.to_owned(), |v| significant(shown(v), DIGITS)))
 }
 
 /// The fraction of its neighbours below which a number is rounding: the table shows 0, CSV and JSON all digits.
 const ROUNDING: f64 = 1e-14;
 
-fn status(row: &Row) -> (String, Ink) {
-    let ink = if row.status == Status::Ok { Ink::Faint } else { Ink::Bad };
-    (row.status.word().to_owned(), ink)
+/// Returns the cell of a row's status, with more words on it if there are any.
+pub(super) fn status_cell(status: Status, words: String) -> Cell {
+    (words, if status == Status::Ok { Ink::Faint } else { Ink::Bad })
+}
+
+fn status(row: &Row) -> Cell {
+    status_cell(row.status, row.status.word().to_owned())
 }
 
 fn positions(configuration: &Configuration, colour: Colour) -> String {
-    use Align::{Left, Right};
-    let mut grid = Grid::new(&[
-        ("crank", Right),
-        ("theta3", Right),
-        ("theta4", Right),
-        ("mu", Right),
-        ("Cx", Right),
-        ("Cy", Right),
-        ("Dx", Right),
-        ("Dy", Right),
-        ("Px", Right),
-        ("Py", Right),
-        ("status", Left),
-    ]);
+    let (points, angles) = POSE.split_at(6);
+    let heads: Vec<&str> = names(points).collect();
+    let mut grid =
+        Grid::new(&[(Right, &["crank", "theta3", "theta4", "mu"]), (Right, &heads), (Left, &["status"])]);
     for row in &configuration.rows {
-        let p = row.pose;
-        let size = p.map_or(0.0, |p| {
-            [p.crank_pin, p.follower_pin, p.coupler_point]
-                .iter()
-                .flatten()
-                .fold(0.0, |m: f64, x| m.max(x.abs()))
-        });
-        let at = |f: fn(&crate::mechanism::analysis::Pose) -> f64| number(p.as_ref().map(f), size);
-        let angle = |f: fn(&crate::mechanism::analysis::Pose) -> f64| {
-            plain(p.as_ref().map_or_else(|| "-".to_owned(), |p| significant(f(p), 6)))
-        };
-        grid.row(vec![
-            plain(significant(row.crank_deg, 6)),
-            angle(|p| p.coupler_deg),
-            angle(|p| p.follower_deg),
-            angle(|p| p.transmission_deg),
-            at(|p| p.crank_pin[0]),
-            at(|p| p.crank_pin[1]),
-            at(|p| p.follower_pin[0]),
-            at(|p| p.follower_pin[1]),
-            at(|p| p.coupler_point[0]),
-            at(|p| p.coupler_point[1]),
-            status(row),
-        ]);
+        let p = row.pose.as_ref();
+        let size = points.iter().filter_map(|(_, of)| Some(of(p?).abs())).fold(0.0, f64::max);
+        let angle = |of: fn(&Pose) -> f64| plain(p.map_or(NO_NUMBER.to_owned(), |p| significant(of(p), 6)));
+        let mut cells = vec![plain(significant(row.crank_deg, 6))];
+        cells.extend(angles.iter().map(|(_, of)| angle(*of)));
+        cells.extend(points.iter().map(|(_, of)| number(p.map(of), size)));
+        cells.push(status(row));
+        grid.row(cells);
     }
     grid.render(colour)
 }
 
-type Of = fn(&crate::mechanism::analysis::Rates) -> f64;
-
-fn rates(configuration: &Configuration, colour: Colour, columns: [(&'static str, Of); 8]) -> String {
-    let mut heads = vec![("crank", Align::Right)];
-    heads.extend(columns.iter().map(|(head, _)| (*head, Align::Right)));
-    let mut grid = Grid::new(&heads);
+/// Returns the table of velocities or of accelerations.
+fn rates(configuration: &Configuration, colour: Colour, columns: &[Column<Rates, f64>]) -> String {
+    // The names without their units.
+    let heads: Vec<&str> = names(columns).map(|name| name.split('_').next().unwrap_or(name)).collect();
+    let mut grid = Grid::new(&[(Right, &["crank"]), (Right, &heads)]);
     for row in &configuration.rows {
         let mut cells = vec![plain(significant(row.crank_deg, 6))];
         // The first two columns belong to the links, the others to the points.
-        let size = |these: &[(&'static str, Of)]| {
-            let sizes = these.iter().filter_map(|(_, of)| row.rates.as_ref().map(|r| of(r).abs()));
-            sizes.fold(0.0, f64::max)
-        };
         let (links, points) = columns.split_at(2);
         for group in [links, points] {
-            let size = size(group);
-            cells.extend(group.iter().map(|(_, of)| number(row.rates.as_ref().map(of), size)));
+            let values = group.iter().map(|(_, of)| row.rates.as_ref().map(of));
+            let size = values.clone().flatten().map(f64::abs).fold(0.0, f64::max);
+            cells.extend(values.map(|value| number(value, size)));
         }
         grid.row(cells);
     }
     grid.render(colour)
 }
 
-fn velocities(configuration: &Configuration, colour: Colour) -> String {
-    let columns: [(&str, Of); 8] = [
-        ("omega3", |r| r.omega3_rad_s),
-        ("omega4", |r| r.omega4_rad_s),
-        ("vCx", |r| r.vC[0]),
-        ("vCy", |r| r.vC[1]),
-        ("vDx", |r| r.vD[0]),
-        ("vDy", |r| r.vD[1]),
-        ("vPx", |r| r.vP[0]),
-        ("vPy", |r| r.vP[1]),
-    ];
-    rates(configuration, colour, columns)
-}
-
-fn accelerations(configuration: &Configuration, colour: Colour) -> String {
-    let columns: [(&str, Of); 8] = [
-        ("alpha3", |r| r.alpha3_rad_s2),
-        ("alpha4", |r| r.alpha4_rad_s2),
-        ("aCx", |r| r.aC[0]),
-        ("aCy", |r| r.aC[1]),
-        ("aDx", |r| r.aD[0]),
-        ("aDy", |r| r.aD[1]),
-        ("aPx", |r| r.aP[0]),
-        ("aPy", |r| r.aP[1]),
-    ];
-    rates(configuration, colour, columns)
-}
-
 fn methods(configuration: &Configuration, colour: Colour) -> String {
-    use Align::{Left, Right};
     if configuration.rows.iter().all(|row| row.methods.is_empty()) {
         return String::new();
     }
     let mut grid = Grid::new(&[
-        ("crank", Right),
-        ("method", Left),
-        ("t1", Right),
-        ("theta3", Right),
-        ("theta4", Right),
-        ("Px", Right),
-        ("Py", Right),
-        ("off", Right),
-        ("rounds", Right),
-        ("status", Left),
+        (Right, &["crank"]),
+        (Left, &["method"]),
+        (Right, &["t1", "theta3", "theta4", "Px", "Py", "off", "rounds"]),
+        (Left, &["status"]),
     ]);
     for row in &configuration.rows {
         for m in &row.methods {
             let ink = if m.status == "ok" { Ink::Faint } else { Ink::Bad };
-            grid.row(vec![
+            grid.row([
                 plain(significant(row.crank_deg, 6)),
-                plain(m.method.name().to_owned()),
-                plain(m.t1.map_or("-".to_owned(), |t| format!("{:+}", t.sign()))),
+                plain(m.method.name()),
+                plain(m.t1.map_or(NO_NUMBER.to_owned(), |t| format!("{:+}", t.sign()))),
                 number(m.coupler_deg, 0.0),
                 number(m.follower_deg, 0.0),
                 number(m.coupler_point.map(|p| p[0]), 0.0),
                 number(m.coupler_point.map(|p| p[1]), 0.0),
-                plain(m.from_natural.map_or("-".to_owned(), |d| format!("{d:.1e}"))),
+                plain(m.from_natural.map_or(NO_NUMBER.to_owned(), |d| format!("{d:.1e}"))),
                 plain(m.iterations.map_or(String::new(), |n| n.to_string())),
                 (m.status.to_owned(), ink),
             ]);

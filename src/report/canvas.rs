@@ -1,7 +1,7 @@
 //! The SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up.
 
-use super::scene::Bounds;
-use super::text::xml;
+use super::scene::{Bounds, round_length};
+use super::text::{brief, xml};
 use crate::mechanism::Complex;
 use std::fmt::Write;
 
@@ -85,6 +85,47 @@ impl View {
     }
 }
 
+/// A frame for a drawing: its height follows from the shape of what is drawn, within a range.
+pub(super) struct Frame {
+    pub(super) width: f64,
+    pub(super) padding: f64,
+    pub(super) heights: std::ops::RangeInclusive<f64>,
+}
+
+impl Frame {
+    /// Returns the view of the box in the frame with its corner at `at`, and the height of the frame.
+    pub(super) fn fit(&self, bounds: &Bounds, at: Spot) -> (View, f64) {
+        let wanted =
+            (self.width - 2.0 * self.padding) * bounds.height() / bounds.width().max(f64::MIN_POSITIVE);
+        let height = (wanted + 2.0 * self.padding).clamp(*self.heights.start(), *self.heights.end());
+        let area = Area { x: at.x, y: at.y, width: self.width, height };
+        (View::fit(bounds, area.shrunk(self.padding)), height)
+    }
+}
+
+/// Returns the attributes of a text of a size and colour.
+pub(super) fn font(size: impl std::fmt::Display, colour: &str) -> String {
+    format!(r#"font-size="{size}" fill="{colour}""#)
+}
+
+/// Returns the attributes of a bold text of a size and colour.
+pub(super) fn bold(size: impl std::fmt::Display, colour: &str) -> String {
+    format!(r#"font-size="{size}" font-weight="600" fill="{colour}""#)
+}
+
+/// The corners of the paper around the letters of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Corners {
+    Sharp,
+    Round,
+}
+
+/// Returns the attributes of a text with paper of a width around its letters, so that it is legible on lines.
+pub(super) fn haloed(text: &str, width: &str, corners: Corners) -> String {
+    let join = if corners == Corners::Round { r#" stroke-linejoin="round""# } else { "" };
+    format!(r#"{text} stroke="{}" stroke-width="{width}"{join} paint-order="stroke""#, palette::PAPER)
+}
+
 /// Returns a coordinate to a hundredth of a pixel, kept within the range that viewers can read.
 pub(super) fn px(value: f64) -> String {
     let mut text = String::new();
@@ -143,6 +184,14 @@ impl Canvas {
     pub(super) fn raw(&mut self, element: &str) {
         self.body.push_str(element);
         self.body.push('\n');
+    }
+
+    /// Draws within an area, cut off at its edges; its corner is the origin.
+    pub(super) fn clipped(&mut self, area: Area, draw: impl FnOnce(&mut Canvas)) {
+        let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(px);
+        self.raw(&format!(r#"<svg x="{x}" y="{y}" width="{width}" height="{height}" overflow="hidden">"#));
+        draw(self);
+        self.raw("</svg>");
     }
 
     pub(super) fn line(&mut self, a: Spot, b: Spot, attributes: &str) {
@@ -227,16 +276,18 @@ impl Canvas {
         );
     }
 
-    /// Draws a bar of a round length with its label above, its left end at `at`.
-    pub(super) fn scale_bar(&mut self, at: Spot, length_px: f64, label: &str) {
+    /// Draws a bar of a round length, at most `most` pixels long, with its label above and its left end at `at`.
+    pub(super) fn scale_bar(&mut self, at: Spot, view: &View, most: f64, unit: &str) {
+        let length = round_length(most / view.scale);
+        let label = format!("{}{unit}", brief(length, 3));
         let ink = format!(r#"stroke="{}" stroke-width="1.5""#, palette::INK);
-        let (left, right) = (at, Spot::new(at.x + length_px, at.y));
+        let (left, right) = (at, Spot::new(at.x + length * view.scale, at.y));
         self.line(left, right, &ink);
         for end in [left, right] {
             self.line(Spot::new(end.x, end.y - 4.0), Spot::new(end.x, end.y + 4.0), &ink);
         }
         let middle = Spot::new(0.5 * (left.x + right.x), at.y - 7.0);
-        self.text(middle, Anchor::Middle, &format!(r#"font-size="12" fill="{}""#, palette::INK), label);
+        self.text(middle, Anchor::Middle, &font(12, palette::INK), &label);
     }
 
     /// Returns the whole document. `title` and `description` are read by screen readers.

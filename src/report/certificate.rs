@@ -1,8 +1,9 @@
 //! The certificate of a result, and the number of times its best answer was found, in words.
 
 use super::grid::{Colour, Ink};
-use super::table::COLUMNS;
-use super::text::{at_most, clean, clean_sentence, grouped, percent_up, significant, wrapped};
+use super::text::{
+    COLUMNS, at_most, capitalised, clean, clean_sentence, grouped, indented, percent_up, significant, wrapped,
+};
 use crate::record::{Certificate, CertificatePart, Record, Repeats};
 
 /// The largest gap with which a best answer is called a proved optimum.
@@ -45,15 +46,12 @@ pub fn certificate_text(record: &Record, colour: Colour) -> String {
 
 /// Returns the statement about the number of times the best answer was found, for a terminal.
 pub fn repeats_text(repeats: &Repeats) -> String {
-    repeats_sentences(repeats).iter().map(|sentence| wrapped("  ", "  ", sentence, COLUMNS)).collect()
+    repeats_sentences(repeats).iter().map(|sentence| indented(sentence)).collect()
 }
 
 /// Returns the reason why there is no certificate, as a sentence.
 pub(super) fn reason(why: &str) -> String {
-    let why = clean_sentence(why);
-    let mut letters = why.chars();
-    let capital = letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect());
-    format!("{}.", capital.trim_end_matches('.'))
+    format!("{}.", capitalised(&clean_sentence(why)).trim_end_matches('.'))
 }
 
 /// Returns `Proved optimum: no linkage that the proof covers is better by more than 0.01 %`, or the state of an open

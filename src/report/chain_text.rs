@@ -1,13 +1,11 @@
 //! An analysis of a compound mechanism as text and as CSV.
 
+use super::analysis_text::{DIGITS, input, reach, status_cell};
 use super::csv::written;
-use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{clean, exact, significant, wrapped};
-use crate::mechanism::analysis::Status;
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain};
+use super::text::{COLUMNS, NO_NUMBER, clean, exact, indented, significant, wrapped};
 use crate::mechanism::analysis::chain::{ChainAnalysis, ChainRow};
-
-const COLUMNS: usize = 100;
-const DIGITS: usize = 7;
 
 /// Returns the mechanism in words: stages, input range, the box of the traced path.
 pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
@@ -20,11 +18,7 @@ pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
     } else if analysis.input_arcs_deg.is_empty() {
         words.push_str(" It closes at no crank angle.");
     } else {
-        let arcs = analysis.input_arcs_deg.iter();
-        let arcs: Vec<String> = arcs
-            .map(|[from, to]| format!("{}° to {}°", significant(*from, 6), significant(*to, 6)))
-            .collect();
-        words.push_str(&format!(" The crank reaches {}.", arcs.join(" or ")));
+        words.push_str(&format!(" The crank reaches {}.", reach(&analysis.input_arcs_deg)));
     }
     if let Some(stroke) = analysis.stroke {
         let along = |axis: usize| {
@@ -38,41 +32,27 @@ pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
         };
         words.push_str(&format!(" Over a turn {trace} moves {} in x and {} in y{unit}.", along(0), along(1)));
     }
-    format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), wrapped("  ", "  ", &words, COLUMNS))
+    format!("{}\n{}", colour.paint(Ink::Strong, &clean(&analysis.name)), indented(&words))
 }
 
 /// Returns the whole output of `analyze` for a chain: the head and the motion of the traced point.
 pub fn chain_table(analysis: &ChainAnalysis, colour: Colour) -> String {
-    use Align::{Left, Right};
-    let mut grid = Grid::new(&[
-        ("crank", Right),
-        ("x", Right),
-        ("y", Right),
-        ("vx", Right),
-        ("vy", Right),
-        ("ax", Right),
-        ("ay", Right),
-        ("status", Left),
-    ]);
+    let mut grid = Grid::new(&[(Right, &["crank", "x", "y", "vx", "vy", "ax", "ay"]), (Left, &["status"])]);
     for row in &analysis.rows {
         let point = row.points.iter().find(|p| p.name == analysis.trace);
-        let mut cells = vec![(significant(row.crank_deg, 6), Ink::Plain)];
         let pairs = point.map_or([None; 3], |p| [p.at, p.velocity, p.acceleration]);
-        for pair in pairs {
-            for axis in 0..2 {
-                let text = pair.map_or_else(|| "-".to_owned(), |xy| significant(xy[axis], DIGITS));
-                cells.push((text, Ink::Plain));
-            }
-        }
-        let ink = if row.status == Status::Ok { Ink::Faint } else { Ink::Bad };
-        cells.push((status(row), ink));
+        let shown = |pair: Option<[f64; 2]>| {
+            pair.map_or([NO_NUMBER.to_owned(), NO_NUMBER.to_owned()], |xy| xy.map(|x| significant(x, DIGITS)))
+        };
+        let mut cells = vec![plain(significant(row.crank_deg, 6))];
+        cells.extend(pairs.into_iter().flat_map(shown).map(plain));
+        cells.push(status_cell(row.status, status(row)));
         grid.row(cells);
     }
     let note = format!(
-        "Motion of {}; crank speed {} rad/s, acceleration {} rad/s2. Every point stands in the CSV and JSON.",
+        "Motion of {}; crank {}. Every point stands in the CSV and JSON.",
         clean(&analysis.trace),
-        significant(analysis.omega2_rad_s, DIGITS),
-        significant(analysis.alpha2_rad_s2, DIGITS)
+        input(analysis.omega2_rad_s, analysis.alpha2_rad_s2)
     );
     format!(
         "{}\n{}{}",
@@ -101,7 +81,6 @@ pub fn chain_csv(analysis: &ChainAnalysis) -> String {
         head.extend(["vx", "vy", "ax", "ay"].map(|k| format!("{}{name}{}", &k[..1], &k[1..])));
     }
     head.push("status".to_owned());
-    let head: Vec<&str> = head.iter().map(String::as_str).collect();
     let rows = analysis.rows.iter().map(|row| {
         let mut cells = vec![exact(row.crank_deg)];
         for point in &row.points {
@@ -113,5 +92,5 @@ pub fn chain_csv(analysis: &ChainAnalysis) -> String {
         cells.push(status(row));
         cells
     });
-    written(&head, rows)
+    written(head, rows)
 }

@@ -1,7 +1,7 @@
 //! Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share.
 
 use super::analysis_sheets::dimensions;
-use super::canvas::{Anchor, Canvas, Spot, View, palette, text_width};
+use super::canvas::{Anchor, Canvas, Spot, View, bold, font, palette, text_width};
 use super::labels::Labels;
 use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
 use super::scene::{Bounds, SAMPLES, circuits_through, closest, middle_position};
@@ -239,11 +239,11 @@ fn draw(canvas: &mut Canvas, labels: &mut Labels, view: &View, curve: &[Spot], d
 fn legend(canvas: &mut Canvas, y: f64, colour: &str, name: &str, rest: Option<&str>) {
     let swatch = format!(r#"stroke="{colour}" stroke-width="5" stroke-linecap="round""#);
     canvas.line(Spot::new(INSET + 4.0, y - 4.0), Spot::new(INSET + 26.0, y - 4.0), &swatch);
-    let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(12.5, palette::INK);
     canvas.text(Spot::new(INSET + 38.0, y), Anchor::Start, &bold, name);
     if let Some(rest) = rest {
         let x = INSET + 38.0 + 1.15 * text_width("second cognate", 12.5) + 14.0;
-        let ink = format!(r#"font-size="12.5" fill="{}""#, palette::INK);
+        let ink = font(12.5, palette::INK);
         let rest = super::sheet::fitting(rest, 12.5, FULL - x - INSET);
         canvas.text(Spot::new(x, y), Anchor::Start, &ink, &rest);
     }

@@ -1,6 +1,6 @@
 //! The contact sheet: small drawings of all candidates side by side.
 
-use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, text_width};
+use super::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette, text_width};
 use super::figure::{Detail, draw};
 use super::scene::Scene;
 use super::text::{shortened, significant};
@@ -34,9 +34,9 @@ pub fn contact_sheet_svg(record: &Record) -> String {
         n => format!("{n} candidates"),
     };
     let room = ((width - 2.0 * MARGIN - text_width(&counted, 13.0) - 20.0) / text_width("x", 19.0)) as usize;
-    let bold = format!(r#"font-size="19" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(19, palette::INK);
     canvas.text(Spot::new(MARGIN, 38.0), Anchor::Start, &bold, &shortened(&name, room));
-    let muted = format!(r#"font-size="13" fill="{}""#, palette::MUTED);
+    let muted = font(13, palette::MUTED);
     canvas.text(Spot::new(width - MARGIN, 38.0), Anchor::End, &muted, &counted);
     for (i, candidate) in record.candidates.iter().take(n).enumerate() {
         let corner = Spot::new(
@@ -54,9 +54,7 @@ fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, corner: Spo
     canvas.area(frame, &format!(r#"fill="none" stroke="{}" stroke-width="1" rx="4""#, palette::FAINT));
     let scene = Scene::new(record, Some(candidate));
     let view = View::fit(&scene.bounds(), Area { height: CELL_DRAWING, ..frame }.shrunk(20.0));
-    let detail =
-        Detail { weight: 0.6, target_weight: 0.6, letters: false, numbers: false, linkage: true, clip: None };
-    draw(canvas, &scene, &view, detail);
+    draw(canvas, &scene, &view, Detail::small(0.6));
 
     let (left, right) = (corner.x + 12.0, corner.x + CELL - 12.0);
     let ink =

@@ -9,99 +9,84 @@ use crate::mechanism::{CouplerCurve, FourBar};
 use crate::record::{Candidate, Record};
 use crate::task::Defect;
 
-/// The header row of [`candidates_csv`].
-pub const CANDIDATE_COLUMNS: [&str; 32] = [
-    "rank",
-    "accepted",
-    "sum_sq",
-    "rms",
-    "max",
-    "max_at",
-    "rms_over_size",
-    "to_curve_sum_sq",
-    "to_curve_rms",
-    "to_curve_max",
-    "objective",
-    "type",
-    "grashof_margin",
-    "transmission_min_deg",
-    "transmission_max_deg",
-    "transmission_worst_deg",
-    "transmission_over",
-    "link_ratio",
-    "ground",
-    "Ax",
-    "Ay",
-    "Bx",
-    "By",
-    "a",
-    "b",
-    "c",
-    "d",
-    "e",
-    "t1",
-    "t2",
-    "defects",
-    "unmet",
+/// A column of a table: its name, and the value of a row in it.
+pub(super) type Column<Row, Value = String> = (&'static str, fn(&Row) -> Value);
+
+/// The figures of a candidate, in the order of the table of candidates.
+const FIGURES: [Column<Candidate>; 19] = [
+    ("rank", |c| c.rank.to_string()),
+    ("accepted", |c| c.accepted.to_string()),
+    ("sum_sq", |c| exact(c.error.sum_sq)),
+    ("rms", |c| exact(c.error.rms)),
+    ("max", |c| exact(c.error.max)),
+    ("max_at", |c| c.error.max_at.to_string()),
+    ("rms_over_size", |c| exact(c.error.rms_over_size)),
+    ("to_curve_sum_sq", |c| exact(c.error.to_curve.sum_sq)),
+    ("to_curve_rms", |c| exact(c.error.to_curve.rms)),
+    ("to_curve_max", |c| exact(c.error.to_curve.max)),
+    ("objective", |c| exact(c.error.objective)),
+    ("type", |c| c.linkage_type.name().to_owned()),
+    ("grashof_margin", |c| exact(c.grashof_margin)),
+    ("transmission_min_deg", |c| exact(c.transmission_deg.min)),
+    ("transmission_max_deg", |c| exact(c.transmission_deg.max)),
+    ("transmission_worst_deg", |c| exact(c.transmission_deg.worst)),
+    ("transmission_over", |c| words::over(c.transmission_deg.over).to_owned()),
+    ("link_ratio", |c| exact(c.link_ratio)),
+    ("ground", |c| exact(c.linkage.ground())),
+];
+
+/// The parameters of a linkage: coordinates, lengths and signs.
+pub(super) const PARAMETERS: [Column<FourBar, f64>; 11] = [
+    ("Ax", |l| l.crank_pivot().re),
+    ("Ay", |l| l.crank_pivot().im),
+    ("Bx", |l| l.follower_pivot().re),
+    ("By", |l| l.follower_pivot().im),
+    ("a", FourBar::crank),
+    ("b", FourBar::coupler),
+    ("c", FourBar::follower),
+    ("d", FourBar::crank_side),
+    ("e", FourBar::follower_side),
+    ("t1", |l| l.assembly().sign()),
+    ("t2", |l| l.side().sign()),
 ];
 
 /// The header row of [`curve_csv`].
 pub const CURVE_COLUMNS: [&str; 9] =
     ["crank_deg", "t1", "Cx", "Cy", "Dx", "Dy", "Px", "Py", "transmission_deg"];
 
-/// Returns one row for each candidate: every parameter and figure, defects as `order:3 7;branch:2` (points from 0), and
+/// Returns one row for each candidate: every figure and parameter, defects as `order:3 7;branch:2` (points from 0), and
 /// the names of the requirements that are not met.
 pub fn candidates_csv(record: &Record) -> String {
-    written(&CANDIDATE_COLUMNS, record.candidates.iter().map(|candidate| row(record, candidate)))
+    let head = names(&FIGURES).chain(names(&PARAMETERS)).chain(["defects", "unmet"]);
+    let rows = record.candidates.iter().map(|c| {
+        let defects: Vec<String> = c.defects.iter().map(defect).collect();
+        let mut row = cells(&FIGURES, c);
+        row.extend(parameters(&c.linkage));
+        row.extend([defects.join(";"), cell(&words::unmet(record, c).join(";"))]);
+        row
+    });
+    written(head, rows)
 }
 
-fn row(record: &Record, candidate: &Candidate) -> Vec<String> {
-    let error = &candidate.error;
-    let transmission = &candidate.transmission_deg;
-    let defects: Vec<String> = candidate.defects.iter().map(defect).collect();
-    let unmet: Vec<String> = words::unmet(record, candidate);
-    let mut cells = vec![
-        candidate.rank.to_string(),
-        candidate.accepted.to_string(),
-        exact(error.sum_sq),
-        exact(error.rms),
-        exact(error.max),
-        error.max_at.to_string(),
-        exact(error.rms_over_size),
-        exact(error.to_curve.sum_sq),
-        exact(error.to_curve.rms),
-        exact(error.to_curve.max),
-        exact(error.objective),
-        candidate.linkage_type.name().to_owned(),
-        exact(candidate.grashof_margin),
-        exact(transmission.min),
-        exact(transmission.max),
-        exact(transmission.worst),
-        words::over(transmission.over).to_owned(),
-        exact(candidate.link_ratio),
-        exact(candidate.linkage.ground()),
-    ];
-    cells.extend(parameters(&candidate.linkage));
-    cells.extend([defects.join(";"), cell(&unmet.join(";"))]);
-    cells
+/// Returns the names of columns.
+pub(super) fn names<Row, Value>(columns: &[Column<Row, Value>]) -> impl Iterator<Item = &'static str> {
+    columns.iter().map(|(name, _)| *name)
 }
 
-/// Returns Ax Ay Bx By a b c d e t1 t2.
+/// Returns the cells of a row.
+pub(super) fn cells<Row>(columns: &[Column<Row>], row: &Row) -> Vec<String> {
+    columns.iter().map(|(_, cell)| cell(row)).collect()
+}
+
+/// Returns the cells of those columns of a candidate's figures that have these names.
+pub(super) fn figures(candidate: &Candidate, wanted: &[&str]) -> Vec<String> {
+    let found = wanted.iter().filter_map(|name| FIGURES.iter().find(|(known, _)| known == name));
+    found.map(|(_, cell)| cell(candidate)).collect()
+}
+
+/// Returns the cells of the parameters.
 pub(super) fn parameters(linkage: &FourBar) -> [String; 11] {
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    [
-        exact(a.re),
-        exact(a.im),
-        exact(b.re),
-        exact(b.im),
-        exact(linkage.crank()),
-        exact(linkage.coupler()),
-        exact(linkage.follower()),
-        exact(linkage.crank_side()),
-        exact(linkage.follower_side()),
-        exact(linkage.assembly().sign()),
-        exact(linkage.side().sign()),
-    ]
+    PARAMETERS.map(|(_, of)| exact(of(linkage)))
 }
 
 fn defect(defect: &Defect) -> String {
@@ -113,7 +98,7 @@ fn defect(defect: &Defect) -> String {
 /// degree of the crank from 0 to 359; if it rocks, 720 rows there and back (evenly spaced in the circuit's parameter).
 /// Positions at which the loop is open are left out; without such a candidate there is only the header row.
 pub fn curve_csv(record: &Record, index: usize) -> String {
-    record.candidates.get(index).map_or_else(|| written(&CURVE_COLUMNS, []), candidate_curve_csv)
+    record.candidates.get(index).map_or_else(|| written(CURVE_COLUMNS, []), candidate_curve_csv)
 }
 
 /// Returns the curve as [`curve_csv`] does, for a candidate that need not be in a record.
@@ -164,7 +149,10 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
 }
 
 /// Returns the header row and the rows as CSV with line feeds.
-pub(crate) fn written(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+pub(crate) fn written<Name: AsRef<[u8]>>(
+    head: impl IntoIterator<Item = Name>,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> String {
     let mut writer = csv::WriterBuilder::new().flexible(true).from_writer(Vec::new());
     // Writing to memory does not fail; if it did, the text so far is returned.
     let mut good = writer.write_record(head).is_ok();

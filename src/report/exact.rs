@@ -1,11 +1,12 @@
 //! The linkages through nine points (exact synthesis), in words and as a table.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::table::COLUMNS;
-use super::text::{grouped, significant, wrapped};
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain, verdict};
+use super::text::{COLUMNS, clean, grouped, indented, shortened, significant, wrapped};
 use super::words;
 use crate::mechanism::AssemblyMode;
 use crate::record::{Census, Completeness, ExactLinkage, ExactRecord, GENERIC_CLASSES, Record};
+use crate::task::Defect;
 
 /// The number of rows if not all are asked for.
 const FEW: usize = 8;
@@ -14,11 +15,8 @@ const FEW: usize = 8;
 pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
     let Some(exact) = &record.exact else { return String::new() };
     let mut out = format!("\n  {}\n", colour.paint(Ink::Strong, "Every linkage through the nine points"));
-    let sentences = none_through(record).map_or_else(|| sentences(exact).to_vec(), |one| vec![one]);
-    for sentence in sentences {
-        if !sentence.is_empty() {
-            out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
-        }
+    for sentence in said(record, exact) {
+        out.push_str(&wrapped("    ", "    ", &sentence, COLUMNS));
     }
     if exact.linkages.is_empty() {
         return out;
@@ -38,8 +36,14 @@ pub fn exact_text(record: &Record, all: bool, colour: Colour) -> String {
         ));
     }
     out.push('\n');
-    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    out.push_str(&indented(&key));
     out
+}
+
+/// Returns the census in sentences, or the one sentence in its place.
+pub(super) fn said(record: &Record, exact: &ExactRecord) -> Vec<String> {
+    let said = none_through(record).map_or_else(|| sentences(exact).to_vec(), |one| vec![one]);
+    said.into_iter().filter(|sentence| !sentence.is_empty()).collect()
 }
 
 /// Returns one plain sentence instead of a census if the points are in special position and no solution was found.
@@ -198,48 +202,49 @@ pub fn ability(linkage: &ExactLinkage) -> &'static str {
     }
 }
 
+/// Returns the defects of a linkage in words.
+pub(super) fn defects(linkage: &ExactLinkage) -> String {
+    let names: Vec<&str> = linkage.defects.iter().map(Defect::name).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// Returns the names of the requirements that a linkage misses, other than those for which it has a defect.
+pub(super) fn others(linkage: &ExactLinkage) -> Vec<String> {
+    let of_defect = |name: &str| linkage.defects.iter().any(|defect| defect.name() == name);
+    let names = linkage.not_met.iter().filter(|name| !of_defect(name));
+    names.map(|name| clean(name.strip_prefix("design.").unwrap_or(name))).collect()
+}
+
 fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
-    use Align::{Left, Right};
     let mut grid = Grid::new(&[
-        ("", Right),
-        ("#", Right),
-        ("curve", Left),
-        ("type", Left),
-        ("t1", Left),
-        ("defects", Left),
-        ("transmission", Right),
-        ("ratio", Right),
-        ("radius", Right),
-        ("verdict", Left),
+        (Right, &["", "#"]),
+        (Left, &["curve", "type", "t1", "defects"]),
+        (Right, &["transmission", "ratio", "radius"]),
+        (Left, &["verdict"]),
     ]);
     for (i, linkage) in linkages.iter().enumerate() {
-        let plain = |text: String| (text, Ink::Plain);
         let signs = linkage.t1_at.iter().take(COLUMNS / 4);
-        let signs = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
-        let defects: Vec<&str> = linkage.defects.iter().map(crate::task::Defect::name).collect();
-        let ink = if linkage.accepted { Ink::Good } else { Ink::Bad };
-        let others =
-            linkage.not_met.iter().filter(|name| !defects.contains(&name.as_str())).map(String::as_str);
-        let others: Vec<&str> = others.map(|name| name.strip_prefix("design.").unwrap_or(name)).collect();
-        let verdict = match (linkage.accepted, others.as_slice()) {
+        let signs: String = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
+        let others = others(linkage);
+        let said = match (linkage.accepted, others.as_slice()) {
             (true, _) => "accepted".to_owned(),
             (false, []) => "no".to_owned(),
             (false, [only]) => format!("no: {only}"),
             (false, [first, rest @ ..]) => format!("no: {first} +{}", rest.len()),
         };
-        grid.row(vec![
+        grid.row([
             plain((i + 1).to_string()),
             (if linkage.rank > 0 { format!("#{}", linkage.rank) } else { String::new() }, Ink::Strong),
-            plain(ability(linkage).to_owned()),
-            plain(linkage.linkage_type.name().to_owned()),
+            plain(ability(linkage)),
+            plain(linkage.linkage_type.name()),
             plain(signs),
-            plain(if defects.is_empty() { "none".to_owned() } else { defects.join(", ") }),
+            plain(defects(linkage)),
             plain(format!("{}°", significant(linkage.transmission_worst_deg, 3))),
             plain(significant(linkage.link_ratio, 3)),
             plain(linkage.certified.map_or("no proof".to_owned(), |c| {
                 format!("{}{}", significant(c.radius, 1), words::unit_suffix(record))
             })),
-            (super::text::shortened(&super::text::clean(&verdict), 22), ink),
+            verdict(shortened(&said, 22), linkage.accepted),
         ]);
     }
     grid.render(colour)

@@ -1,9 +1,9 @@
 //! Small drawings of every real linkage through nine points, side by side.
 
-use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, text_width};
+use super::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette, text_width};
 use super::exact::ability;
 use super::figure::{Detail, draw};
-use super::scene::{Bounds, Scene};
+use super::scene::{Bounds, Scene, positions_at};
 use super::text::{shortened, significant};
 use super::words;
 use crate::record::{ExactLinkage, Record};
@@ -37,9 +37,9 @@ pub fn exact_svg(record: &Record) -> String {
     };
     let counted = format!("{counted}, {free} free of defects");
     let room = ((width - 2.0 * MARGIN) / text_width("x", 19.0)) as usize;
-    let bold = format!(r#"font-size="19" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(19, palette::INK);
     canvas.text(Spot::new(MARGIN, 36.0), Anchor::Start, &bold, &shortened(&name, room));
-    let muted = format!(r#"font-size="13" fill="{}""#, palette::MUTED);
+    let muted = font(13, palette::MUTED);
     canvas.text(Spot::new(MARGIN, 57.0), Anchor::Start, &muted, &counted);
     for (i, linkage) in linkages.iter().take(n).enumerate() {
         let corner = Spot::new(
@@ -58,23 +58,15 @@ fn cell(canvas: &mut Canvas, record: &Record, linkage: &ExactLinkage, number: us
     let edge = if linkage.free_of_defects { palette::FOLLOWER } else { palette::FAINT };
     let weight = if linkage.free_of_defects { 2.0 } else { 1.0 };
     let drawing = Area { height: CELL_DRAWING, ..frame };
-    let positions = linkage.crank_deg.iter().map(|deg| deg.to_radians()).zip(linkage.t1_at.iter().copied());
-    let scene = Scene::of(record, &linkage.linkage, &positions.collect::<Vec<_>>(), SAMPLES);
+    let positions = positions_at(&linkage.crank_deg, &linkage.t1_at);
+    let scene = Scene::of(record, &linkage.linkage, &positions, SAMPLES);
     let view = View::fit(&seen(&scene), drawing.shrunk(12.0));
     canvas.raw(&format!(
         r#"<clipPath id="cell-{number}"><rect x="{}" y="{}" width="{CELL}" height="{CELL_DRAWING}"/></clipPath>"#,
         corner.x, corner.y
     ));
     canvas.raw(&format!(r##"<g clip-path="url(#cell-{number})">"##));
-    let detail = Detail {
-        weight: 0.45,
-        target_weight: 0.5,
-        letters: false,
-        numbers: false,
-        linkage: true,
-        clip: None,
-    };
-    draw(canvas, &scene, &view, detail);
+    draw(canvas, &scene, &view, Detail { target_weight: 0.5, ..Detail::small(0.45) });
     canvas.raw("</g>");
     canvas.area(frame, &format!(r#"fill="none" stroke="{edge}" stroke-width="{weight}" rx="4""#));
     let (left, right) = (corner.x + 8.0, corner.x + CELL - 8.0);

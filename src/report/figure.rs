@@ -1,9 +1,9 @@
 //! The drawing of a scene: curve, linkage, target and labels.
 
-use super::canvas::{Anchor, Canvas, Spot, View, palette, px};
+use super::canvas::{Anchor, Canvas, Corners, Spot, View, font, haloed, palette, px};
 use super::labels::Labels;
 use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
-use super::scene::{Bounds, Pose, Scene};
+use super::scene::{Bounds, Scene, all_joints};
 use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
 
@@ -24,6 +24,18 @@ pub(super) struct Detail {
     pub(super) clip: Option<Bounds>,
 }
 
+impl Detail {
+    /// The linkage in a drawing of this scale, without letters and numbers.
+    pub(super) const fn small(weight: f64) -> Detail {
+        Detail { weight, target_weight: weight, letters: false, numbers: false, linkage: true, clip: None }
+    }
+
+    /// The linkage with its letters in a drawing of this scale.
+    pub(super) const fn lettered(weight: f64) -> Detail {
+        Detail { letters: true, target_weight: 1.0, ..Detail::small(weight) }
+    }
+}
+
 /// The largest number of points that all have numbers; of more, only round ones have.
 const NUMBERED: usize = 20;
 /// The largest number of target points that are drawn as rings; more are plain dots.
@@ -42,24 +54,25 @@ pub(super) fn draw_among(
     view: &View,
     detail: Detail,
 ) {
-    let pose = scene.pose.filter(|_| detail.linkage);
-    if let Some(pose) = &pose {
-        ground(canvas, scene, view, detail);
+    let joints = joint_spots(scene, view).filter(|_| detail.linkage);
+    if let Some(joints) = joints {
+        let [a, b, c, d, p] = joints;
+        ground(canvas, [a, b], detail);
         pin_paths(canvas, scene, view, detail);
-        mark_linkage(labels, scene, view, pose);
-        coupler_triangle(canvas, scene, view, pose, detail);
+        mark_joints(labels, joints);
+        triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
     }
     curves(canvas, labels, scene, view, detail);
     let marks = Marks::new(scene, view, detail);
     whiskers(canvas, labels, &marks, detail);
-    if let Some(pose) = &pose {
-        linkage(canvas, scene, view, pose, detail);
+    if let Some([a, b, c, d, _]) = joints {
+        bars(canvas, [a, b, c, d], palette::BAR, palette::BAR_EDGE, detail.weight);
     }
     targets(canvas, labels, &marks, detail);
-    if let Some(pose) = &pose {
-        coupler_point(canvas, view, pose, detail);
+    if let Some(joints) = joints {
+        point_mark(canvas, joints[4], detail.weight);
         if detail.letters {
-            letters(canvas, labels, scene, view, pose);
+            letters(canvas, labels, joints);
         }
     }
     if detail.numbers {
@@ -119,9 +132,7 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
 }
 
 /// Draws the line A-B, and under each fixed pivot a hatched stand.
-fn ground(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    let Some(linkage) = &scene.linkage else { return };
-    let pivots = [linkage.crank_pivot(), linkage.follower_pivot()].map(|p| view.spot(p));
+fn ground(canvas: &mut Canvas, pivots: [Spot; 2], detail: Detail) {
     let faint =
         format!(r#"stroke="{}" stroke-width="{:.2}" stroke-dasharray="2 5""#, palette::MUTED, detail.weight);
     canvas.line(pivots[0], pivots[1], &faint);
@@ -141,34 +152,9 @@ fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
     }
 }
 
-/// Returns A, B, C, D, P on the canvas.
-fn joint_spots(scene: &Scene, view: &View, pose: &Pose) -> Option<[Spot; 5]> {
-    let linkage = scene.linkage.as_ref()?;
-    let joints = &pose.joints;
-    let all = [
-        linkage.crank_pivot(),
-        linkage.follower_pivot(),
-        joints.crank_pin,
-        joints.follower_pin,
-        joints.coupler_point,
-    ];
-    Some(all.map(|p| view.spot(p)))
-}
-
-/// Draws the coupler's triangle, shaded.
-fn coupler_triangle(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
-    let Some([_, _, c, d, p]) = joint_spots(scene, view, pose) else { return };
-    triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
-}
-
-/// Draws crank, coupler side C-D and follower as bars, with pins on top.
-fn linkage(canvas: &mut Canvas, scene: &Scene, view: &View, pose: &Pose, detail: Detail) {
-    let Some([a, b, c, d, _]) = joint_spots(scene, view, pose) else { return };
-    bars(canvas, [a, b, c, d], palette::BAR, palette::BAR_EDGE, detail.weight);
-}
-
-fn coupler_point(canvas: &mut Canvas, view: &View, pose: &Pose, detail: Detail) {
-    point_mark(canvas, view.spot(pose.joints.coupler_point), detail.weight);
+/// Returns A, B, C, D, P on the canvas; `None` for a scene without a position.
+fn joint_spots(scene: &Scene, view: &View) -> Option<[Spot; 5]> {
+    Some(all_joints(scene.linkage.as_ref()?, &scene.pose.as_ref()?.joints).map(|p| view.spot(p)))
 }
 
 /// The place of a target point, and the place that the coupler point reaches instead.
@@ -265,14 +251,8 @@ fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Deta
     }
 }
 
-/// Marks the places that labels have to avoid, apart from the curve and the points.
-fn mark_linkage(labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
-    joint_spots(scene, view, pose).into_iter().for_each(|joints| mark_joints(labels, joints));
-}
-
 /// Draws the letters A B C D P.
-fn letters(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, pose: &Pose) {
-    let Some([a, b, c, d, p]) = joint_spots(scene, view, pose) else { return };
+fn letters(canvas: &mut Canvas, labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
     let above = Spot::new(0.0, -1.0);
     let joints = [
         ("P", p, away(p, &[c, d])),
@@ -297,14 +277,7 @@ fn numbers(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View,
     let mut bounds = Bounds::default();
     scene.targets.iter().for_each(|target| bounds.hold(target.at));
     let centre = view.spot(bounds.centre());
-    let attributes = format!(
-        concat!(
-            r#"font-size="11" fill="{}" stroke="{}" stroke-width="2.5" "#,
-            r#"stroke-linejoin="round" paint-order="stroke""#
-        ),
-        palette::TARGET_TEXT,
-        palette::PAPER
-    );
+    let attributes = haloed(&font(11, palette::TARGET_TEXT), "2.5", Corners::Round);
     for target in scene.targets.iter().filter(|target| target.index % step == 0) {
         let spot = view.spot(target.at);
         let towards = Spot::new(spot.x - centre.x, spot.y - centre.y);

@@ -1,6 +1,6 @@
 //! A table of text with aligned columns, and the colours of a terminal.
 
-use super::text::columns_of;
+use super::text::{clean, columns_of, markdown, shortened};
 
 /// The choice whether text has terminal colours. The words are complete without them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -46,20 +46,55 @@ pub(super) enum Align {
     Right,
 }
 
-/// A table: the headings, and rows of cells, each with its ink.
+/// A cell: its text and its ink.
+pub(super) type Cell = (String, Ink);
+
+/// Returns a cell without a colour.
+pub(super) fn plain(text: impl Into<String>) -> Cell {
+    (text.into(), Ink::Plain)
+}
+
+/// Returns a cell with a verdict.
+pub(super) fn verdict(text: impl Into<String>, good: bool) -> Cell {
+    (text.into(), if good { Ink::Good } else { Ink::Bad })
+}
+
+/// A table: the headings, and rows of cells.
 pub(super) struct Grid {
     heads: Vec<(&'static str, Align)>,
-    rows: Vec<Vec<(String, Ink)>>,
+    rows: Vec<Vec<Cell>>,
 }
 
 impl Grid {
-    pub(super) fn new(heads: &[(&'static str, Align)]) -> Self {
-        Grid { heads: heads.to_vec(), rows: Vec::new() }
+    /// Returns an empty table with headings, neighbours with one alignment together.
+    pub(super) fn new(groups: &[(Align, &[&'static str])]) -> Self {
+        let heads = groups.iter().flat_map(|(align, heads)| heads.iter().map(|head| (*head, *align)));
+        Grid { heads: heads.collect(), rows: Vec::new() }
     }
 
     /// Adds a row. Cells beyond the headings are left out, missing ones are empty.
-    pub(super) fn row(&mut self, cells: Vec<(String, Ink)>) {
-        self.rows.push(cells);
+    pub(super) fn row(&mut self, cells: impl IntoIterator<Item = Cell>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// Returns the table with every cell cut to a number of columns.
+    pub(super) fn shortened(mut self, columns: usize) -> Self {
+        self.rows.iter_mut().flatten().for_each(|(text, _)| *text = shortened(text, columns));
+        self
+    }
+
+    /// Returns the table as Markdown.
+    pub(super) fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let rule = |align| if align == Align::Right { "---:" } else { "---" };
+        let mut out = line(self.heads.iter().map(|(head, _)| (*head).to_owned()).collect());
+        out.push_str(&line(self.heads.iter().map(|(_, align)| rule(*align).to_owned()).collect()));
+        for row in &self.rows {
+            out.push_str(&line(
+                row.iter().take(self.heads.len()).map(|(text, _)| markdown(&clean(text))).collect(),
+            ));
+        }
+        out
     }
 
     /// Returns the lines, each after two spaces, with columns two spaces apart.
@@ -70,7 +105,7 @@ impl Grid {
                 cells.fold(columns_of(self.heads[i].0), usize::max)
             })
             .collect();
-        let heads: Vec<(String, Ink)> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
+        let heads: Vec<Cell> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
         let mut out = String::new();
         for row in std::iter::once(&heads).chain(&self.rows) {
             // Spaces are written only before the next text, so that no line ends in spaces.

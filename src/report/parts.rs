@@ -1,6 +1,6 @@
 //! The parts of drawings of linkages: stands, bars, the coupler's triangle, letters.
 
-use super::canvas::{Anchor, Canvas, Spot, palette};
+use super::canvas::{Anchor, Canvas, Corners, Spot, bold, haloed, palette};
 use super::labels::Labels;
 
 /// Marks points of a path, a few pixels apart, as occupied for labels.
@@ -88,15 +88,7 @@ pub(super) fn mark_joints(labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
 /// Draws the letter of a joint beside it.
 pub(super) fn letter(canvas: &mut Canvas, labels: &mut Labels, name: &str, joint: Spot, towards: Spot) {
     if let Some(at) = labels.place(name, 15.0, joint, 9.0, towards, true) {
-        let attributes = format!(
-            concat!(
-                r#"font-size="15" font-weight="600" fill="{}" "#,
-                r#"stroke="{}" stroke-width="3" stroke-linejoin="round" paint-order="stroke""#
-            ),
-            palette::INK,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, name);
+        canvas.text(at, Anchor::Middle, &haloed(&bold(15, palette::INK), "3", Corners::Round), name);
     }
 }
 

@@ -1,7 +1,8 @@
 //! The practicality of a linkage as text: layers, distances, sensitivities.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{brief, significant, wrapped};
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain};
+use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
@@ -9,8 +10,6 @@ use crate::judge::practicality::{Closest, Practicality};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::Link;
 
-/// The width of the page, in columns.
-const COLUMNS: usize = 100;
 /// The number of significant digits of lengths and rates.
 const DIGITS: usize = 3;
 
@@ -23,7 +22,7 @@ pub fn practicality_text(
 ) -> String {
     let words = Words { unit, colour };
     let mut out = words.head("Layers");
-    out.push_str(&wrapped("  ", "  ", &words.made(practicality), COLUMNS));
+    out.push_str(&indented(&words.made(practicality)));
     match &practicality.layering {
         Some(layering) => {
             for line in words.layers(layering) {
@@ -170,50 +169,42 @@ impl Words {
     }
 
     fn distances(&self, distances: &[PivotDistance], hole: f64) -> String {
-        use Align::{Left, Right};
-        let mut grid = Grid::new(&[("joints", Left), ("least", Right), ("at crank", Right), ("", Left)]);
+        let mut grid = Grid::new(&[(Left, &["joints"]), (Right, &["least", "at crank"]), (Left, &[""])]);
         for d in distances.iter().filter(|d| !d.fixed) {
             let [one, other] = d.between;
             let note = objection(d, hole);
             let ink = if note.is_empty() { Ink::Plain } else { Ink::Bad };
-            grid.row(vec![
-                (format!("{one}-{other}"), Ink::Plain),
+            grid.row([
+                plain(format!("{one}-{other}")),
                 (significant(d.closest.value, DIGITS + 1), ink),
-                (degrees(d.closest.crank_angle), Ink::Plain),
+                plain(degrees(d.closest.crank_angle)),
                 (note.to_owned(), ink),
             ]);
         }
         let mut out = grid.render(self.colour);
-        out.push_str(&wrapped("  ", "  ", &held(distances), COLUMNS));
+        out.push_str(&indented(&held(distances)));
         out
     }
 
     fn sensitivity(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
-        use Align::{Left, Right};
-        let mut heads = vec![("dimension", Left), ("rms", Right), ("most", Right)];
-        if at_points {
-            heads.push(("at point", Right));
-        }
-        let mut grid = Grid::new(&heads);
+        let heads: &[&str] = if at_points { &["rms", "most", "at point"] } else { &["rms", "most"] };
+        let mut grid = Grid::new(&[(Left, &["dimension"]), (Right, heads)]);
         let worst = felt.worst_dimension().name;
         let row = |d: &Dimension, ink: Ink| {
-            let mut cells = vec![
+            [
                 (d.name.to_owned(), ink),
                 (significant(d.rms, DIGITS), ink),
                 (significant(d.worst, DIGITS), ink),
-            ];
-            if at_points {
-                cells.push((d.worst_at.to_string(), ink));
-            }
-            cells
+                (d.worst_at.to_string(), ink),
+            ]
         };
         for d in &felt.dimensions {
             grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
         }
         grid.row(row(&felt.ground, Ink::Faint));
-        let mut out = wrapped("  ", "  ", &shift(felt), COLUMNS);
+        let mut out = indented(&shift(felt));
         out.push_str(&grid.render(self.colour));
-        out.push_str(&wrapped("  ", "  ", &self.together(felt, at_points, tolerance), COLUMNS));
+        out.push_str(&indented(&self.together(felt, at_points, tolerance)));
         out
     }
 
@@ -293,9 +284,4 @@ fn at(closest: &Closest) -> String {
 pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
     format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -102,8 +102,12 @@ fn targets(record: &Record, reached: &dyn Fn(usize) -> Option<Complex>) -> Vec<T
 }
 
 /// Returns the crank angle (radians) and assembly at each point that has both.
+pub(super) fn positions_at(crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Vec<(f64, AssemblyMode)> {
+    crank_deg.iter().map(|angle| angle.to_radians()).zip(t1_at.iter().copied()).collect()
+}
+
 fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
-    candidate.crank_deg.iter().map(|angle| angle.to_radians()).zip(candidate.t1_at.iter().copied()).collect()
+    positions_at(&candidate.crank_deg, &candidate.t1_at)
 }
 
 /// Returns a position on the circuit of the first point: crank angle (radians) and assembly.
@@ -168,10 +172,7 @@ pub(crate) fn circuits_through(
 fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
     /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
-    let spacing = |joints: &Joints| {
-        let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-        closest(&[a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
-    };
+    let spacing = |joints: &Joints| closest(&all_joints(linkage, joints));
     let poses: Vec<(Pose, f64)> = positions
         .iter()
         .enumerate()
@@ -190,6 +191,12 @@ fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<
 pub(super) fn closest(all: &[Complex]) -> f64 {
     let pairs = (0..all.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
     pairs.map(|(i, j)| (all[i] - all[j]).norm()).fold(f64::INFINITY, f64::min)
+}
+
+/// Returns A, B, C, D, P of a linkage at a position.
+pub(super) fn all_joints(linkage: &FourBar, joints: &Joints) -> [Complex; 5] {
+    let Joints { crank_pin, follower_pin, coupler_point } = *joints;
+    [linkage.crank_pivot(), linkage.follower_pivot(), crank_pin, follower_pin, coupler_point]
 }
 
 /// A bounding box, which grows with the points put into it.
@@ -216,8 +223,19 @@ impl Bounds {
     }
 
     pub(super) fn hold_all(&mut self, other: &Bounds) {
-        self.hold(Complex::new(other.low[0], other.low[1]));
-        self.hold(Complex::new(other.high[0], other.high[1]));
+        other.corners().into_iter().for_each(|corner| self.hold(corner));
+    }
+
+    /// Returns the box of the points.
+    pub(super) fn of(points: impl IntoIterator<Item = Complex>) -> Self {
+        let mut bounds = Bounds::default();
+        points.into_iter().for_each(|p| bounds.hold(p));
+        bounds
+    }
+
+    /// Returns the lower left and the upper right corner; infinite ones for an empty box.
+    pub(super) fn corners(&self) -> [Complex; 2] {
+        [self.low, self.high].map(|[x, y]| Complex::new(x, y))
     }
 
     /// Returns the width, 0 for an empty box.

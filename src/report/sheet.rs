@@ -1,8 +1,8 @@
 //! Sheets: framed drawings with a title each, laid out on one page.
 
-use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
-use super::scene::{Bounds, round_length};
-use super::text::{brief, shortened};
+use super::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px, text_width};
+use super::scene::Bounds;
+use super::text::shortened;
 use super::words;
 use crate::mechanism::Complex;
 use crate::mechanism::Unit;
@@ -53,12 +53,12 @@ impl Sheet {
         let frame = Area { x: 0.0, y: 0.0, width: self.width, height: row_height };
         canvas.area(frame, &format!(r#"fill="none" stroke="{}" stroke-width="1" rx="4""#, palette::FAINT));
         let left = |y: f64| Spot::new(INSET, y);
-        let bold = format!(r#"font-size="15" font-weight="600" fill="{}""#, palette::INK);
+        let bold = bold(15, palette::INK);
         canvas.text(left(26.0), Anchor::Start, &bold, &fitting(&self.title, 15.0, self.width - 2.0 * INSET));
-        let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+        let muted = font(12, palette::MUTED);
         canvas.text(left(44.0), Anchor::Start, &muted, &fitting(&self.note, 12.0, self.width - 2.0 * INSET));
         canvas.body.push_str(&self.body.body);
-        let ink = format!(r#"font-size="12" fill="{}""#, palette::INK);
+        let ink = font(12, palette::INK);
         let first = row_height - 10.0 - LINE * self.foot.len() as f64 + 12.0;
         for (i, line) in self.foot.iter().enumerate() {
             let line = fitting(line, 12.0, self.width - 2.0 * INSET);
@@ -86,10 +86,10 @@ pub(super) struct Heading {
 pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
     let mut canvas = Canvas::default();
     let taken = text_width(&heading.standing, 14.0) + 20.0;
-    let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(21, palette::INK);
     let title = shortened(&heading.title, ((FULL - taken) / text_width("x", 21.0)) as usize);
     canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &title);
-    let muted = |size: f64| format!(r#"font-size="{size}" fill="{}""#, palette::MUTED);
+    let muted = |size: f64| font(size, palette::MUTED);
     canvas.text(Spot::new(MARGIN + FULL, 42.0), Anchor::End, &muted(14.0), &heading.standing);
     let mut y = 64.0;
     for line in &heading.lines {
@@ -128,18 +128,15 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
 
 /// Returns a view of the box in a sheet of this width, and the height at which the drawing ends (scale bars included).
 pub(super) fn fitted(bounds: &Bounds, width: f64) -> (View, f64) {
-    let room = width - 2.0 * PADDING;
-    let wanted = room * bounds.height() / bounds.width().max(f64::MIN_POSITIVE) + 2.0 * PADDING;
-    let height = wanted.clamp(*HEIGHTS.start(), *HEIGHTS.end());
-    let area = Area { x: 0.0, y: HEAD, width, height };
-    (View::fit(bounds, area.shrunk(PADDING)), HEAD + height + FOOTER)
+    let frame = Frame { width, padding: PADDING, heights: HEIGHTS };
+    let (view, height) = frame.fit(bounds, Spot::new(0.0, HEAD));
+    (view, HEAD + height + FOOTER)
 }
 
 /// Draws the scale bar at the lower left of a drawing that ends at `bottom`.
 pub(super) fn scale_bar(canvas: &mut Canvas, view: &View, unit: Option<Unit>, width: f64, bottom: f64) {
-    let length = round_length(0.22 * width / view.scale);
-    let label = format!("{}{}", brief(length, 3), words::length_suffix(unit));
-    canvas.scale_bar(Spot::new(INSET + 2.0, bottom - 12.0), length * view.scale, &label);
+    let at = Spot::new(INSET + 2.0, bottom - 12.0);
+    canvas.scale_bar(at, view, 0.22 * width, &words::length_suffix(unit));
 }
 
 /// Draws an arrow whose head ends at `to`; nothing if it is too short to be seen.

@@ -1,13 +1,13 @@
 //! The cost of snapping as text: before and after, and the next best linkages.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{brief, exact, grouped, significant, wrapped};
+use super::csv::PARAMETERS;
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain, verdict};
+use super::text::{COLUMNS, brief, exact, grouped, indented, significant, wrapped};
 use crate::mechanism::Unit;
 use crate::record::Candidate;
 use crate::synthesis::snap::{Length, Request, Snapped};
 
-/// The width of the page, in columns.
-const COLUMNS: usize = 100;
 /// The number of significant digits of lengths and errors.
 const DIGITS: usize = 6;
 
@@ -24,7 +24,7 @@ pub fn snap_text(
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
     let text =
         format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
-    let mut out = wrapped("  ", "  ", &text, COLUMNS);
+    let mut out = indented(&text);
     out.push_str(&dimensions(before, after, snapped, request, colour));
     out.push('\n');
     out.push_str(&figures(before, snapped, colour));
@@ -59,13 +59,9 @@ pub fn snap_text(
         let unmet: Vec<&str> =
             after.requirements.iter().filter(|r| !r.met).map(|r| r.name.as_str()).collect();
         let text = format!("Not accepted, none of them: {} not met.", unmet.join(", "));
-        out.push_str(&colour.paint(Ink::Bad, &wrapped("  ", "  ", &text, COLUMNS)));
+        out.push_str(&colour.paint(Ink::Bad, &indented(&text)));
     }
     out
-}
-
-fn plain(text: String) -> (String, Ink) {
-    (text, Ink::Plain)
 }
 
 fn dimensions(
@@ -75,9 +71,7 @@ fn dimensions(
     request: &Request,
     colour: Colour,
 ) -> String {
-    use Align::{Left, Right};
-    let mut grid =
-        Grid::new(&[("", Left), ("before", Right), ("after", Right), ("change", Right), ("", Left)]);
+    let mut grid = Grid::new(&[(Left, &[""]), (Right, &["before", "after", "change"]), (Left, &[""])]);
     let mut row = |name: &str, from: f64, to: f64, stock: bool, note: &str| {
         let shown = if stock { exact(to) } else { significant(to, DIGITS) };
         let change = to - from;
@@ -88,8 +82,8 @@ fn dimensions(
             format!("{}{}", if change > 0.0 { "+" } else { "" }, significant(change, 3))
         };
         let ink = if stock { Ink::Strong } else { Ink::Plain };
-        grid.row(vec![
-            plain(name.to_owned()),
+        grid.row([
+            plain(name),
             plain(significant(from, DIGITS)),
             (shown, ink),
             plain(change),
@@ -111,15 +105,11 @@ fn dimensions(
         let value = if stock { rounded(length.of(to)) } else { length.of(to) };
         row(length.key(), length.of(from), value, stock, note);
     }
-    for (name, of) in [
-        ("Ax", (|l| l.crank_pivot().re) as fn(&crate::mechanism::FourBar) -> f64),
-        ("Ay", |l| l.crank_pivot().im),
-        ("Bx", |l| l.follower_pivot().re),
-        ("By", |l| l.follower_pivot().im),
-        ("ground angle", |l| l.ground_angle().to_degrees()),
-    ] {
+    for (name, of) in &PARAMETERS[..4] {
         row(name, of(from), of(to), false, "");
     }
+    let [was, is] = [from, to].map(|linkage| linkage.ground_angle().to_degrees());
+    row("ground angle", was, is, false, "");
     grid.render(colour)
 }
 
@@ -129,18 +119,20 @@ fn rounded(value: f64) -> f64 {
 }
 
 fn figures(before: &Candidate, snapped: &Snapped, colour: Colour) -> String {
-    use Align::{Left, Right};
-    let mut heads = vec![("", Left), ("rms", Right), ("max", Right), ("mu worst", Right), ("accepted", Left)];
-    heads.extend(snapped.lengths.iter().map(|length| (length.key(), Right)));
-    let mut grid = Grid::new(&heads);
+    let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
+    let mut grid = Grid::new(&[
+        (Left, &[""]),
+        (Right, &["rms", "max", "mu worst"]),
+        (Left, &["accepted"]),
+        (Right, &keys),
+    ]);
     let mut row = |name: String, c: &Candidate, stock: bool| {
-        let (word, ink) = if c.accepted { ("yes", Ink::Good) } else { ("no", Ink::Bad) };
         let mut cells = vec![
             plain(name),
             plain(significant(c.error.rms, 4)),
             plain(significant(c.error.max, 4)),
             plain(format!("{}°", significant(c.transmission_deg.worst, 4))),
-            (word.to_owned(), ink),
+            verdict(if c.accepted { "yes" } else { "no" }, c.accepted),
         ];
         for length in &snapped.lengths {
             let value = length.of(&c.linkage);

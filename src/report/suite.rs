@@ -1,8 +1,10 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
 
-use super::grid::{Align, Colour, Grid, Ink};
-use super::table::COLUMNS;
-use super::text::{brief, clean, clean_sentence, grouped, percent_up, shortened, significant, wrapped};
+use super::grid::Align::{Left, Right};
+use super::grid::{Cell, Colour, Grid, Ink, plain};
+use super::text::{
+    COLUMNS, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
+};
 use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
 /// The mark of a problem with a sum that is smaller than the best known.
@@ -26,58 +28,13 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
     read in the source) and by our referee; genetic, diff. evolution: their median sum over accepted answers, \
     after as many evaluations as the search above used in the median, and how many seeds had one.";
 
-/// A table before it is formatted.
-struct Sheet {
-    heads: &'static [(&'static str, Align)],
-    rows: Vec<Vec<String>>,
-}
-
-impl Sheet {
-    fn text(self, colour: Colour) -> String {
-        let mut grid = Grid::new(self.heads);
-        for row in self.rows {
-            let ink = |cell: &String| if cell.ends_with(SMALLER) { Ink::Good } else { Ink::Plain };
-            grid.row(row.into_iter().map(|cell| (shortened(&cell, NAME), ink(&cell))).collect());
-        }
-        grid.render(colour)
-    }
-
-    fn markdown(&self) -> String {
-        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let mut out = line(self.heads.iter().map(|(head, _)| (*head).to_owned()).collect());
-        let rule = |align: &Align| if *align == Align::Right { "---:" } else { "---" };
-        out.push_str(&line(self.heads.iter().map(|(_, align)| rule(align).to_owned()).collect()));
-        for row in &self.rows {
-            out.push_str(&line(row.iter().map(|cell| markdown(cell)).collect()));
-        }
-        out
-    }
-}
-
-/// Returns foreign text as Markdown on one line, with its markup characters escaped.
-fn markdown(text: &str) -> String {
-    unmarked(&clean(text))
-}
-
-/// Returns clean text with its markup characters escaped.
-fn unmarked(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        if matches!(c, '|' | '*' | '_' | '`' | '<' | '[' | '\\' | '#') {
-            out.push('\\');
-        }
-        out.push(c);
-    }
-    out
-}
-
 /// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
     let mut out = String::new();
     if !suite.problems.is_empty() {
-        out.push_str(&answers(suite).text(colour));
+        out.push_str(&answers(suite).shortened(NAME).render(colour));
         out.push('\n');
-        out.push_str(&beside(suite).text(colour));
+        out.push_str(&beside(suite).shortened(NAME).render(colour));
         out.push('\n');
         for what in [WHAT, TIMES, BESIDE] {
             out.push_str(&wrapped("  ", "    ", what, COLUMNS));
@@ -121,13 +78,13 @@ pub fn suite_markdown(suite: &Suite) -> String {
     if is_certified(suite) {
         out.push_str(&paragraph(PROVED));
         for proof in proofs(suite) {
-            out.push_str(&wrapped("- ", "  ", &unmarked(&proof), COLUMNS + 10));
+            out.push_str(&wrapped("- ", "  ", &markdown(&proof), COLUMNS + 10));
         }
         out.push('\n');
     }
     let notes = notes(suite);
     for note in &notes {
-        out.push_str(&wrapped("- ", "  ", &markdown(note), COLUMNS + 10));
+        out.push_str(&wrapped("- ", "  ", &markdown(&clean(note)), COLUMNS + 10));
     }
     if !notes.is_empty() {
         out.push('\n');
@@ -168,111 +125,79 @@ fn proofs(suite: &Suite) -> Vec<String> {
     suite.problems.iter().filter_map(told).collect()
 }
 
-fn answers(suite: &Suite) -> Sheet {
-    use Align::{Left, Right};
-    let row = |problem: &ProblemResult| {
+fn answers(suite: &Suite) -> Grid {
+    let heads =
+        ["sum of sq", "best known", "median", "to curve", "hits", "median ms", "worst ms", "evaluations"];
+    let proved: &[&str] = if is_certified(suite) { &["proved gap"] } else { &[] };
+    let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads), (Right, proved)]);
+    for problem in &suite.problems {
         let summary = &problem.search.summary;
         let best = summary.best.as_ref();
         let gap = problem.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
-        let mark = if problem.smaller_than_best_known.is_some() { SMALLER } else { "" };
-        let of = problem.search.runs.len();
-        let mut cells = vec![
-            format!("{}{mark}", clean(&problem.name)),
+        let name = clean(&problem.name);
+        grid.row([
+            match problem.smaller_than_best_known {
+                Some(_) => (format!("{name}{SMALLER}"), Ink::Good),
+                None => plain(name),
+            },
             number(best.map(|best| best.sum_sq), 6),
-            significant(problem.best_known_sum_sq, 6),
+            plain(significant(problem.best_known_sum_sq, 6)),
             number(summary.median_sum_sq, 6),
             number(best.and_then(|best| best.to_curve_sum_sq), 4),
-            format!("{}/{of}", summary.hits),
+            plain(format!("{}/{}", summary.hits, problem.search.runs.len())),
             number(summary.median_search_s.map(|s| 1e3 * s), 3),
             number(summary.worst_search_s.map(|s| 1e3 * s), 3),
-            summary.median_evaluations.map_or(NOTHING.into(), grouped),
-        ];
-        if is_certified(suite) {
-            cells.push(gap.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap))));
-        }
-        cells
-    };
-    const HEADS: [(&str, Align); 10] = [
-        ("problem", Left),
-        ("sum of sq", Right),
-        ("best known", Right),
-        ("median", Right),
-        ("to curve", Right),
-        ("hits", Right),
-        ("median ms", Right),
-        ("worst ms", Right),
-        ("evaluations", Right),
-        ("proved gap", Right),
-    ];
-    Sheet {
-        heads: if is_certified(suite) { &HEADS } else { &HEADS[..HEADS.len() - 1] },
-        rows: suite.problems.iter().map(row).collect(),
+            plain(summary.median_evaluations.map_or(NOTHING.into(), grouped)),
+            plain(gap.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap)))),
+        ]);
     }
+    grid
 }
 
-fn beside(suite: &Suite) -> Sheet {
-    use Align::{Left, Right};
-    let row = |problem: &ProblemResult| {
+fn beside(suite: &Suite) -> Grid {
+    let heads = ["median", "printed", "re-evaluated", "genetic", "accepted", "diff. evolution", "accepted"];
+    let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads)]);
+    for problem in &suite.problems {
         let best = problem.best_published.as_ref();
         let mut cells = vec![
-            clean(&problem.name),
+            plain(clean(&problem.name)),
             number(problem.search.summary.median_sum_sq, 6),
-            best.map_or(NOTHING.into(), printed),
+            plain(best.map_or(NOTHING.into(), printed)),
             number(best.and_then(|entry| entry.sum_sq), 6),
         ];
         for population in &problem.populations {
             cells.push(number(population.summary.median_sum_sq, 6));
-            cells.push(format!("{}/{}", population.summary.accepted, population.runs.len()));
+            cells.push(plain(format!("{}/{}", population.summary.accepted, population.runs.len())));
         }
-        cells
-    };
-    Sheet {
-        heads: &[
-            ("problem", Left),
-            ("median", Right),
-            ("printed", Right),
-            ("re-evaluated", Right),
-            ("genetic", Right),
-            ("accepted", Right),
-            ("diff. evolution", Right),
-            ("accepted", Right),
-        ],
-        rows: suite.problems.iter().map(row).collect(),
+        grid.row(cells);
     }
+    grid
 }
 
-fn published(suite: &Suite) -> Sheet {
-    use Align::{Left, Right};
-    let row = |problem: &ProblemResult, entry: &PublishedResult| {
+fn published(suite: &Suite) -> Grid {
+    let mut grid = Grid::new(&[
+        (Left, &["problem", "source"]),
+        (Right, &["printed", "re-evaluated", "to curve"]),
+        (Left, &["our referee"]),
+    ]);
+    let entries =
+        suite.problems.iter().flat_map(|problem| problem.published.iter().map(move |e| (problem, e)));
+    for (problem, entry) in entries {
         let verdict = match entry.accepted {
             None => "cannot be evaluated".to_owned(),
             Some(true) => "accepted".to_owned(),
             Some(false) => format!("no: {}", entry.unmet.join(", ")),
         };
-        vec![
-            clean(&problem.name),
-            entry.source.clone(),
-            printed(entry),
+        grid.row([
+            plain(clean(&problem.name)),
+            plain(entry.source.clone()),
+            plain(printed(entry)),
             number(entry.sum_sq, DIGITS),
             number(entry.to_curve_sum_sq, 4),
-            verdict,
-        ]
-    };
-    Sheet {
-        heads: &[
-            ("problem", Left),
-            ("source", Left),
-            ("printed", Right),
-            ("re-evaluated", Right),
-            ("to curve", Right),
-            ("our referee", Left),
-        ],
-        rows: suite
-            .problems
-            .iter()
-            .flat_map(|problem| problem.published.iter().map(move |entry| row(problem, entry)))
-            .collect(),
+            plain(verdict),
+        ]);
     }
+    grid
 }
 
 /// Returns the notes that a reader must not miss: a goal that is not the best known sum, a sum smaller than the best
@@ -315,8 +240,8 @@ fn notes(suite: &Suite) -> Vec<String> {
     notes
 }
 
-fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or(NOTHING.into(), |value| significant(value, digits))
+fn number(value: Option<f64>, digits: usize) -> Cell {
+    plain(value.map_or(NOTHING.into(), |value| significant(value, digits)))
 }
 
 /// Returns the printed sum with the printed digits.

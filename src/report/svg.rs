@@ -2,9 +2,9 @@
 //! A target that is small beside its linkage has an enlarged view of its own.
 
 use super::beside;
-use super::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
+use super::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, text_width};
 use super::figure::{Detail, draw};
-use super::scene::{SAMPLES, Scene, circuits, round_length};
+use super::scene::{SAMPLES, Scene, circuits};
 use super::text::{brief, clean, shortened, significant};
 use super::words;
 use crate::record::{Candidate, Record};
@@ -33,20 +33,11 @@ pub fn candidate_svg(record: &Record, index: usize) -> String {
     let top = heading(&mut canvas, record, candidate, &title);
     let inner = WIDTH - 2.0 * MARGIN;
     let main_width = if small { 0.58 * inner } else { inner };
-    let shape = bounds.padded(0.0);
-    let wanted = (main_width - 2.0 * PADDING) * shape.height() / shape.width().max(f64::MIN_POSITIVE);
-    let height = (wanted + 2.0 * PADDING).clamp(*HEIGHTS.start(), *HEIGHTS.end());
-    let area = Area { x: MARGIN, y: top, width: main_width, height };
-    let view = View::fit(&shape, area.shrunk(PADDING));
+    let frame = Frame { width: main_width, padding: PADDING, heights: HEIGHTS };
+    let (view, height) = frame.fit(&bounds.padded(0.0), Spot::new(MARGIN, top));
 
-    let all = Detail {
-        weight: 1.0,
-        target_weight: if small { 0.5 } else { 1.0 },
-        letters: true,
-        numbers: !small,
-        linkage: true,
-        clip: None,
-    };
+    let target_weight = if small { 0.5 } else { 1.0 };
+    let all = Detail { target_weight, numbers: !small, ..Detail::lettered(1.0) };
     draw(&mut canvas, &scene, &view, all);
     if small {
         let side = 0.38 * inner;
@@ -60,7 +51,7 @@ pub fn candidate_svg(record: &Record, index: usize) -> String {
     }
 
     let footer = top + height + 26.0;
-    scale_bar(&mut canvas, record, &view, Spot::new(MARGIN, footer), 0.25 * main_width);
+    canvas.scale_bar(Spot::new(MARGIN, footer), &view, 0.25 * main_width, &words::unit_suffix(record));
     legend(&mut canvas, footer, candidate.is_some());
     let bottom = caption(&mut canvas, record, candidate, &scene, footer + 34.0);
     let description = candidate.map_or("the target alone".to_owned(), |c| figures(record, c).join("; "));
@@ -79,9 +70,9 @@ fn heading(canvas: &mut Canvas, record: &Record, candidate: Option<&Candidate>, 
     let standing = standing(record, candidate);
     let left = |size: f64, taken: f64| ((room - taken) / text_width("x", size)) as usize;
     let name = shortened(title, left(21.0, text_width(&standing, 14.0) + 20.0));
-    let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(21, palette::INK);
     canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &name);
-    let muted = |size: u8| format!(r#"font-size="{size}" fill="{}""#, palette::MUTED);
+    let muted = |size: u8| font(size, palette::MUTED);
     canvas.text(Spot::new(WIDTH - MARGIN, 42.0), Anchor::End, &muted(14), &standing);
     match record.problem.source.as_deref().map(clean).filter(|source| !source.is_empty()) {
         Some(source) => {
@@ -129,38 +120,19 @@ fn enlarged(
     let mut within = Canvas::default();
     within.area(inside, &format!(r#"fill="{}""#, palette::PAPER));
     let clip = Some(bounds.padded(1.0));
-    draw(
-        &mut within,
-        &part,
-        &zoom,
-        Detail { weight: 1.0, target_weight: 1.0, letters: false, numbers: true, linkage: false, clip },
-    );
-    scale_bar(&mut within, record, &zoom, Spot::new(14.0, panel.height - 14.0), 0.3 * panel.width);
+    draw(&mut within, &part, &zoom, Detail { numbers: true, linkage: false, clip, ..Detail::small(1.0) });
+    let unit = words::unit_suffix(record);
+    within.scale_bar(Spot::new(14.0, panel.height - 14.0), &zoom, 0.3 * panel.width, &unit);
     let label = format!("target, {} times as large", brief(zoom.scale / view.scale, 2));
-    let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+    let muted = font(12, palette::MUTED);
     within.text(Spot::new(panel.width - 10.0, 19.0), Anchor::End, &muted, &label);
-    canvas.raw(&format!(
-        r#"<svg x="{}" y="{}" width="{}" height="{}" overflow="hidden">"#,
-        px(panel.x),
-        px(panel.y),
-        px(panel.width),
-        px(panel.height)
-    ));
-    canvas.body.push_str(&within.body);
-    canvas.raw("</svg>");
+    canvas.clipped(panel, |canvas| canvas.body.push_str(&within.body));
     canvas.area(panel, &format!(r#"fill="none" stroke="{}" stroke-width="1.2" rx="3""#, palette::MUTED));
-}
-
-/// Draws a bar of a round length, at most `most` pixels long.
-fn scale_bar(canvas: &mut Canvas, record: &Record, view: &View, at: Spot, most: f64) {
-    let length = round_length(most / view.scale);
-    let label = format!("{}{}", brief(length, 3), words::unit_suffix(record));
-    canvas.scale_bar(at, length * view.scale, &label);
 }
 
 /// Draws the legend of the marks, from the right.
 fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
-    let text = format!(r#"font-size="12" fill="{}""#, palette::INK);
+    let text = font(12, palette::INK);
     let mut x = WIDTH - MARGIN;
     if with_curve {
         x -= text_width("coupler curve", 12.0);
@@ -227,7 +199,7 @@ fn caption(
         lines.push("no linkage to draw".to_owned());
     }
     lines.extend(candidate.map(beside::warnings).filter(|text| !text.is_empty()));
-    let ink = format!(r#"font-size="13" fill="{}""#, palette::INK);
+    let ink = font(13, palette::INK);
     let room = ((WIDTH - 2.0 * MARGIN) / text_width("x", 13.0)) as usize;
     let mut y = top;
     for line in &lines {

@@ -1,8 +1,9 @@
 //! The output of `synth`: the candidates of a run, or one line for each file of a batch.
 
 use super::beside;
-use super::grid::{Align, Colour, Grid, Ink};
-use super::text::{brief, clean, exact, grouped, shortened, significant, wrapped};
+use super::grid::Align::{Left, Right};
+use super::grid::{Colour, Grid, Ink, plain, verdict};
+use super::text::{COLUMNS, brief, clean, exact, grouped, indented, shortened, significant, wrapped};
 use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
@@ -12,9 +13,6 @@ use crate::task::spec::Measure;
 
 /// The largest number of candidates whose distances from the given points are stated.
 const RAW_NAMED: usize = 3;
-
-/// The width of all text output, in columns.
-pub const COLUMNS: usize = 100;
 
 /// Returns the candidates of a run: the problem, a row for each candidate, the reasons why the others were not
 /// accepted, the best linkage to copy, and the end of the search.
@@ -33,7 +31,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     out.push_str(&price::relaxations(record, COLUMNS));
     if let Some(said) = words::without_advice(record) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", said, COLUMNS));
+        out.push_str(&indented(said));
     }
     out.push('\n');
     out.push_str(&ending(record));
@@ -44,9 +42,9 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
 fn heading(record: &Record, colour: Colour) -> String {
     let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
     out.push('\n');
-    out.push_str(&wrapped("  ", "  ", &facts(record), COLUMNS));
+    out.push_str(&indented(&facts(record)));
     if let Some(source) = record.problem.source.as_deref().map(clean).filter(|s| !s.is_empty()) {
-        out.push_str(&wrapped("  ", "  ", &source, COLUMNS));
+        out.push_str(&indented(&source));
     }
     out
 }
@@ -77,48 +75,36 @@ pub(super) fn count(n: usize, noun: &str) -> String {
 }
 
 fn rows(record: &Record, colour: Colour) -> String {
-    use Align::{Left, Right};
     let measure = record.problem.resolved.measure();
     let ranks = words::minimised(measure);
     // Beside the largest part of the tolerances the table shows that part's point, which need not be that of the
     // largest error.
     let parts = measure == Measure::LargestPart;
+    let [first, second, third] = if parts { ["at", "rms", "max"] } else { ["rms", "max", "at"] };
+    let sum = ranks.map_or("sum of sq", |(head, _)| head);
     let mut grid = Grid::new(&[
-        ("#", Right),
-        (ranks.map_or("sum of sq", |(head, _)| head), Right),
-        (if parts { "at" } else { "rms" }, Right),
-        (if parts { "rms" } else { "max" }, Right),
-        (if parts { "max" } else { "at" }, Right),
-        ("to curve", Right),
-        ("type", Left),
-        ("transmission", Right),
-        ("ratio", Right),
-        ("verdict", Left),
+        (Right, &["#", sum, first, second, third, "to curve"]),
+        (Left, &["type"]),
+        (Right, &["transmission", "ratio"]),
+        (Left, &["verdict"]),
     ]);
     for candidate in &record.candidates {
-        let transmission = &candidate.transmission_deg;
-        let ink = if candidate.accepted { Ink::Good } else { Ink::Bad };
-        let plain = |text: String| (text, Ink::Plain);
-        let mut errors =
-            vec![plain(significant(candidate.error.rms, 4)), plain(significant(candidate.error.max, 4))];
-        let at = worst_at(record, candidate);
-        errors.insert(if parts { 0 } else { 2 }, plain(at.to_string()));
-        let mut cells = vec![
+        let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
+        let at = worst_at(record, candidate).to_string();
+        let (rms, max) = (significant(error.rms, 4), significant(error.max, 4));
+        let [first, second, third] = if parts { [at, rms, max] } else { [rms, max, at] };
+        grid.row([
             (candidate.rank.to_string(), Ink::Strong),
-            plain(significant(
-                if ranks.is_some() { candidate.error.objective } else { candidate.error.sum_sq },
-                6,
-            )),
-        ];
-        cells.extend(errors);
-        cells.extend([
-            plain(significant(candidate.error.to_curve.rms, 4)),
-            plain(candidate.linkage_type.name().to_owned()),
+            plain(significant(if ranks.is_some() { error.objective } else { error.sum_sq }, 6)),
+            plain(first),
+            plain(second),
+            plain(third),
+            plain(significant(error.to_curve.rms, 4)),
+            plain(candidate.linkage_type.name()),
             plain(format!("{}° {:<5}", significant(transmission.worst, 3), words::over(transmission.over))),
             plain(significant(candidate.link_ratio, 3)),
-            (shortened(&words::verdict(record, candidate), 24), ink),
+            verdict(shortened(&words::verdict(record, candidate), 24), candidate.accepted),
         ]);
-        grid.row(cells);
     }
     grid.render(colour)
 }
@@ -150,14 +136,14 @@ fn notes(record: &Record) -> String {
          transmission: the worst angle, from 0 to 90°, over the crank's full turn (cycle) or between the points \
          (used). ratio: longest to shortest link.{unit}"
     );
-    out.push_str(&wrapped("  ", "  ", &key, COLUMNS));
+    out.push_str(&indented(&key));
     if let Some(tolerances) = words::tolerances(record) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &tolerances, COLUMNS));
+        out.push_str(&indented(&tolerances));
     }
     for sentence in against_raw(record).into_iter().chain(words::fewer(record)) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &sentence, COLUMNS));
+        out.push_str(&indented(&sentence));
     }
     // A hundred refusals for the same reason are combined into one line.
     let mut refusals: Vec<(Vec<usize>, String)> = Vec::new();
@@ -259,7 +245,7 @@ fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
 
 /// Returns method, seed, cost and the reason why the search ended.
 fn ending(record: &Record) -> String {
-    wrapped("  ", "  ", &ending_sentences(record), COLUMNS)
+    indented(&ending_sentences(record))
 }
 
 /// Returns method, seed, cost and the reason why the search ended, on one line.
@@ -305,51 +291,38 @@ pub enum BatchOutcome<'a> {
 
 /// Returns a row for each file of a batch and a line with the counts.
 pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
-    use Align::{Left, Right};
     let mut grid = Grid::new(&[
-        ("problem", Left),
-        ("points", Right),
-        ("best sum of sq", Right),
-        ("rms", Right),
-        ("max", Right),
-        ("accepted", Right),
-        ("status", Left),
+        (Left, &["problem"]),
+        (Right, &["points", "best sum of sq", "rms", "max", "accepted"]),
+        (Left, &["status"]),
     ]);
     let (mut good, mut without) = (0, 0);
     let mut refused = Vec::new();
     for file in files {
-        let plain = |text: String| (text, Ink::Plain);
         let name = plain(shortened(&clean(file.name), 30));
         match file.outcome {
             BatchOutcome::Ran(record) => {
                 let accepted = record.candidates.iter().filter(|c| c.accepted).count();
                 *(if accepted > 0 { &mut good } else { &mut without }) += 1;
-                let ink = if accepted > 0 { Ink::Good } else { Ink::Bad };
                 let best = record.candidates.first().map(|c| &c.error);
                 let figure = |of: fn(&crate::record::ErrorRecord) -> f64, digits| {
-                    best.map_or(String::new(), |error| significant(of(error), digits))
+                    plain(best.map_or(String::new(), |error| significant(of(error), digits)))
                 };
-                grid.row(vec![
+                grid.row([
                     name,
                     plain(grouped(record.problem.resolved.task.path.points.len() as u64)),
-                    plain(figure(|e| e.sum_sq, 6)),
-                    plain(figure(|e| e.rms, 4)),
-                    plain(figure(|e| e.max, 4)),
-                    (format!("{accepted} of {}", record.candidates.len()), ink),
-                    plain(words::reason_name(record.termination.reason).to_owned()),
+                    figure(|e| e.sum_sq, 6),
+                    figure(|e| e.rms, 4),
+                    figure(|e| e.max, 4),
+                    verdict(format!("{accepted} of {}", record.candidates.len()), accepted > 0),
+                    plain(words::reason_name(record.termination.reason)),
                 ]);
             }
             BatchOutcome::Refused(why) => {
-                refused.push(wrapped(
-                    "  ",
-                    "    ",
-                    &format!("{}: {}", clean(file.name), clean(why)),
-                    COLUMNS,
-                ));
-                let mut cells = vec![name];
-                cells.extend(std::iter::repeat_n(plain(String::new()), 5));
-                cells.push(("refused".to_owned(), Ink::Bad));
-                grid.row(cells);
+                let said = format!("{}: {}", clean(file.name), clean(why));
+                refused.push(wrapped("  ", "    ", &said, COLUMNS));
+                let empty = || plain("");
+                grid.row([name, empty(), empty(), empty(), empty(), empty(), verdict("refused", false)]);
             }
         }
     }

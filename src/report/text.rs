@@ -230,6 +230,12 @@ fn columns_of_char(c: char) -> usize {
     }
 }
 
+/// Returns the text with a capital first letter.
+pub(super) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+}
+
 /// Returns cleaned foreign text as XML character data or attribute value.
 ///
 /// ```
@@ -250,10 +256,30 @@ pub fn xml(text: &str) -> String {
     escaped
 }
 
+/// Returns clean text as Markdown, with its markup characters escaped.
+pub(super) fn markdown(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        if matches!(c, '|' | '*' | '_' | '`' | '<' | '[' | '\\' | '#') {
+            out.push('\\');
+        }
+        out.push(c);
+    }
+    out
+}
+
+/// The width of all text output, in columns.
+pub const COLUMNS: usize = 100;
+
 /// Returns cleaned foreign text for a CSV cell: a text that a spreadsheet would take for a formula gets an apostrophe.
 pub fn cell(text: &str) -> String {
     let clean = clean(text);
     if clean.starts_with(['=', '+', '-', '@']) { format!("'{clean}") } else { clean }
+}
+
+/// Returns words in lines of at most [`COLUMNS`] columns, each after two spaces.
+pub(super) fn indented(text: &str) -> String {
+    wrapped("  ", "  ", text, COLUMNS)
 }
 
 /// Returns words in lines of at most `columns` columns, each after `indent`, the first after `lead`.

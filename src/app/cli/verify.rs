@@ -11,7 +11,7 @@ use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
 use crate::judge::verify::{Checked, Mismatch, unchecked, verify, verify_certificate};
 use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
-use crate::report::table::COLUMNS;
+use crate::report::text::COLUMNS;
 use crate::report::text::wrapped;
 use std::fmt::Display;
 use std::io;

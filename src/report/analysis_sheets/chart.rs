@@ -1,6 +1,6 @@
 //! A chart of a few series against the crank angle.
 
-use crate::report::canvas::{Anchor, Area, Canvas, Spot, palette, px, text_width};
+use crate::report::canvas::{Anchor, Area, Canvas, Spot, bold, font, palette, px, text_width};
 use crate::report::scene::round_length;
 use crate::report::text::{brief, xml};
 
@@ -72,13 +72,22 @@ impl Chart {
         self.heading(canvas, &area, &plot, cut);
 
         // Curves that could run out of the plot are clipped to it.
-        canvas.raw(&format!(
-            r#"<svg x="{}" y="{}" width="{}" height="{}" overflow="hidden">"#,
-            px(plot.x),
-            px(plot.y),
-            px(plot.width),
-            px(plot.height)
-        ));
+        canvas
+            .clipped(plot, |canvas| self.curves(canvas, abscissa, (low, high, tick), (&x_of, &y_of), &plot));
+        canvas.area(plot, &format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED));
+        numbers(canvas, &plot, (low, high, tick), y_of);
+        crank_angles(canvas, &plot, abscissa, x_of);
+    }
+
+    /// Draws warnings, unreachable ranges, ticks, toggles and the series.
+    fn curves(
+        &self,
+        canvas: &mut Canvas,
+        abscissa: &Abscissa,
+        (low, high, tick): (f64, f64, f64),
+        (x_of, y_of): (&dyn Fn(f64) -> f64, &dyn Fn(f64) -> f64),
+        plot: &Area,
+    ) {
         for (from, to) in &self.warning {
             let band =
                 Area { x: 0.0, y: y_of(*to), width: plot.width, height: (y_of(*from) - y_of(*to)).max(0.0) };
@@ -122,16 +131,12 @@ impl Chart {
                 }
             }
         }
-        canvas.raw("</svg>");
-        canvas.area(plot, &format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED));
-        numbers(canvas, &plot, (low, high, tick), y_of);
-        crank_angles(canvas, &plot, abscissa, x_of);
     }
 
     /// Draws title and unit at the left, and the names of the series at the right.
     fn heading(&self, canvas: &mut Canvas, area: &Area, plot: &Area, cut: bool) {
         let y = area.y + 17.0;
-        let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
+        let bold = bold(12.5, palette::INK);
         let note = if cut { format!("{}, peaks at toggles cut off", self.unit) } else { self.unit.clone() };
         canvas.raw(&format!(
             r#"<text x="{}" y="{}" {bold}>{}<tspan dx="7" {}>{}</tspan></text>"#,
@@ -146,7 +151,7 @@ impl Chart {
         }
         let mut x = plot.x + plot.width;
         for (i, series) in self.series.iter().enumerate().rev() {
-            let text = format!(r#"font-size="12" fill="{}""#, palette::INK);
+            let text = font(12, palette::INK);
             canvas.text(Spot::new(x, y), Anchor::End, &text, series.name);
             x -= text_width(series.name, 12.0) + 9.0;
             let line = format!(r#"stroke="{}" stroke-width="2.2"{}"#, series.colour, dashes(i));
@@ -200,7 +205,7 @@ fn dashes(index: usize) -> &'static str {
 }
 
 fn muted(size: u8) -> String {
-    format!(r#"font-size="{size}" fill="{}""#, palette::MUTED)
+    font(size, palette::MUTED)
 }
 
 /// Returns the smallest step of degrees that is at least `least`.

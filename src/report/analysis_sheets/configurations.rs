@@ -2,7 +2,7 @@
 
 use super::{as_joints, closed, degrees, pivots, positions_of, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
-use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette};
+use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Labels;
 use crate::report::scene::{Bounds, Pose, Scene, circuits_through, middle_position};
@@ -31,15 +31,7 @@ pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
     for (i, (configuration, (scene, crank_deg))) in all.iter().zip(&scenes).enumerate() {
         let x = INSET + i as f64 * (CELL + GAP);
         let view = View::fit(&bounds, Area { x, y: top, width: CELL, height }.shrunk(20.0));
-        let detail = Detail {
-            weight: 0.62,
-            target_weight: 0.62,
-            letters: scene.pose.is_some(),
-            numbers: false,
-            linkage: true,
-            clip: None,
-        };
-        draw(&mut body, scene, &view, detail);
+        draw(&mut body, scene, &view, Detail { letters: scene.pose.is_some(), ..Detail::small(0.62) });
         if scene.pose.is_none() {
             pivots(&mut body, &mut Labels::default(), &view, &configuration.linkage, 0.62);
         }
@@ -77,11 +69,11 @@ fn scene(configuration: &Configuration) -> (Scene, Option<f64>) {
 fn heading(canvas: &mut Canvas, configuration: &Configuration, crank_deg: Option<f64>, x: f64, own: bool) {
     let linkage = &configuration.linkage;
     let signs = format!("t1 = {}, t2 = {}", sign(linkage.assembly().sign()), sign(linkage.side().sign()));
-    let bold = format!(r#"font-size="12.5" font-weight="600" fill="{}""#, palette::INK);
+    let bold = bold(12.5, palette::INK);
     let y = HEAD + 14.0;
     canvas.text(Spot::new(x, y), Anchor::Start, &bold, &signs);
     let at = crank_deg.map_or("open".to_owned(), |deg| format!("at {}", degrees(deg)));
     let text = if own { format!("as given, {at}") } else { at };
-    let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+    let muted = font(12, palette::MUTED);
     canvas.text(Spot::new(x + CELL, y), Anchor::End, &muted, &text);
 }

@@ -3,8 +3,8 @@
 
 use super::{between, closed, degrees, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
-use crate::mechanism::{Complex, cross};
-use crate::report::canvas::{Anchor, Canvas, Spot, palette};
+use crate::mechanism::{Complex, FourBar, cross};
+use crate::report::canvas::{Anchor, Canvas, Corners, Spot, font, haloed, palette};
 use crate::report::labels::Labels;
 use crate::report::parts::{away, bars, letter, mark_path, plus, stand};
 use crate::report::scene::Bounds;
@@ -24,8 +24,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     let (row, joints) = closed(configuration).into_iter().next()?;
     let [a, b, c, d, _] = joints;
     let phi = row.crank_deg.to_radians();
-    let other_assembly = linkage.assembly().opposite();
-    let other = linkage.position_with(phi, other_assembly).joints().map(|j| j.follower_pin);
+    let other = linkage.position_with(phi, linkage.assembly().opposite()).joints().map(|j| j.follower_pin);
     let coincide = other.is_none_or(|other| (other - d).norm() <= 1e-6 * linkage.longest_link());
     let other = other.filter(|_| !coincide);
 
@@ -87,6 +86,24 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     crank_angle(&mut body, &mut labels, [sa, sc], phi, &format!("φ = {}", degrees(row.crank_deg)));
     scale_bar(&mut body, &view, analysis.unit, width, bottom);
 
+    Some(Sheet {
+        title: "Construction by arcs".to_owned(),
+        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
+        body,
+        foot: steps(analysis, linkage, joints, other),
+        width,
+        bottom,
+    })
+}
+
+/// Returns the steps of the construction in words.
+fn steps(
+    analysis: &Analysis,
+    linkage: &FourBar,
+    joints: [Complex; 5],
+    other: Option<Complex>,
+) -> Vec<String> {
+    let [a, b, c, d, _] = joints;
     let unit = words::length_suffix(analysis.unit);
     let length = |x: f64| format!("{}{unit}", brief(x, 6));
     let shape = |pin: Complex| if crosses_itself([a, b, c, pin]) { "crossed" } else { "open" };
@@ -95,27 +112,20 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
         Some(other) => format!(
             "D (t1 = {own}, {}) and D′ (t1 = {}, {})",
             shape(d),
-            sign(other_assembly.sign()),
+            sign(linkage.assembly().opposite().sign()),
             shape(other)
         ),
         None => "D alone: C, D and B are in line, a toggle".to_owned(),
     };
-    Some(Sheet {
-        title: "Construction by arcs".to_owned(),
-        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
-        body,
-        foot: vec![
-            format!(
-                "1. crank a = {} gives C; 2. arc b = {} about C;",
-                length(linkage.crank()),
-                length(linkage.coupler())
-            ),
-            format!("3. arc c = {} about B; they meet in", length(linkage.follower())),
-            found,
-        ],
-        width,
-        bottom,
-    })
+    vec![
+        format!(
+            "1. crank a = {} gives C; 2. arc b = {} about C;",
+            length(linkage.crank()),
+            length(linkage.coupler())
+        ),
+        format!("3. arc c = {} about B; they meet in", length(linkage.follower())),
+        found,
+    ]
 }
 
 /// Returns the arcs about `centre` through the two intersections, which lie on both sides of the line to `towards`.
@@ -168,12 +178,7 @@ fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2]
     let towards = Spot::new((0.5 * turn).cos(), -(0.5 * turn).sin());
     let near = Spot::new(pivot.x + radius * towards.x, pivot.y + radius * towards.y);
     if let Some(at) = labels.place(text, 12.0, near, 8.0, towards, true) {
-        let attributes = format!(
-            r#"font-size="12" fill="{}" stroke="{}" stroke-width="2.5" paint-order="stroke""#,
-            palette::INK,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, text);
+        canvas.text(at, Anchor::Middle, &haloed(&font(12, palette::INK), "2.5", Corners::Sharp), text);
     }
 }
 
@@ -182,22 +187,15 @@ fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, t
     let length = from.distance(to).max(f64::MIN_POSITIVE);
     let normal = Spot::new((to.y - from.y) / length, (from.x - to.x) / length);
     if let Some(at) = labels.place(name, 14.0, between(from, to), 7.0, normal, false) {
-        let attributes = format!(
-            concat!(
-                r#"font-size="14" font-style="italic" fill="{}" "#,
-                r#"stroke="{}" stroke-width="2.5" paint-order="stroke""#
-            ),
-            colour,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, name);
+        let italic = format!(r#"font-size="14" font-style="italic" fill="{colour}""#);
+        canvas.text(at, Anchor::Middle, &haloed(&italic, "2.5", Corners::Sharp), name);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mechanism::{AssemblyMode, FourBar};
+    use crate::mechanism::AssemblyMode;
 
     fn romero() -> FourBar {
         let pivots = [Complex::new(0.0, 0.0), Complex::new(4.0, 1.0)];

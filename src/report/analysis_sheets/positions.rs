@@ -3,7 +3,7 @@
 use super::{as_joints, closed, degrees, pivots, positions_of};
 use crate::mechanism::Complex;
 use crate::mechanism::analysis::{Analysis, Configuration, Row};
-use crate::report::canvas::{Anchor, Canvas, Spot, View, palette};
+use crate::report::canvas::{Anchor, Canvas, Corners, Spot, View, font, haloed, palette};
 use crate::report::figure::{Detail, draw_among};
 use crate::report::labels::Labels;
 use crate::report::parts::{away, mark_joints, point_mark, triangle};
@@ -37,9 +37,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     for (_, joints) in shown.iter().skip(1) {
         ghost(&mut body, &mut labels, joints.map(|p| view.spot(p)));
     }
-    let detail =
-        Detail { weight: 0.85, target_weight: 1.0, letters: true, numbers: false, linkage: true, clip: None };
-    draw_among(&mut body, &mut labels, &scene, &view, detail);
+    draw_among(&mut body, &mut labels, &scene, &view, Detail::lettered(0.85));
     if scene.pose.is_none() {
         pivots(&mut body, &mut labels, &view, linkage, 0.85);
     }
@@ -83,14 +81,7 @@ fn ghost(canvas: &mut Canvas, labels: &mut Labels, joints: [Spot; 5]) {
 
 /// Draws the crank angle at each P.
 fn angles(canvas: &mut Canvas, labels: &mut Labels, view: &View, shown: &[(&Row, [Complex; 5])]) {
-    let attributes = format!(
-        concat!(
-            r#"font-size="11" fill="{}" stroke="{}" stroke-width="2.5" "#,
-            r#"stroke-linejoin="round" paint-order="stroke""#
-        ),
-        palette::CURVE,
-        palette::PAPER
-    );
+    let attributes = haloed(&font(11, palette::CURVE), "2.5", Corners::Round);
     for (_, joints) in shown {
         point_mark(canvas, view.spot(joints[4]), 0.85);
     }

@@ -4,7 +4,7 @@ use super::{as_joints, closed, degrees};
 use crate::mechanism::Unit;
 use crate::mechanism::analysis::{Analysis, Configuration, Rates};
 use crate::mechanism::{Complex, point};
-use crate::report::canvas::{Anchor, Canvas, Spot, View, palette};
+use crate::report::canvas::{Anchor, Canvas, Corners, Spot, View, bold, font, haloed, palette};
 use crate::report::figure::{Detail, draw_among};
 use crate::report::labels::Labels;
 use crate::report::scene::{Bounds, Pose, SAMPLES, Scene, circuits_through, round_length};
@@ -87,8 +87,7 @@ fn sheet(analysis: &Analysis, configuration: &Configuration, width: f64, kind: &
     let ends: Vec<(Spot, Spot)> =
         arrows.iter().map(|(from, to)| (view.spot(*from), view.spot(*to))).collect();
     ends.iter().for_each(|(from, to)| labels.mark_line(*from, *to));
-    let detail =
-        Detail { weight: 0.8, target_weight: 1.0, letters: true, numbers: false, linkage: true, clip: None };
+    let detail = Detail::lettered(0.8);
     let clip = Some(bounds.padded(0.04));
     draw_among(&mut body, &mut labels, &path, &view, Detail { clip, weight: 0.5, ..detail });
     draw_among(&mut body, &mut labels, &scene, &view, detail);
@@ -138,15 +137,7 @@ pub(super) fn per_time(unit: Option<Unit>, per: &str) -> String {
 fn tip_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, to: Spot, colour: &str) {
     let towards = Spot::new(to.x - from.x, to.y - from.y);
     if let Some(at) = labels.place(name, 13.0, to, 5.0, towards, true) {
-        let attributes = format!(
-            concat!(
-                r#"font-size="13" font-weight="600" fill="{}" "#,
-                r#"stroke="{}" stroke-width="2.5" paint-order="stroke""#
-            ),
-            colour,
-            palette::PAPER
-        );
-        canvas.text(at, Anchor::Middle, &attributes, name);
+        canvas.text(at, Anchor::Middle, &haloed(&bold(13, colour), "2.5", Corners::Sharp), name);
     }
 }
 
@@ -160,6 +151,6 @@ fn scale_arrow(canvas: &mut Canvas, view: &View, stretch: f64, suffix: &str, col
     let from = Spot::new(right.x - length, right.y);
     arrow(canvas, from, right, colour);
     let text = format!("{}{suffix}", brief(value, 3));
-    let attributes = format!(r#"font-size="12" fill="{}""#, palette::INK);
+    let attributes = font(12, palette::INK);
     canvas.text(Spot::new(right.x, right.y - 9.0), Anchor::End, &attributes, &text);
 }

@@ -2,7 +2,7 @@
 
 use super::{Comparison, Ranked, SortKey};
 use crate::mechanism::FourBar;
-use crate::report::csv::{parameters, written};
+use crate::report::csv::{Column, PARAMETERS, cells, figures, names, parameters, written};
 use crate::report::text::{cell, exact};
 use crate::report::words;
 use crate::task::Defect;
@@ -11,14 +11,8 @@ use serde::Serialize;
 /// The version of the format of [`Comparison::json`].
 pub const JSON_FORMAT: u32 = 1;
 
-/// The first columns of [`Comparison::csv`]. With several keys a column `rank_KEY` for each follows, with a
-/// reference a column `KEY_percent_above` for each figure.
-pub const COLUMN_NAMES: [&str; 29] = [
-    "rank",
-    "label",
-    "accepted",
-    "on_front",
-    "behind_percent",
+/// The figures of a candidate that are columns here too, by their names in its own table.
+const FIGURES: [&str; 10] = [
     "sum_sq",
     "objective",
     "rms",
@@ -29,36 +23,19 @@ pub const COLUMN_NAMES: [&str; 29] = [
     "transmission_worst_deg",
     "transmission_over",
     "link_ratio",
-    "size",
-    "Ax",
-    "Ay",
-    "Bx",
-    "By",
-    "a",
-    "b",
-    "c",
-    "d",
-    "e",
-    "t1",
-    "t2",
-    "unit",
-    "recorded_differently",
 ];
 
-/// Returns Ax Ay Bx By a b c d e.
-pub(super) fn lengths(linkage: &FourBar) -> [f64; 9] {
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    [
-        a.re,
-        a.im,
-        b.re,
-        b.im,
-        linkage.crank(),
-        linkage.coupler(),
-        linkage.follower(),
-        linkage.crank_side(),
-        linkage.follower_side(),
-    ]
+/// The columns before those figures.
+const PLACE: [Column<Ranked>; 5] = [
+    ("rank", |row| row.rank.to_string()),
+    ("label", |row| cell(&row.entry.label)),
+    ("accepted", |row| row.entry.candidate.accepted.to_string()),
+    ("on_front", |row| row.on_front.to_string()),
+    ("behind_percent", |row| number(row.behind_percent)),
+];
+
+fn number(value: Option<f64>) -> String {
+    value.map_or(String::new(), exact)
 }
 
 #[derive(Serialize)]
@@ -152,47 +129,33 @@ impl<'a> Row<'a> {
 }
 
 impl Comparison {
-    /// Returns one row for each entry, every number to the last digit: [`COLUMN_NAMES`], then ranks and differences.
+    /// Returns one row for each entry, every number to the last digit: place, figures and parameters; with several keys a
+    /// column `rank_KEY` for each follows, with a reference a column `KEY_percent_above` for each figure.
     pub fn csv(&self) -> String {
-        let mut head: Vec<String> = COLUMN_NAMES.map(str::to_owned).to_vec();
         let several = self.keys.len() > 1;
+        let head = names(&PLACE).chain(FIGURES).chain(["size"]).chain(names(&PARAMETERS));
+        let mut head: Vec<String> = head.chain(["unit", "recorded_differently"]).map(str::to_owned).collect();
         if several {
             head.extend(self.keys.iter().map(|key| format!("rank_{}", key.name())));
         }
         if self.reference.is_some() {
             head.extend(SortKey::ALL.map(|key| format!("{}_percent_above", key.name())));
         }
-        let number = |value: Option<f64>| value.map_or(String::new(), exact);
         let rows = self.rows.iter().map(|row| {
-            let (entry, candidate) = (&row.entry, &row.entry.candidate);
-            let mut cells = vec![
-                row.rank.to_string(),
-                cell(&entry.label),
-                candidate.accepted.to_string(),
-                row.on_front.to_string(),
-                number(row.behind_percent),
-                exact(candidate.error.sum_sq),
-                exact(candidate.error.objective),
-                exact(candidate.error.rms),
-                exact(candidate.error.max),
-                candidate.error.max_at.to_string(),
-                exact(candidate.error.to_curve.rms),
-                candidate.linkage_type.name().to_owned(),
-                exact(candidate.transmission_deg.worst),
-                words::over(candidate.transmission_deg.over).to_owned(),
-                exact(candidate.link_ratio),
-                exact(row.size),
-            ];
-            cells.extend(parameters(&entry.candidate.linkage));
-            cells.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
-            cells.push(cell(&entry.untrue.join("; ")));
+            let entry = &row.entry;
+            let mut line = cells(&PLACE, row);
+            line.extend(figures(&entry.candidate, &FIGURES));
+            line.push(exact(row.size));
+            line.extend(parameters(&entry.candidate.linkage));
+            line.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
+            line.push(cell(&entry.untrue.join("; ")));
             if several {
-                cells.extend(row.ranks.iter().map(usize::to_string));
+                line.extend(row.ranks.iter().map(usize::to_string));
             }
-            cells.extend(row.difference_percent.iter().map(|percent| number(*percent)));
-            cells
+            line.extend(row.difference_percent.iter().copied().map(number));
+            line
         });
-        written(&head.iter().map(String::as_str).collect::<Vec<_>>(), rows)
+        written(head, rows)
     }
 
     /// Returns the whole comparison as JSON. Later versions may add keys; none is renamed.

@@ -57,20 +57,6 @@ impl SortKey {
     pub fn greatest_first(self) -> bool {
         self == SortKey::Transmission
     }
-
-    /// Returns the name for readers: `worst transmission angle`.
-    pub fn words(self) -> &'static str {
-        match self {
-            SortKey::SumSq => "sum of squared errors",
-            SortKey::Rms => "rms error",
-            SortKey::Max => "largest error",
-            SortKey::ToCurve => "rms distance to the curve",
-            SortKey::Transmission => "worst transmission angle",
-            SortKey::LinkRatio => "link ratio",
-            SortKey::Size => "size",
-            SortKey::Objective => "what was minimised",
-        }
-    }
 }
 
 /// The error that a word is not the name of a key.

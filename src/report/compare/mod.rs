@@ -25,7 +25,7 @@ mod tables;
 mod trade_off;
 mod unit;
 
-pub use data::{COLUMN_NAMES, JSON_FORMAT};
+pub use data::JSON_FORMAT;
 pub use front::{Point, front};
 pub use key::{SortKey, UnknownKey};
 pub use unit::{in_one_unit, scaled, times, unit_remarks};

@@ -2,9 +2,9 @@
 
 use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::mechanism::{Complex, point};
-use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, palette, px, text_width};
-use crate::report::scene::{Bounds, circuits, round_length};
-use crate::report::text::{brief, clean, shortened, shortened_in_front, significant};
+use crate::report::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px, text_width};
+use crate::report::scene::{Bounds, circuits};
+use crate::report::text::{clean, shortened, shortened_in_front, significant};
 use crate::report::words::length_suffix;
 
 /// The width of the drawing.
@@ -52,37 +52,29 @@ impl Overlay {
             }
         }
         let frame = frame.padded(0.0);
-        let wanted = (WIDTH - 2.0 * PADDING) * frame.height() / frame.width().max(f64::MIN_POSITIVE);
-        let height = (wanted + 2.0 * PADDING).clamp(*HEIGHTS.start(), *HEIGHTS.end());
-        let area = Area { x: 0.0, y: 0.0, width: WIDTH, height };
-        let view = View::fit(&frame, area.shrunk(PADDING));
+        let (view, height) =
+            Frame { width: WIDTH, padding: PADDING, heights: HEIGHTS }.fit(&frame, Spot::new(0.0, 0.0));
         let mut canvas = Canvas::default();
-        canvas.raw(&format!(
-            r#"<svg x="0" y="0" width="{}" height="{}" overflow="hidden">"#,
-            px(WIDTH),
-            px(height)
-        ));
         let one_target = comparison.same_target();
-        // The best is drawn last, above the others.
-        for (i, curves) in all.iter().enumerate().rev() {
-            canvas.raw(&format!(r#"<g class="curve" data-row="{i}">"#));
-            for curve in curves {
-                let spots: Vec<Spot> = curve.iter().map(|p| view.spot(*p)).collect();
-                canvas.path(&spots, true, &strokes::stroke(i));
+        canvas.clipped(Area { x: 0.0, y: 0.0, width: WIDTH, height }, |canvas| {
+            // The best is drawn last, above the others.
+            for (i, curves) in all.iter().enumerate().rev() {
+                canvas.raw(&format!(r#"<g class="curve" data-row="{i}">"#));
+                for curve in curves {
+                    let spots: Vec<Spot> = curve.iter().map(|p| view.spot(*p)).collect();
+                    canvas.path(&spots, true, &strokes::stroke(i));
+                }
+                if !one_target {
+                    targets(canvas, &view, &comparison.rows[i].entry.target, strokes::colour(i));
+                }
+                canvas.raw("</g>");
             }
-            if !one_target {
-                targets(&mut canvas, &view, &comparison.rows[i].entry.target, strokes::colour(i));
+            if let Some(first) = comparison.rows.first().filter(|_| one_target) {
+                targets(canvas, &view, &first.entry.target, palette::TARGET);
             }
-            canvas.raw("</g>");
-        }
-        if let Some(first) = comparison.rows.first().filter(|_| one_target) {
-            targets(&mut canvas, &view, &first.entry.target, palette::TARGET);
-        }
-        canvas.raw("</svg>");
+        });
         let unit = comparison.rows.first().and_then(|row| row.entry.unit);
-        let length = round_length(0.2 * WIDTH / view.scale);
-        let label = format!("{}{}", brief(length, 3), length_suffix(unit));
-        canvas.scale_bar(Spot::new(14.0, height + 22.0), length * view.scale, &label);
+        canvas.scale_bar(Spot::new(14.0, height + 22.0), &view, 0.2 * WIDTH, &length_suffix(unit));
         Overlay { canvas, height: height + 34.0, cut, drawn }
     }
 
@@ -118,9 +110,9 @@ impl Comparison {
         let overlay = Overlay::new(self);
         let mut canvas = Canvas::default();
         let title = self.title();
-        let bold = format!(r#"font-size="21" font-weight="600" fill="{}""#, palette::INK);
+        let bold = bold(21, palette::INK);
         canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &shortened(&title, 60));
-        let muted = format!(r#"font-size="13" fill="{}""#, palette::MUTED);
+        let muted = font(13, palette::MUTED);
         let ranked = format!("ranked by {}", tables::keys_in_words(self));
         canvas.text(Spot::new(MARGIN, 63.0), Anchor::Start, &muted, &ranked);
         let top = 78.0;
@@ -128,7 +120,7 @@ impl Comparison {
         canvas.body.push_str(&overlay.canvas.body);
         canvas.raw("</g>");
         let width = WIDTH + 2.0 * MARGIN;
-        let ink = format!(r#"font-size="13" fill="{}""#, palette::INK);
+        let ink = font(13, palette::INK);
         let (mut y, column) = (top + overlay.height + 24.0, WIDTH / 2.0);
         let half = overlay.drawn.div_ceil(2);
         for (i, row) in self.rows[..overlay.drawn].iter().enumerate() {

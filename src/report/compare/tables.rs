@@ -1,10 +1,14 @@
 //! A comparison as text tables for a terminal.
 
 use super::{Comparison, Ranked, SortKey};
-use crate::report::grid::{Align, Colour, Grid, Ink};
-use crate::report::table::COLUMNS;
-use crate::report::text::{NO_NUMBER, clean, columns_of, shortened_in_front, significant, wrapped};
+use crate::mechanism::FourBar;
+use crate::report::csv::PARAMETERS;
+use crate::report::grid::Align::{Left, Right};
+use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
+use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
 
+/// The headings of the figures after the first.
+const SHOWN: [&str; 6] = ["rms", "max", "to curve", "transm.", "ratio", "size"];
 /// The largest width of a label, in columns.
 const LABEL: usize = 28;
 /// The smallest width of a label, in columns.
@@ -22,10 +26,6 @@ pub(super) fn signed_percent(percent: Option<f64>) -> String {
 /// Returns the keys in words: `sum_sq, then transmission`.
 pub(super) fn keys_in_words(comparison: &Comparison) -> String {
     comparison.keys.iter().map(|key| key.name()).collect::<Vec<_>>().join(", then ")
-}
-
-fn plain(text: String) -> (String, Ink) {
-    (text, Ink::Plain)
 }
 
 impl Comparison {
@@ -52,9 +52,13 @@ impl Comparison {
         let front = self.front_words().map(|words| format!("* {words}"));
         for note in front.into_iter().chain(self.notes()) {
             out.push('\n');
-            out.push_str(&wrapped("  ", "  ", &note, COLUMNS));
+            out.push_str(&indented(&note));
         }
         out
+    }
+
+    fn first_head(&self) -> &'static str {
+        self.minimised().map_or("sum of sq", |(head, _)| head)
     }
 
     /// Returns the figure of the first column: the objective, or the sum of squares.
@@ -69,19 +73,11 @@ impl Comparison {
     }
 
     fn figures(&self, colour: Colour, label: usize) -> String {
-        use Align::{Left, Right};
         let mut grid = Grid::new(&[
-            ("#", Left),
-            ("linkage", Left),
-            ("behind", Right),
-            (self.minimised().map_or("sum of sq", |(head, _)| head), Right),
-            ("rms", Right),
-            ("max", Right),
-            ("to curve", Right),
-            ("transm.", Right),
-            ("ratio", Right),
-            ("size", Right),
-            ("accepted", Left),
+            (Left, &["#", "linkage"]),
+            (Right, &["behind", self.first_head()]),
+            (Right, &SHOWN),
+            (Left, &["accepted"]),
         ]);
         for row in &self.rows {
             let figure = |key, digits| significant(row.figure_of(key).unwrap_or(f64::NAN), digits);
@@ -90,8 +86,9 @@ impl Comparison {
                 Some(percent) => format!("{} %", significant(percent, 3)),
                 None => NO_NUMBER.to_owned(),
             };
+            let accepted = row.entry.candidate.accepted;
             let untrue = if row.entry.untrue.is_empty() { "" } else { "!" };
-            grid.row(vec![
+            grid.row([
                 (format!("{}{}{untrue}", row.rank, if row.on_front { "*" } else { "" }), Ink::Strong),
                 plain(named(row, label)),
                 plain(behind),
@@ -102,11 +99,7 @@ impl Comparison {
                 plain(format!("{}°", figure(SortKey::Transmission, 3))),
                 plain(figure(SortKey::LinkRatio, 3)),
                 plain(figure(SortKey::Size, 3)),
-                if row.entry.candidate.accepted {
-                    ("yes".into(), Ink::Good)
-                } else {
-                    ("no".into(), Ink::Bad)
-                },
+                verdict(if accepted { "yes" } else { "no" }, accepted),
             ]);
         }
         grid.render(colour)
@@ -114,9 +107,8 @@ impl Comparison {
 
     /// Returns the table of the ranks by each key.
     fn ranks(&self, colour: Colour) -> String {
-        let mut heads = vec![("#", Align::Left), ("linkage", Align::Left)];
-        heads.extend(self.keys.iter().map(|key| (key.name(), Align::Right)));
-        let mut grid = Grid::new(&heads);
+        let keys: Vec<&str> = self.keys.iter().map(|key| key.name()).collect();
+        let mut grid = Grid::new(&[(Left, &["#", "linkage"]), (Right, &keys)]);
         for row in &self.rows {
             let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, LABEL))];
             cells.extend(row.ranks.iter().map(|rank| plain(rank.to_string())));
@@ -126,18 +118,8 @@ impl Comparison {
     }
 
     fn differences(&self, colour: Colour, label: usize) -> String {
-        use Align::{Left, Right};
-        let mut grid = Grid::new(&[
-            ("#", Left),
-            ("linkage", Left),
-            (self.minimised().map_or("sum of sq", |(head, _)| head), Right),
-            ("rms", Right),
-            ("max", Right),
-            ("to curve", Right),
-            ("transm.", Right),
-            ("ratio", Right),
-            ("size", Right),
-        ]);
+        let mut grid =
+            Grid::new(&[(Left, &["#", "linkage"]), (Right, &[self.first_head()]), (Right, &SHOWN)]);
         for (i, row) in self.rows.iter().enumerate() {
             let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, label))];
             cells.extend(self.shown_figures().map(|key| {
@@ -150,35 +132,25 @@ impl Comparison {
     }
 
     fn parameters(&self, colour: Colour) -> String {
-        use Align::{Left, Right};
-        let mut grid = Grid::new(&[
-            ("#", Left),
-            ("type", Left),
-            ("Ax", Right),
-            ("Ay", Right),
-            ("Bx", Right),
-            ("By", Right),
-            ("a", Right),
-            ("b", Right),
-            ("c", Right),
-            ("d", Right),
-            ("e", Right),
-            ("t1", Right),
-            ("t2", Right),
-        ]);
+        let heads = PARAMETERS.map(|(name, _)| name);
+        let mut grid = Grid::new(&[(Left, &["#", "type"]), (Right, &heads)]);
         for row in &self.rows {
             let linkage = &row.entry.candidate.linkage;
-            let mut cells = vec![
-                (row.rank.to_string(), Ink::Strong),
-                plain(row.entry.candidate.linkage_type.name().to_owned()),
-            ];
-            cells.extend(super::data::lengths(linkage).map(|x| plain(significant(x, 4))));
-            let signs = [linkage.assembly().sign(), linkage.side().sign()];
-            cells.extend(signs.map(|sign| plain(format!("{sign:+}"))));
-            grid.row(cells);
+            let kind = row.entry.candidate.linkage_type.name();
+            let numbers = parameters(linkage, |x| significant(x, 4)).map(|(_, shown)| plain(shown));
+            grid.row([(row.rank.to_string(), Ink::Strong), plain(kind)].into_iter().chain(numbers));
         }
         grid.render(colour)
     }
+}
+
+/// Returns the parameters of a linkage, each with its text; signs are `+1` or `-1`.
+pub(super) fn parameters(linkage: &FourBar, length: impl Fn(f64) -> String) -> [(f64, String); 11] {
+    PARAMETERS.map(|(name, of)| {
+        let value = of(linkage);
+        let is_sign = name.starts_with('t');
+        (value, if is_sign { format!("{value:+}") } else { length(value) })
+    })
 }
 
 fn named(row: &Ranked, label: usize) -> String {

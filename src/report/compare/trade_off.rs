@@ -1,7 +1,7 @@
 //! The trade-off chart: error across, worst transmission angle up, size as the size of the mark.
 
 use super::{Comparison, Ranked, SortKey, strokes};
-use crate::report::canvas::{Anchor, Canvas, Spot, palette, px};
+use crate::report::canvas::{Anchor, Canvas, Spot, bold, font, palette, px};
 use crate::report::scene::round_length;
 use crate::report::text::brief;
 
@@ -92,7 +92,7 @@ pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
             radius,
             &format!(r#"fill="{colour}" fill-opacity="{opacity}" stroke="{colour}" stroke-width="{width}""#),
         );
-        let text = format!(r#"font-size="12" font-weight="600" fill="{}""#, palette::INK);
+        let text = bold(12, palette::INK);
         canvas.text(Spot::new(at.x, at.y + 4.2), Anchor::Middle, &text, &row.rank.to_string());
         canvas.raw("</g>");
     }
@@ -101,7 +101,7 @@ pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
 
 fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Axis, up: &Axis) {
     let faint = format!(r#"stroke="{}" stroke-width="1""#, palette::FAINT);
-    let muted = format!(r#"font-size="12" fill="{}""#, palette::MUTED);
+    let muted = font(12, palette::MUTED);
     let (left, right, top, bottom) = (LEFT, WIDTH - RIGHT, TOP, HEIGHT - BOTTOM);
     for tick in across.ticks() {
         let x = left + (right - left) * across.part(tick);

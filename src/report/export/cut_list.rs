@@ -119,5 +119,5 @@ pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
             row
         })
     });
-    written(&COLUMNS, rows)
+    written(COLUMNS, rows)
 }

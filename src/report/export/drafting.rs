@@ -5,13 +5,13 @@ use super::model::Model;
 use crate::files::generator::mark;
 use crate::mechanism::plates::{Link, Placement, Plate};
 use crate::mechanism::{Complex, Joints};
+use crate::report::scene::all_joints;
 use crate::report::text::exact;
 
 /// Draws the links as lines, the coupler curve, the joints as circles of the hole's diameter, and the target points.
 pub(super) fn sketch(model: &Model<'_>, joints: &Joints) -> String {
     let mut drawing = Drawing::new(&[("SKELETON", 7), ("CURVE", 1), ("JOINTS", 3), ("TARGET", 5)]);
-    let (a, b) = (model.linkage.crank_pivot(), model.linkage.follower_pivot());
-    let Joints { crank_pin: c, follower_pin: d, coupler_point: p } = *joints;
+    let [a, b, c, d, p] = all_joints(&model.linkage, joints);
     for (from, to) in [(a, b), (a, c), (c, d), (b, d), (c, p), (d, p)] {
         // Some programs refuse a line without length.
         if from != to {

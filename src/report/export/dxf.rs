@@ -4,6 +4,7 @@
 //! (`$INSUNITS` = 4); text is ASCII, other characters as `\U+XXXX`.
 
 use crate::mechanism::Complex;
+use crate::report::scene::Bounds;
 use std::fmt::Write;
 
 /// Handles of the fixed objects; those of entities and layers follow from [`FIRST_FREE`].
@@ -16,8 +17,7 @@ pub(super) struct Drawing {
     layers: Vec<(&'static str, u8)>,
     entities: Tags,
     next: u32,
-    low: Complex,
-    high: Complex,
+    bounds: Bounds,
 }
 
 /// Pairs of group code and value, as text.
@@ -27,6 +27,10 @@ struct Tags(String);
 impl Tags {
     fn text(&mut self, code: u16, value: &str) {
         let _ = writeln!(self.0, "{code:>3}\n{value}");
+    }
+
+    fn texts(&mut self, pairs: &[(u16, &str)]) {
+        pairs.iter().for_each(|(code, value)| self.text(*code, value));
     }
 
     fn number(&mut self, code: u16, value: f64) {
@@ -54,14 +58,11 @@ impl Tags {
         self.text(0, kind);
         self.handle(if kind == "DIMSTYLE" { 105 } else { 5 }, handle);
         self.handle(330, owner);
-        self.text(100, "AcDbSymbolTableRecord");
-        self.text(100, class);
-        self.text(2, name);
+        self.texts(&[(100, "AcDbSymbolTableRecord"), (100, class), (2, name)]);
     }
 
     fn table(&mut self, kind: &str, handle: u32, count: usize) {
-        self.text(0, "TABLE");
-        self.text(2, kind);
+        self.texts(&[(0, "TABLE"), (2, kind)]);
         self.handle(5, handle);
         self.handle(330, 0);
         self.text(100, "AcDbSymbolTable");
@@ -69,8 +70,7 @@ impl Tags {
     }
 
     fn section(&mut self, name: &str) {
-        self.text(0, "SECTION");
-        self.text(2, name);
+        self.texts(&[(0, "SECTION"), (2, name)]);
     }
 }
 
@@ -81,8 +81,7 @@ impl Drawing {
             layers: layers.to_vec(),
             entities: Tags::default(),
             next: FIRST_FREE + layers.len() as u32,
-            low: Complex::new(f64::INFINITY, f64::INFINITY),
-            high: Complex::new(f64::NEG_INFINITY, f64::NEG_INFINITY),
+            bounds: Bounds::default(),
         }
     }
 
@@ -91,14 +90,7 @@ impl Drawing {
         self.entities.handle(5, self.next);
         self.next += 1;
         self.entities.handle(330, MODEL_SPACE);
-        self.entities.text(100, "AcDbEntity");
-        self.entities.text(8, layer);
-        self.entities.text(100, class);
-    }
-
-    fn hold(&mut self, at: Complex) {
-        self.low = Complex::new(self.low.re.min(at.re), self.low.im.min(at.im));
-        self.high = Complex::new(self.high.re.max(at.re), self.high.im.max(at.im));
+        self.entities.texts(&[(100, "AcDbEntity"), (8, layer), (100, class)]);
     }
 
     /// Draws a line segment.
@@ -106,8 +98,8 @@ impl Drawing {
         self.entity("LINE", layer, "AcDbLine");
         self.entities.point(10, from);
         self.entities.point(11, to);
-        self.hold(from);
-        self.hold(to);
+        self.bounds.hold(from);
+        self.bounds.hold(to);
     }
 
     /// Draws a circle.
@@ -116,15 +108,15 @@ impl Drawing {
         self.entities.point(10, centre);
         self.entities.number(40, radius);
         let reach = Complex::new(radius, radius);
-        self.hold(centre - reach);
-        self.hold(centre + reach);
+        self.bounds.hold(centre - reach);
+        self.bounds.hold(centre + reach);
     }
 
     /// Draws a point.
     pub(super) fn point(&mut self, layer: &str, at: Complex) {
         self.entity("POINT", layer, "AcDbPoint");
         self.entities.point(10, at);
-        self.hold(at);
+        self.bounds.hold(at);
     }
 
     /// Draws a polyline of vertices, each with the bulge of the segment after it.
@@ -138,7 +130,7 @@ impl Drawing {
             if *bulge != 0.0 {
                 self.entities.number(42, *bulge);
             }
-            self.hold(*at);
+            self.bounds.hold(*at);
         }
     }
 
@@ -159,17 +151,15 @@ impl Drawing {
         out.0
     }
 
+    /// Returns the corners of the box of all entities; `None` for an empty drawing.
+    fn corners(&self) -> Option<[Complex; 2]> {
+        Some(self.bounds.corners()).filter(|[low, high]| low.re <= high.re)
+    }
+
     fn header(&self, out: &mut Tags) {
-        let (low, high) = if self.low.re <= self.high.re {
-            (self.low, self.high)
-        } else {
-            (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0))
-        };
+        let [low, high] = self.corners().unwrap_or_default();
         out.section("HEADER");
-        out.text(9, "$ACADVER");
-        out.text(1, "AC1015");
-        out.text(9, "$DWGCODEPAGE");
-        out.text(3, "ANSI_1252");
+        out.texts(&[(9, "$ACADVER"), (1, "AC1015"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252")]);
         for (name, at) in [("$EXTMIN", low), ("$EXTMAX", high)] {
             out.text(9, name);
             out.point(10, at);
@@ -223,9 +213,7 @@ impl Drawing {
         }
         out.whole(71, 0);
         out.number(42, 2.5);
-        out.text(3, "txt");
-        out.text(4, "");
-        out.text(0, "ENDTAB");
+        out.texts(&[(3, "txt"), (4, ""), (0, "ENDTAB")]);
         for (kind, handle) in [("VIEW", 0x6), ("UCS", 0x7)] {
             out.table(kind, handle, 0);
             out.text(0, "ENDTAB");
@@ -243,25 +231,22 @@ impl Drawing {
         for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
             out.entry("BLOCK_RECORD", handle, 0x1, "AcDbBlockTableRecord", name);
         }
-        out.text(0, "ENDTAB");
-        out.text(0, "ENDSEC");
+        out.texts(&[(0, "ENDTAB"), (0, "ENDSEC")]);
     }
 
     /// Writes the view with which a program opens the drawing: all of it.
     fn view(&self, out: &mut Tags) {
-        let size = self.high - self.low;
-        let (centre, height) = if size.re >= 0.0 {
-            ((self.low + self.high) * 0.5, 1.1 * size.im.max(size.re / 1.5).max(1e-6))
-        } else {
-            (Complex::new(0.0, 0.0), 1.0)
-        };
+        let (centre, height) = self.corners().map_or((Complex::default(), 1.0), |[low, high]| {
+            let size = high - low;
+            ((low + high) * 0.5, 1.1 * size.im.max(size.re / 1.5).max(1e-6))
+        });
         out.entry("VPORT", 0x29, 0x8, "AcDbViewportTableRecord", "*Active");
         out.whole(70, 0);
         let pairs = [
-            (10, Complex::new(0.0, 0.0)),
+            (10, Complex::default()),
             (11, Complex::new(1.0, 1.0)),
             (12, centre),
-            (13, Complex::new(0.0, 0.0)),
+            (13, Complex::default()),
             (14, Complex::new(10.0, 10.0)),
             (15, Complex::new(10.0, 10.0)),
         ];
@@ -286,20 +271,13 @@ fn blocks(out: &mut Tags) {
         out.text(0, "BLOCK");
         out.handle(5, handle);
         out.handle(330, owner);
-        out.text(100, "AcDbEntity");
-        out.text(8, "0");
-        out.text(100, "AcDbBlockBegin");
-        out.text(2, name);
+        out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockBegin"), (2, name)]);
         out.whole(70, 0);
-        out.point(10, Complex::new(0.0, 0.0));
-        out.text(3, name);
-        out.text(1, "");
-        out.text(0, "ENDBLK");
+        out.point(10, Complex::default());
+        out.texts(&[(3, name), (1, ""), (0, "ENDBLK")]);
         out.handle(5, handle + 1);
         out.handle(330, owner);
-        out.text(100, "AcDbEntity");
-        out.text(8, "0");
-        out.text(100, "AcDbBlockEnd");
+        out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockEnd")]);
     }
     out.text(0, "ENDSEC");
 }

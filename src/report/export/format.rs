@@ -66,25 +66,45 @@ impl Format {
         Format::Gif,
     ];
 
+    /// Returns the name, the kind of the files and the settings that apply.
+    fn about(self) -> (&'static str, FileKind, &'static [&'static str]) {
+        const DRAWING: &[&str] = &["scale", "unit", "hole_mm", "crank_deg", "samples"];
+        const PLATES: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm"];
+        const BODIES: &[&str] =
+            &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"];
+        const LIST: &[&str] = &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"];
+        match self {
+            Format::Svg => ("svg", FileKind::Svg, DRAWING),
+            Format::SvgPlates => ("svg-plates", FileKind::Svg, PLATES),
+            Format::Dxf => ("dxf", FileKind::Dxf, DRAWING),
+            Format::DxfPlates => ("dxf-plates", FileKind::Dxf, PLATES),
+            Format::Stl => ("stl", FileKind::Stl, &BODIES[..BODIES.len() - 1]),
+            Format::Scad => ("scad", FileKind::Scad, BODIES),
+            Format::Csv => ("csv", FileKind::Csv, &["scale", "positions", "omega_rad_s"]),
+            Format::Toml => ("toml", FileKind::Linkage, &["scale", "unit"]),
+            Format::Json => ("json", FileKind::LinkageJson, &["scale", "unit"]),
+            Format::CutList => ("cut-list", FileKind::CutList, LIST),
+            Format::CutListCsv => ("cut-list-csv", FileKind::Csv, LIST),
+            #[cfg(feature = "images")]
+            Format::Png => ("png", FileKind::Png, &["size_px", "crank_deg", "samples"]),
+            #[cfg(feature = "images")]
+            Format::Gif => ("gif", FileKind::Gif, &["size_px", "frames", "samples"]),
+        }
+    }
+
     /// Returns the name on the command line.
     pub fn name(self) -> &'static str {
-        match self {
-            Format::Svg => "svg",
-            Format::SvgPlates => "svg-plates",
-            Format::Dxf => "dxf",
-            Format::DxfPlates => "dxf-plates",
-            Format::Stl => "stl",
-            Format::Scad => "scad",
-            Format::Csv => "csv",
-            Format::Toml => "toml",
-            Format::Json => "json",
-            Format::CutList => "cut-list",
-            Format::CutListCsv => "cut-list-csv",
-            #[cfg(feature = "images")]
-            Format::Png => "png",
-            #[cfg(feature = "images")]
-            Format::Gif => "gif",
-        }
+        self.about().0
+    }
+
+    /// Returns the kind of its files.
+    pub fn kind(self) -> FileKind {
+        self.about().1
+    }
+
+    /// Returns the names of the settings that apply to it.
+    pub fn settings(self) -> &'static [&'static str] {
+        self.about().2
     }
 
     /// Returns whether the file is text, which may go to standard output.
@@ -93,47 +113,6 @@ impl Format {
             #[cfg(feature = "images")]
             Format::Png | Format::Gif => false,
             _ => true,
-        }
-    }
-
-    /// Returns the kind of its files.
-    pub fn kind(self) -> FileKind {
-        match self {
-            Format::Svg | Format::SvgPlates => FileKind::Svg,
-            Format::Dxf | Format::DxfPlates => FileKind::Dxf,
-            Format::Stl => FileKind::Stl,
-            Format::Scad => FileKind::Scad,
-            Format::Csv | Format::CutListCsv => FileKind::Csv,
-            Format::Toml => FileKind::Linkage,
-            Format::Json => FileKind::LinkageJson,
-            Format::CutList => FileKind::CutList,
-            #[cfg(feature = "images")]
-            Format::Png => FileKind::Png,
-            #[cfg(feature = "images")]
-            Format::Gif => FileKind::Gif,
-        }
-    }
-
-    /// Returns the names of the settings that apply to it.
-    pub fn settings(self) -> &'static [&'static str] {
-        match self {
-            Format::Svg | Format::Dxf => &["scale", "unit", "hole_mm", "crank_deg", "samples"],
-            Format::SvgPlates | Format::DxfPlates => {
-                &["scale", "unit", "hole_mm", "margin_mm", "kerf_mm", "gap_mm"]
-            }
-            Format::Stl => &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm"],
-            Format::Scad => {
-                &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm", "gap_mm", "chord_mm", "crank_deg"]
-            }
-            Format::Csv => &["scale", "positions", "omega_rad_s"],
-            Format::Toml | Format::Json => &["scale", "unit"],
-            Format::CutList | Format::CutListCsv => {
-                &["scale", "unit", "hole_mm", "margin_mm", "thickness_mm"]
-            }
-            #[cfg(feature = "images")]
-            Format::Png => &["size_px", "crank_deg", "samples"],
-            #[cfg(feature = "images")]
-            Format::Gif => &["size_px", "frames", "samples"],
         }
     }
 

@@ -4,8 +4,9 @@ use super::model::Model;
 use super::settings::{Refusal, Settings};
 use crate::files::generator;
 use crate::mechanism::{Complex, CouplerCurve, Joints};
+use crate::report::scene::{Bounds, all_joints};
 use std::f64::consts::TAU;
-use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, Transform};
+use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
 type Rgb = [u8; 3];
 const PAPER: Rgb = [0xff, 0xff, 0xff];
@@ -119,16 +120,9 @@ struct Sheet {
 
 impl Sheet {
     fn around(model: &Model<'_>, poses: &[Joints], side: usize) -> Self {
-        let pivots = [model.linkage.crank_pivot(), model.linkage.follower_pivot()];
-        let joints = poses.iter().flat_map(|j| [j.crank_pin, j.follower_pin, j.coupler_point]);
-        let all = joints.chain(pivots).chain(model.target.iter().copied());
-        let all = all.chain(model.curves.iter().flatten().copied());
-        let (low, high) = all.fold((pivots[0], pivots[0]), |(low, high), p| {
-            (
-                Complex::new(low.re.min(p.re), low.im.min(p.im)),
-                Complex::new(high.re.max(p.re), high.im.max(p.im)),
-            )
-        });
+        let joints = poses.iter().flat_map(|joints| all_joints(&model.linkage, joints));
+        let all = joints.chain(model.target.iter().copied()).chain(model.curves.iter().flatten().copied());
+        let [low, high] = Bounds::of(all).corners();
         let extent = (high - low).re.max((high - low).im);
         let room = Complex::new(ROOM * extent, ROOM * extent);
         let (low, high) = (low - room, high + room);
@@ -142,7 +136,7 @@ impl Sheet {
         (((p.re - self.low.re) * self.scale) as f32, ((self.high.im - p.im) * self.scale) as f32)
     }
 
-    fn line(&self, picture: &mut Pixmap, points: &[Complex], closed: bool, colour: Rgb, width: f32) {
+    fn path(&self, points: &[Complex], closed: bool) -> Option<Path> {
         let mut builder = PathBuilder::new();
         for (i, p) in points.iter().enumerate() {
             let (x, y) = self.at(*p);
@@ -151,13 +145,17 @@ impl Sheet {
         if closed {
             builder.close();
         }
+        builder.finish()
+    }
+
+    fn line(&self, picture: &mut Pixmap, points: &[Complex], closed: bool, colour: Rgb, width: f32) {
         let stroke = Stroke {
             width: width * self.side,
             line_cap: LineCap::Round,
             line_join: LineJoin::Round,
             ..Stroke::default()
         };
-        if let Some(path) = builder.finish() {
+        if let Some(path) = self.path(points, closed) {
             picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
         }
     }
@@ -185,15 +183,8 @@ impl Sheet {
 
     /// Draws the links and joints of a position.
     fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, joints: &Joints) {
-        let (a, b) = (model.linkage.crank_pivot(), model.linkage.follower_pivot());
-        let Joints { crank_pin: c, follower_pin: d, coupler_point: p } = *joints;
-        let mut builder = PathBuilder::new();
-        for (i, corner) in [c, d, p].into_iter().enumerate() {
-            let (x, y) = self.at(corner);
-            if i == 0 { builder.move_to(x, y) } else { builder.line_to(x, y) }
-        }
-        builder.close();
-        if let Some(path) = builder.finish() {
+        let [a, b, c, d, p] = all_joints(&model.linkage, joints);
+        if let Some(path) = self.path(&[c, d, p], true) {
             let mut half = paint(COUPLER);
             half.set_color_rgba8(COUPLER[0], COUPLER[1], COUPLER[2], 170);
             picture.fill_path(&path, &half, FillRule::Winding, Transform::identity(), None);

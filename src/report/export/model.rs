@@ -4,7 +4,8 @@ use super::settings::{Refusal, Settings};
 use super::{Format, Subject};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::{Placement, Plate};
-use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, NaturalCoordinates, point};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
+use crate::report::compare::times;
 use crate::report::scene::{circuits_through, middle_position};
 use crate::report::text::{brief, exact};
 
@@ -48,7 +49,7 @@ impl<'a> Model<'a> {
         if unit.is_none() {
             assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
         }
-        let mm_per_unit = settings.scale() * unit.map_or(1.0, millimetres);
+        let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| times(unit, Unit::Mm));
         let linkage = scaled(&subject.linkage, mm_per_unit)?;
         check_size(&linkage, settings)?;
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
@@ -201,16 +202,6 @@ impl<'a> Model<'a> {
     }
 }
 
-/// Returns the length of a unit in millimetres.
-fn millimetres(unit: Unit) -> f64 {
-    match unit {
-        Unit::Mm => 1.0,
-        Unit::Cm => 10.0,
-        Unit::M => 1000.0,
-        Unit::In => 25.4,
-    }
-}
-
 /// Returns the unit of the file, or that of the settings if the file has none.
 pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<Unit>, Refusal> {
     match (subject.unit, settings.unit) {
@@ -226,18 +217,7 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
 
 /// Returns a linkage with all lengths multiplied by a factor.
 pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
-    let p = linkage.natural_coordinates();
-    let parameters = NaturalCoordinates {
-        crank_pivot: p.crank_pivot.map(|x| x * factor),
-        follower_pivot: p.follower_pivot.map(|x| x * factor),
-        crank: p.crank * factor,
-        coupler: p.coupler * factor,
-        follower: p.follower * factor,
-        crank_side: p.crank_side * factor,
-        follower_side: p.follower_side * factor,
-        ..p
-    };
-    FourBar::new(parameters).map_err(|e| {
+    crate::report::compare::scaled(linkage, factor).map_err(|e| {
         Refusal::new(
             format!("scaled {} times, this is no linkage: {e}", exact(factor)),
             "choose another scale",

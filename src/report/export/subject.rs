@@ -5,6 +5,7 @@ use crate::files::name;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::{Candidate, Record};
+use crate::report::scene::positions_at;
 use crate::report::text::clean;
 
 /// A linkage to export.
@@ -30,7 +31,8 @@ impl Subject {
     /// Returns the subject of a candidate of a record.
     pub fn of_candidate(record: &Record, candidate: &Candidate) -> Self {
         let path = &record.problem.resolved.task.path;
-        let angles = candidate.crank_deg.iter().map(|angle| angle.to_radians());
+        let mut positions = positions_at(&candidate.crank_deg, &candidate.t1_at);
+        positions.retain(|(angle, _)| angle.is_finite());
         Subject {
             name: record.problem.name.clone(),
             standing: match candidate.rank {
@@ -41,7 +43,7 @@ impl Subject {
             linkage: candidate.linkage,
             target: path.points.clone(),
             closed: path.closed,
-            positions: angles.zip(candidate.t1_at.iter().copied()).filter(|(a, _)| a.is_finite()).collect(),
+            positions,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::model::Model;
 use crate::mechanism::plates::{Edge, Placement, Plate};
 use crate::mechanism::{Complex, Joints};
+use crate::report::scene::{Bounds, all_joints};
 use crate::report::text::xml;
 use std::fmt::Write;
 
@@ -20,12 +21,7 @@ struct Page {
 impl Page {
     /// Returns an empty page around the points with a margin `room`.
     fn around(points: impl IntoIterator<Item = Complex>, room: f64) -> Self {
-        let (mut low, mut high) =
-            (Complex::new(f64::INFINITY, f64::INFINITY), Complex::new(f64::NEG_INFINITY, f64::NEG_INFINITY));
-        for p in points {
-            low = Complex::new(low.re.min(p.re), low.im.min(p.im));
-            high = Complex::new(high.re.max(p.re), high.im.max(p.im));
-        }
+        let [low, high] = Bounds::of(points).corners();
         let room = Complex::new(room, room);
         Page { low: low - room, high: high + room, body: String::new() }
     }
@@ -115,8 +111,7 @@ fn mm(x: f64) -> String {
 /// Draws the skeleton, coupler curve, joints and target.
 pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     let linkage = &model.linkage;
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let Joints { crank_pin: c, follower_pin: d, coupler_point: p } = *joints;
+    let [a, b, c, d, p] = all_joints(linkage, joints);
     let all = [a, b, c, d, p].into_iter();
     let all: Vec<Complex> =
         all.chain(model.curves.iter().flatten().copied()).chain(model.target.iter().copied()).collect();

@@ -1,49 +1,46 @@
 //! The exact dimensions, as they are written in a linkage file.
 
-use super::page::escaped;
+use super::data::MOST_ALTERNATIVES;
+use super::page::paragraph;
+use super::table::minus;
 use crate::files::linkage_file::to_toml;
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Record};
 use crate::report::text::{clean, significant};
 use crate::report::words;
+use maud::{Markup, html};
 
 /// The largest number of characters of a name in a linkage file.
 const MOST_NAME: usize = 50;
 
 /// Returns a linkage file to copy, and the dimensions that it does not contain: the ground and the place of P along and
 /// across the coupler.
-pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> String {
+pub(super) fn dimensions(record: &Record, c: &Candidate, short: &str) -> Markup {
     let unit = words::unit_suffix(record);
     let offset = c.linkage.coupler_offset();
-    let digits = |value: f64| super::table::minus(&significant(value, 6));
-    let name = named(record, short);
-    format!(
-        "{}<p class=\"notes\">Ground AB {}{unit}; P lies {}{unit} along and {}{unit} across from C to D (positive: to the left).</p>\n",
-        block(&name, record.problem.unit, &c.linkage),
-        digits(c.linkage.ground()),
-        digits(offset.re),
-        digits(offset.im)
-    )
+    let [ground, along, across] =
+        [c.linkage.ground(), offset.re, offset.im].map(|value| minus(&significant(value, 6)));
+    let text = format!(
+        "Ground AB {ground}{unit}; P lies {along}{unit} along and {across}{unit} across from C to D (positive: to the left).",
+    );
+    html! { (block(&named(record, short), record.problem.unit, &c.linkage)) (paragraph("notes", &text)) }
 }
 
 /// Returns the dimensions of the alternatives, folded away.
-pub(super) fn of_alternatives(c: &Candidate) -> String {
-    let list: String = c
-        .alternatives
-        .iter()
-        .take(super::data::MOST_ALTERNATIVES)
-        .enumerate()
-        .map(|(i, a)| {
-            let file = to_toml(&format!("cognate {}", i + 1), None, &a.linkage);
-            format!("<pre class=\"dimensions\">{}</pre>\n", escaped(&without_comments(&file)))
-        })
-        .collect();
-    format!("<details><summary>Dimensions of the cognates</summary>\n{list}</details>\n")
+pub(super) fn of_alternatives(c: &Candidate) -> Markup {
+    html! {
+        details {
+            summary { "Dimensions of the cognates" }
+            @for (i, a) in c.alternatives.iter().take(MOST_ALTERNATIVES).enumerate() {
+                (block(&format!("cognate {}", i + 1), None, &a.linkage))
+            }
+        }
+    }
 }
 
-fn block(name: &str, unit: Option<Unit>, linkage: &FourBar) -> String {
-    format!("<pre class=\"dimensions\">{}</pre>\n", escaped(&without_comments(&to_toml(name, unit, linkage))))
+fn block(name: &str, unit: Option<Unit>, linkage: &FourBar) -> Markup {
+    html! { pre.dimensions { (without_comments(&to_toml(name, unit, linkage))) } }
 }
 
 /// Returns the file without its comments: the drawing on the page explains the letters.

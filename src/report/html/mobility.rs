@@ -1,15 +1,16 @@
 //! Mobility and defects in words.
 
-use super::page::escaped;
+use super::page::list;
 use crate::mechanism::four_bar::transmission::ForceTransmission;
 use crate::mechanism::{InputRange, LinkageType};
 use crate::record::{Candidate, Record};
-use crate::report::text::{brief, significant};
+use crate::report::text::{brief, capitalised, significant};
 use crate::report::{table, words};
 use crate::task::spec::TransmissionOver;
+use maud::Markup;
 
 /// Returns the linkage's mobility and its motion along the points, as a list.
-pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
+pub(super) fn mobility(record: &Record, c: &Candidate) -> Markup {
     let mut said = vec![of_type(c), range(c)];
     said.extend(table::motion(c).map(|motion| format!("Along the points: {motion}.")));
     said.push(transmission(c));
@@ -21,7 +22,7 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
         let verdict = if forbidden { "not allowed here" } else { "allowed here" };
         said.push(format!(
             "{} defect ({verdict}): {}.",
-            super::body::capital(defect.name()),
+            capitalised(defect.name()),
             words::of_defect(defect)
         ));
     }
@@ -32,35 +33,19 @@ pub(super) fn mobility(record: &Record, c: &Candidate) -> String {
             significant(proof.radius, 2)
         ));
     }
-    let items: String =
-        said.iter().map(|s| format!("<li>{}</li>\n", escaped(&s.replace(" -", " \u{2212}")))).collect();
-    format!("<ul class=\"said-list\">\n{items}</ul>\n")
+    list(said.iter().map(|sentence| sentence.replace(" -", " \u{2212}")))
 }
 
 fn of_type(c: &Candidate) -> String {
-    let margin = significant(c.grashof_margin, 3);
-    match c.linkage_type {
-        LinkageType::CrankRocker => {
-            format!("Crank-rocker: the crank turns fully, the follower rocks (Grashof margin {margin}).")
-        }
-        LinkageType::RockerCrank => {
-            format!(
-                "Rocker-crank: the driven link A-C rocks, the follower B-D turns fully (Grashof margin {margin})."
-            )
-        }
-        LinkageType::DoubleCrank => {
-            format!("Double-crank: crank and follower both turn fully (Grashof margin {margin}).")
-        }
-        LinkageType::DoubleRocker => {
-            format!("Double-rocker: crank and follower both rock (Grashof margin {margin}).")
-        }
-        LinkageType::TripleRocker => format!("Triple-rocker: no link turns fully (Grashof margin {margin})."),
-        LinkageType::ChangePoint => {
-            format!(
-                "Change point: it can lie flat, and leaves that position either way (Grashof margin {margin})."
-            )
-        }
-    }
+    let words = match c.linkage_type {
+        LinkageType::CrankRocker => "Crank-rocker: the crank turns fully, the follower rocks",
+        LinkageType::RockerCrank => "Rocker-crank: the driven link A-C rocks, the follower B-D turns fully",
+        LinkageType::DoubleCrank => "Double-crank: crank and follower both turn fully",
+        LinkageType::DoubleRocker => "Double-rocker: crank and follower both rock",
+        LinkageType::TripleRocker => "Triple-rocker: no link turns fully",
+        LinkageType::ChangePoint => "Change point: it can lie flat, and leaves that position either way",
+    };
+    format!("{words} (Grashof margin {}).", significant(c.grashof_margin, 3))
 }
 
 /// Returns the range of the input.

@@ -1,7 +1,7 @@
 //! A run as an HTML page in one file: the linkage moving over its target, with every figure and verdict.
 //!
 //! ```text
-//! page.rs         the file: policy, style, script, data; escaping of foreign text
+//! page.rs         the file: policy, style, script, data; sections, paragraphs, lists
 //! data.rs         the data of the player, as JSON; motion.rs: the drive of each mechanism
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
@@ -75,7 +75,7 @@ pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], ex
     page::Page {
         title: &format!("{}: linkages", super::words::problem_name(record)),
         styles: &[PLAYER_STYLE, include_str!("report.css")],
-        body: &body::body(record, drawings, extent),
+        body: body::body(record, drawings, extent),
         data: &page::embedded(&data::Data::new(record, first)),
         modules: &modules,
     }
@@ -85,13 +85,13 @@ pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], ex
 /// Returns the report's header on the whole run, as markup: the outcome, the obstacles, and the changes that would
 /// help.
 pub fn summary_markup(record: &Record) -> String {
-    body::header(record)
+    page::visible(body::header(record))
 }
 
 /// Returns the report on one candidate, as markup: figures, mobility, warnings, requirements with their costs,
 /// dimensions, cognates. `index` counts from 0.
 pub fn candidate_markup(record: &Record, index: usize) -> Option<String> {
-    record.candidates.get(index).map(|_| candidate::one(record, index))
+    candidate::one(record, index).map(page::visible)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The drive of a mechanism on the page: the input that moves it, its range, and the places of the points in it.
 
 use crate::mechanism::{AssemblyMode, FourBar, InputRange};
+use crate::report::scene::{middle_position, positions_at};
 use serde::Serialize;
 
 /// What the player's one parameter q, degrees, stands for.
@@ -34,14 +35,9 @@ impl Drive {
     /// Returns the drive of a linkage that passes the points at these crank angles (degrees) and assemblies.
     pub fn new(linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Self {
         let mobility = linkage.mobility();
-        let positions: Vec<(f64, AssemblyMode)> = crank_deg
-            .iter()
-            .map(|angle| angle.to_radians())
-            .zip(t1_at.iter().copied())
-            .filter(|(angle, _)| angle.is_finite())
-            .collect();
-        let (angle, assembly) =
-            positions.first().copied().unwrap_or_else(|| crate::report::scene::middle_position(linkage));
+        let mut positions = positions_at(crank_deg, t1_at);
+        positions.retain(|(angle, _)| angle.is_finite());
+        let (angle, assembly) = positions.first().copied().unwrap_or_else(|| middle_position(linkage));
         let circuit = mobility.branch(angle, assembly).circuit;
         let t1 = i64::from(assembly);
         match mobility.arc(circuit) {

@@ -1,8 +1,12 @@
 //! An HTML page in one file: no network, one style and one script, both named by their hashes in its security policy.
 //!
-//! Data from a record reaches the page only through [`escaped`] or as JSON in a script element that is not executed.
-//! The policy lets the browser use only the style and the script that were put in here.
+//! Markup is made by `maud`, which escapes every text that is put into it; data from a record reaches the page only in
+//! this way or as JSON in a script element that is not executed. The policy lets the browser use only the style and the
+//! script that were put in here.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -12,21 +16,18 @@ pub(in crate::report) struct Page<'a> {
     pub(in crate::report) title: &'a str,
     /// The style sheets, one after the other.
     pub(in crate::report) styles: &'a [&'a str],
-    /// The body, as markup: foreign text in it is [`escaped`].
-    pub(in crate::report) body: &'a str,
+    /// The visible part.
+    pub(in crate::report) body: Markup,
     /// The data that the script reads: JSON from [`embedded`].
     pub(in crate::report) data: &'a str,
     /// The ES modules, each after those that it imports: see [`joined`].
     pub(in crate::report) modules: &'a [&'a str],
 }
 
-/// The beginning of every page, with the mark of its generator: [`crate::files::generator`] looks for it.
-const BEGINNING: &str = "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-                                               <meta name=\"generator\" content=\"linkwright ";
-
 impl Page<'_> {
-    /// Returns the whole page as text.
-    pub(in crate::report) fn render(&self) -> String {
+    /// Returns the whole page as text. Its beginning with the mark of its generator is what
+    /// [`crate::files::generator`] looks for.
+    pub(in crate::report) fn render(self) -> String {
         let style = self.styles.join("\n");
         let script = joined(self.modules);
         let policy = format!(
@@ -34,46 +35,65 @@ impl Page<'_> {
             source_hash(&style),
             source_hash(&script)
         );
-        let mut page =
-            String::with_capacity(style.len() + script.len() + self.body.len() + self.data.len() + 2048);
-        page.push_str(BEGINNING);
-        page.push_str(env!("CARGO_PKG_VERSION"));
-        page.push_str("\">\n<meta http-equiv=\"Content-Security-Policy\" content=\"");
-        page.push_str(&policy);
-        page.push_str(
-            "\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta name=\"color-scheme\" content=\"light dark\">\n<title>",
-        );
-        page.push_str(&escaped(self.title));
-        page.push_str("</title>\n<style>");
-        page.push_str(&style);
-        page.push_str("</style>\n</head>\n<body>\n");
-        page.push_str(self.body);
-        page.push_str("<script type=\"application/json\" id=\"data\">");
-        page.push_str(self.data);
-        page.push_str("</script>\n<script>");
-        page.push_str(&script);
-        page.push_str("</script>\n</body>\n</html>\n");
-        page
+        let generator = concat!("linkwright ", env!("CARGO_PKG_VERSION"));
+        html! {
+            (PreEscaped("<!doctype html>\n"))
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="generator" content=(generator);
+                    meta http-equiv="Content-Security-Policy" content=(policy);
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    title { (self.title) }
+                    style { (PreEscaped(style)) }
+                }
+                body {
+                    (PreEscaped(visible(self.body)))
+                    script type="application/json" id="data" { (PreEscaped(self.data)) }
+                    script { (PreEscaped(script)) }
+                }
+            }
+            "\n"
+        }
+        .into_string()
     }
 }
 
-/// Returns text as markup, fit for content and for attributes in double quotes. Control characters become spaces.
-pub(in crate::report) fn escaped(text: &str) -> String {
-    let mut markup = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => markup.push_str("&amp;"),
-            '<' => markup.push_str("&lt;"),
-            '>' => markup.push_str("&gt;"),
-            '"' => markup.push_str("&quot;"),
-            '\'' => markup.push_str("&#39;"),
-            '\n' => markup.push('\n'),
-            c if c.is_control() => markup.push(' '),
-            c => markup.push(c),
-        }
+/// Returns markup as text without control characters: spaces are in their place.
+pub(super) fn visible(markup: Markup) -> String {
+    markup.into_string().replace(|c: char| c.is_control() && c != '\n', " ")
+}
+
+/// Returns a section with a heading, as a card.
+pub(super) fn section(id: &str, title: &str, inside: Markup) -> Markup {
+    html! {
+        section.card id=(id) aria-labelledby={ (id) "-title" } {
+            h2 id={ (id) "-title" } { (title) }
+            (inside)
+        } "\n"
     }
-    markup
+}
+
+/// Returns a paragraph.
+pub(super) fn paragraph(class: &str, text: &str) -> Markup {
+    html! { p class=[Some(class).filter(|class| !class.is_empty())] { (text) } }
+}
+
+/// Returns a list of sentences.
+pub(super) fn list<T: maud::Render>(items: impl IntoIterator<Item = T>) -> Markup {
+    html! { ul.said-list { @for item in items { li { (item) } } } }
+}
+
+/// Returns the most important figures, each with its name.
+pub(super) fn figures<T: maud::Render>(pairs: impl IntoIterator<Item = (&'static str, T)>) -> Markup {
+    html! { dl.figures { @for (key, value) in pairs { div { dt { (key) } dd { (value) } } } } }
+}
+
+/// Returns a drawing as it is embedded in a page, in which it needs no name space.
+pub(super) fn still(drawing: &str) -> Markup {
+    let inline = drawing.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    html! { figure.still { (PreEscaped(inline)) } }
 }
 
 /// Returns data as JSON that no text inside can break out of: every `<` is written as `\u003c`.
@@ -98,22 +118,7 @@ pub(in crate::report) fn joined(modules: &[&str]) -> String {
 
 /// Returns the hash `sha256-..` of an inline style or script, as a security policy names it.
 fn source_hash(text: &str) -> String {
-    format!("sha256-{}", base64(&Sha256::digest(text.as_bytes())))
-}
-
-/// Returns bytes in base64 (RFC 4648), with padding.
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::new();
-    for group in bytes.chunks(3) {
-        let [x, y, z] = [0, 1, 2].map(|i| group.get(i).copied().map_or(0, u32::from));
-        let bits = x << 16 | y << 8 | z;
-        for i in 0..4 {
-            let letter = LETTERS[(bits >> (18 - 6 * i) & 63) as usize];
-            text.push(if i <= group.len() { letter as char } else { '=' });
-        }
-    }
-    text
+    format!("sha256-{}", STANDARD.encode(Sha256::digest(text.as_bytes())))
 }
 
 #[cfg(test)]
@@ -121,18 +126,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn base64_writes_the_vectors_of_its_standard() {
-        let vectors = [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-        ];
-        for (text, encoded) in vectors {
-            assert_eq!(base64(text.as_bytes()), encoded);
-        }
+    fn a_policy_names_a_script_by_its_hash() {
+        assert_eq!(source_hash(""), "sha256-47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
     }
 
     #[test]
@@ -145,11 +140,16 @@ mod tests {
     }
 
     #[test]
+    fn a_page_holds_no_control_characters() {
+        assert_eq!(visible(html! { p { "a\u{0}b\u{9b}\n" } }), "<p>a b \n</p>");
+    }
+
+    #[test]
     fn text_cannot_leave_its_place() {
         let hostile = "</script><!--\"'><img src=x onerror=alert(1)>&";
         assert_eq!(
-            escaped(hostile),
-            "&lt;/script&gt;&lt;!--&quot;&#39;&gt;&lt;img src=x onerror=alert(1)&gt;&amp;"
+            html! { (hostile) }.into_string(),
+            "&lt;/script&gt;&lt;!--&quot;'&gt;&lt;img src=x onerror=alert(1)&gt;&amp;"
         );
         let json = embedded(&hostile);
         assert!(!json.contains('<'));

@@ -1,43 +1,43 @@
 //! The requirements: the limit, the candidate's value, the verdict and the cost of each.
 
-use super::page::escaped;
-use super::table::{head, minus, scrolling};
+use super::page::paragraph;
+use super::table::{minus, scrolling};
 use crate::record::{Candidate, Figure, Record, Requirement};
 use crate::report::text::{brief, clean, exact};
 use crate::report::{price, words};
 use crate::task::requirement::RequirementKind;
+use maud::{Markup, html};
 
 /// Returns the requirements as tables: those of `[require]` and the tolerance at once, the bounds of `[design]` folded
 /// away unless the candidate is at a bound or misses it.
-pub(super) fn requirements(record: &Record, c: &Candidate) -> String {
+pub(super) fn requirements(record: &Record, c: &Candidate) -> Markup {
     let matters = |r: &Requirement| {
         !r.name.starts_with("design.") || !r.met || c.costs.iter().any(|cost| cost.name == r.name)
     };
     let (shown, folded): (Vec<_>, Vec<_>) = c.requirements.iter().partition(|r| matters(r));
-    let mut out = String::from("<h3>Requirements</h3>\n");
-    if let Some(objections) = refusal(record, c) {
-        out.push_str(&super::body::paragraph("bad", &objections));
-    }
-    if !shown.is_empty() {
-        out.push_str(&table("Requirements", record, c, &shown));
-    }
-    if !folded.is_empty() {
-        out.push_str(&format!(
-            "<details><summary>{} bounds of the design, all met with room</summary>\n{}</details>\n",
-            folded.len(),
-            table("Bounds of the design", record, c, &folded)
-        ));
-    }
     // Limits that are not among the requirements, such as the Grashof margin of a type.
-    let mut told: Vec<&str> = c.requirements.iter().map(|r| r.name.as_str()).collect();
+    let mut others: Vec<&str> = Vec::new();
     for cost in &c.costs {
-        if !told.contains(&cost.name.as_str()) {
-            told.push(&cost.name);
-            let text = price::clause(record, c, &cost.name).unwrap_or_default();
-            out.push_str(&super::body::paragraph("", &format!("{}: {text}", clean(&cost.name))));
+        if !others.contains(&cost.name.as_str()) && c.requirements.iter().all(|r| r.name != cost.name) {
+            others.push(&cost.name);
         }
     }
-    out
+    let other = |name: &str| {
+        let text = price::clause(record, c, name).unwrap_or_default();
+        paragraph("", &format!("{}: {text}", clean(name)))
+    };
+    html! {
+        h3 { "Requirements" }
+        @if let Some(objections) = refusal(record, c) { (paragraph("bad", &objections)) }
+        @if !shown.is_empty() { (table("Requirements", record, c, &shown)) }
+        @if !folded.is_empty() {
+            details {
+                summary { (folded.len()) " bounds of the design, all met with room" }
+                (table("Bounds of the design", record, c, &folded))
+            }
+        }
+        @for name in others { (other(name)) }
+    }
 }
 
 /// Returns the reason why the candidate is not accepted.
@@ -47,14 +47,13 @@ fn refusal(record: &Record, c: &Candidate) -> Option<String> {
     (!list.is_empty()).then(|| format!("Not accepted: {}.", list.join("; ")))
 }
 
-fn table(name: &str, record: &Record, c: &Candidate, list: &[&Requirement]) -> String {
+fn table(name: &str, record: &Record, c: &Candidate, list: &[&Requirement]) -> Markup {
     let columns = [("requirement", false), ("asked", true), ("has", true), ("", false)];
-    let rows: String = list.iter().map(|r| row(record, c, r)).collect();
-    scrolling(name, "wide requirements", &format!("{}<tbody>\n{rows}</tbody>\n", head(&columns)))
+    scrolling(name, "wide requirements", &columns, list.iter().map(|r| row(record, c, r)))
 }
 
 /// Returns a row for the requirement, and if the candidate is at its limit one for the cost of that.
-fn row(record: &Record, c: &Candidate, r: &Requirement) -> String {
+fn row(record: &Record, c: &Candidate, r: &Requirement) -> Markup {
     let (mut asked, mut has) = (words::figure(&r.limit, short), words::figure(&r.value, short));
     if asked == has && !r.met {
         // Rounding must not make a missed limit look met.
@@ -64,16 +63,15 @@ fn row(record: &Record, c: &Candidate, r: &Requirement) -> String {
     let has = signed(&has, &r.value);
     let (colour, verdict) = if r.met { ("good", "met") } else { ("bad", "not met") };
     let cost = price::clause(record, c, &r.name);
-    let class = if cost.is_some() { " class=\"has-cost\"" } else { "" };
-    let cost = cost.map_or(String::new(), |text| {
-        format!("<tr class=\"cost\"><td colspan=\"4\">{}</td></tr>\n", escaped(&text))
-    });
-    format!(
-        "<tr{class}><th scope=\"row\">{}</th><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"{colour}\">{verdict}</td></tr>\n{cost}",
-        escaped(&label(&r.name)),
-        escaped(&asked),
-        escaped(&has),
-    )
+    html! {
+        tr class=[cost.is_some().then_some("has-cost")] {
+            th scope="row" { (label(&r.name)) }
+            td.n { (asked) }
+            td.n { (has) }
+            td class=(colour) { (verdict) }
+        }
+        @if let Some(text) = cost { tr.cost { td colspan="4" { (text) } } }
+    }
 }
 
 fn short(value: f64) -> String {

@@ -1,24 +1,25 @@
 //! The table of the candidates side by side, each figure in a column of its own.
 
-use super::body::section;
 use super::data::{BUILDABLE_KEY, candidate_key};
-use super::page::escaped;
+use super::page::{paragraph, section, still};
 use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
 use crate::report::words;
 use crate::task::spec::{Measure, TransmissionOver};
+use maud::{Markup, Render, html};
 
 /// A cell: its text, and the number by which it is sorted.
+#[derive(Default)]
 pub(super) struct Cell {
     text: String,
     value: Option<f64>,
-    class: &'static str,
+    class: Option<&'static str>,
 }
 
 impl Cell {
     /// Returns a cell with a number, right-aligned.
-    pub(super) fn number(value: f64, text: String) -> Self {
-        Cell { text, value: Some(value).filter(|v| v.is_finite()), class: "n" }
+    pub(super) fn number(value: f64, text: impl Into<String>) -> Self {
+        Cell { text: text.into(), value: Some(value).filter(|v| v.is_finite()), class: Some("n") }
     }
 
     /// Returns a cell with a number with this many significant digits.
@@ -26,21 +27,48 @@ impl Cell {
         Cell::number(value, minus(&significant(value, digits)))
     }
 
+    /// Returns a cell with an angle in degrees.
+    pub(super) fn degrees(value: f64) -> Self {
+        Cell::number(value, format!("{}°", significant(value, 3)))
+    }
+
     /// Returns a cell with words.
-    pub(super) fn words(text: &str) -> Self {
-        Cell { text: text.to_owned(), value: None, class: "" }
+    pub(super) fn words(text: impl Into<String>) -> Self {
+        Cell { text: text.into(), ..Cell::default() }
     }
 
     /// Returns a cell with a verdict in words.
-    pub(super) fn verdict(text: &str, good: bool) -> Self {
-        Cell { text: text.to_owned(), value: None, class: if good { "verdict good" } else { "verdict bad" } }
+    pub(super) fn verdict(text: impl Into<String>, good: bool) -> Self {
+        Cell {
+            text: text.into(),
+            value: None,
+            class: Some(if good { "verdict good" } else { "verdict bad" }),
+        }
     }
+}
 
-    /// Returns the cell as markup.
-    pub(super) fn markup(&self) -> String {
-        let class = if self.class.is_empty() { String::new() } else { format!(" class=\"{}\"", self.class) };
-        let value = self.value.map_or(String::new(), |value| format!(" data-v=\"{value:?}\""));
-        format!("<td{class}{value}>{}</td>", escaped(&self.text))
+impl Render for Cell {
+    fn render(&self) -> Markup {
+        html! { td class=[self.class] data-v=[self.value.map(|v| format!("{v:?}"))] { (self.text) } }
+    }
+}
+
+/// A row: the key of the mechanism that it shows, if there is one, its name and its cells.
+pub(super) struct Row {
+    pub(super) key: Option<String>,
+    pub(super) name: Cell,
+    pub(super) cells: Vec<Cell>,
+}
+
+impl Render for Row {
+    fn render(&self) -> Markup {
+        let Cell { text, value, class } = &self.name;
+        html! {
+            tr data-key=[&self.key] {
+                th scope="row" class=[class] data-v=[value.map(|v| format!("{v:?}"))] { (text) }
+                @for cell in &self.cells { (cell) }
+            }
+        }
     }
 }
 
@@ -49,39 +77,38 @@ pub(super) fn minus(text: &str) -> String {
     if text == NO_NUMBER { text.to_owned() } else { text.replacen('-', "\u{2212}", 2) }
 }
 
-/// Returns a header row; headings of numbers are right-aligned.
-pub(super) fn head(columns: &[(&str, bool)]) -> String {
-    let cells: String = columns
-        .iter()
-        .map(|(name, number)| {
-            let class = if *number { " class=\"n\"" } else { "" };
-            format!("<th scope=\"col\"{class}>{}</th>", escaped(name))
-        })
-        .collect();
-    format!("<thead><tr>{cells}</tr></thead>\n")
-}
-
-/// Returns a table that may be wider than the page, in a region that scrolls.
-pub(super) fn scrolling(name: &str, class: &str, inside: &str) -> String {
-    format!(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table class=\"{class}\">\n{inside}</table></div>\n",
-        escaped(name)
-    )
+/// Returns a table that may be wider than the page, in a region that scrolls. A heading says whether it is that of
+/// numbers, which are right-aligned.
+pub(super) fn scrolling<T: Render>(
+    name: &str,
+    class: &str,
+    columns: &[(&str, bool)],
+    rows: impl IntoIterator<Item = T>,
+) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label=(name) {
+            table class=(class) {
+                thead { tr {
+                    @for (name, number) in columns { th scope="col" class=[number.then_some("n")] { (name) } }
+                } }
+                tbody { @for row in rows { (row) } }
+            }
+        }
+    }
 }
 
 /// Returns the section with the table.
-pub(super) fn candidates(record: &Record) -> String {
+pub(super) fn candidates(record: &Record) -> Markup {
     if record.candidates.is_empty() {
         let drawing = crate::report::svg::candidate_svg(record, 0);
-        let inside = format!(
-            "<p>No candidate was found.</p>\n<figure class=\"still\">{}</figure>\n",
-            super::candidate::inline(&drawing)
+        return section(
+            "candidates",
+            "Candidates",
+            html! { p { "No candidate was found." } (still(&drawing)) },
         );
-        return section("candidates", "Candidates", &inside);
     }
     let measure = record.problem.resolved.measure();
     let ranks = words::minimised(measure);
-    let unit = words::unit_suffix(record);
     let columns = [
         ("#", true),
         ("rms error", true),
@@ -97,41 +124,34 @@ pub(super) fn candidates(record: &Record) -> String {
         ("defects", false),
         ("verdict", false),
     ];
-    let mut rows: Vec<String> = record
-        .candidates
-        .iter()
-        .enumerate()
-        .map(|(i, c)| row(record, c, &candidate_key(i), &Cell::number(i as f64 + 1.0, (i + 1).to_string())))
-        .collect();
-    if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
-        // After all others when sorted by rank.
-        let name =
-            Cell { text: "buildable".into(), value: Some(record.candidates.len() as f64 + 1.0), class: "n" };
-        rows.push(row(record, c, BUILDABLE_KEY, &name));
-    }
-    let table = format!("{}<tbody>\n{}</tbody>\n", head(&columns), rows.concat());
-    let lengths = if unit.is_empty() {
-        String::new()
-    } else {
-        format!("Lengths in {}. ", if unit == " in" { "inches" } else { unit.trim() })
+    let ranked =
+        record.candidates.iter().enumerate().map(|(i, c)| (c, candidate_key(i), (i + 1).to_string()));
+    // After all others when sorted by rank.
+    let buildable = record.buildable.as_ref().filter(|c| c.rank == 0);
+    let buildable = buildable.map(|c| (c, BUILDABLE_KEY.to_owned(), "buildable".to_owned()));
+    let rows = ranked.chain(buildable).enumerate().map(|(i, (c, key, name))| Row {
+        key: Some(key),
+        name: Cell::number(i as f64 + 1.0, name),
+        cells: cells(record, c),
+    });
+    let lengths = match words::unit_suffix(record).trim() {
+        "" => String::new(),
+        "in" => "Lengths in inches. ".to_owned(),
+        unit => format!("Lengths in {unit}. "),
     };
     let first = ranks.map_or(String::new(), |(_, sentence)| format!("{sentence} "));
     let notes = "to curve: rms distance to the whole coupler curve, whatever the timing. transmission: the worst angle, 0 to \
                  90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
-    let said: String = words::fewer(record)
-        .into_iter()
-        .chain(crate::report::beside::mirrored(record))
-        .map(|sentence| super::body::paragraph("notes", &sentence))
-        .collect();
-    let inside = format!(
-        "{}{}{said}",
-        scrolling("Candidates", "candidates wide tight", &table),
-        super::body::paragraph("notes", &format!("{lengths}{first}{notes}"))
-    );
-    section("candidates", "Candidates side by side", &inside)
+    let said = words::fewer(record).into_iter().chain(crate::report::beside::mirrored(record));
+    let inside = html! {
+        (scrolling("Candidates", "candidates wide tight", &columns, rows))
+        (paragraph("notes", &format!("{lengths}{first}{notes}")))
+        @for sentence in said { (paragraph("notes", &sentence)) }
+    };
+    section("candidates", "Candidates side by side", inside)
 }
 
-fn row(record: &Record, c: &Candidate, key: &str, name: &Cell) -> String {
+fn cells(record: &Record, c: &Candidate) -> Vec<Cell> {
     let plain = record.problem.resolved.measure() == Measure::Sum;
     let objective = if plain { c.error.sum_sq } else { c.error.objective };
     let worst_at = crate::report::table::worst_at(record, c);
@@ -142,21 +162,18 @@ fn row(record: &Record, c: &Candidate, key: &str, name: &Cell) -> String {
     let defects = if c.defects.is_empty() { "none".to_owned() } else { words::defect_names(c) };
     let verdict =
         if c.accepted { "accepted".to_owned() } else { words::verdict(record, c).replacen("no:", "not:", 1) };
-    let cells = [
+    vec![
         Cell::figure(c.error.rms, 4),
         Cell::figure(c.error.max, 4),
         Cell::number(worst_at as f64, worst_at.to_string()),
         Cell::figure(objective, 5),
         Cell::figure(c.error.to_curve.rms, 4),
         Cell::words(c.linkage_type.name()),
-        Cell::number(c.transmission_deg.worst, format!("{}°", significant(c.transmission_deg.worst, 3))),
+        Cell::degrees(c.transmission_deg.worst),
         Cell::words(over),
         Cell::figure(c.link_ratio, 3),
         Cell::figure(c.linkage.longest_link(), 4),
-        Cell::words(&defects),
-        Cell::verdict(&verdict, c.accepted),
-    ];
-    let first = name.markup().replacen("<td", "<th scope=\"row\"", 1).replace("</td>", "</th>");
-    let cells: String = cells.iter().map(Cell::markup).collect();
-    format!("<tr data-key=\"{key}\">{first}{cells}</tr>\n")
+        Cell::words(defects),
+        Cell::verdict(verdict, c.accepted),
+    ]
 }
