@@ -1,6 +1,6 @@
-//! The doors: a job in, a record out; folders of results; the suite; the command line; the studio.
+//! Entry points: a job in, a record out; folders of results; the suite; the command line; the studio.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`cli`] | the command line: arguments, commands, exit codes |
 //! | [`given`] | inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a run |

@@ -1,6 +1,7 @@
-//! Text that comes in: problem, linkage, points and drawing files, with errors that point at their place.
+//! File formats: problem, linkage, points and drawing files are read, with errors that point at their place; schemas,
+//! templates, the mark of written files.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`diagnostic`] | diagnostics: error messages about a text that a person wrote, with the place, the fault and the remedy |
 //! | [`generator`] | the generator mark of written files: every file that a person names bears it, and a file without it is never replaced |
@@ -9,10 +10,10 @@
 //! | [`name`] | names of problems and linkages, which become names of folders |
 //! | [`points_file`] | points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments |
 //! | [`problem_file`] | problem files: TOML is read, and a `ProblemSpec` with every default filled in is returned |
-//! | [`problem_template`] | A commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path |
+//! | [`problem_template`] | a commented problem file to start from: it can be run as it is, and is written for a user with a motor and a path |
 //! | [`schema`] | JSON Schemas of the files that are read and of the record that is written, generated from the types that read and write them |
 //! | [`svg_file`] | SVG drawings as targets: one shape of a drawing as target points, spaced evenly by arc length, y up |
-//! | [`toml_text`] | A TOML text with its errors: reads a type from it and finds the place of a key |
+//! | [`toml_text`] | a TOML text with its errors: reads a type from it and finds the place of a key |
 
 pub mod diagnostic;
 pub mod generator;

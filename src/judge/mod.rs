@@ -1,9 +1,9 @@
 //! The judge: every figure and verdict of a candidate, computed without a search; searches rank by them.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`assess`] | assessment of a candidate: every figure and verdict, from nothing but the problem, the linkage and its positions |
-//! | [`certificate`] | certificates of a record: a certified lower bound of the sum of squares for prescribed timing, searched by `bound` and checked by `checker`, which shares no code with it |
+//! | [`certificate`] | certificates of a record: a certified lower bound of the sum of squares for prescribed timing, searched by `bound` and checked by `checker`, which shares with it the file format of the proofs alone |
 //! | [`certified`] | certificates of single exact linkages through nine points, and the tolerances by which a linkage passes for one |
 //! | [`cognates`] | Roberts cognates of the candidates: the other linkages of the same curve, judged under the problem |
 //! | [`costs`] | costs of the active requirements: Lagrange multipliers at a candidate, as rates of the error per unit of a limit |

@@ -1,9 +1,9 @@
 //! Mechanisms: the four-bar and the chain, their motion, their links as plates, the units of their lengths.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`analysis`] | analysis of a given linkage: positions, velocities and accelerations at crank angles, by one method or by several side by side, in one configuration or in all four |
-//! | [`any`] | A linkage of any kind |
+//! | [`any`] | a linkage of any kind |
 //! | [`chain`] | chains: compound mechanisms of a driven crank and stages, each attached to points that are already known, with the position in closed form |
 //! | [`effort`] | counter of linkage positions computed between two checks for a stop, in this crate's own tests; elsewhere it does nothing |
 //! | [`four_bar`] | planar four-bar linkages: parameters, position, motion, mobility, coupler curve and cognates |

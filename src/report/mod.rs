@@ -1,4 +1,5 @@
-//! Reports of a run: text, drawings and tables, all pure functions of a [`Record`](crate::record::Record).
+//! Reports: text, drawings, tables and files to build from, pure functions of a [`Record`](crate::record::Record), of an
+//! analysis or of a linkage.
 //!
 //! The same record gives the same bytes: nothing here reads a clock, a host or a terminal. A record may come from
 //! anywhere, so names in it are arbitrary text (cleaned for the terminal, escaped for XML) and its lists may be empty
@@ -16,16 +17,16 @@
 //! | several results | [`compare::compare`] |
 //! | a suite of problems | [`suite::suite_text`], [`suite::suite_markdown`] |
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`analysis_csv`] | an analysis as CSV: one row for each configuration and crank angle; a cell without a number is empty |
 //! | [`analysis_sheets`] | an analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply |
 //! | [`analysis_text`] | an analysis as text: the mobility in words, and the tables of positions, motion and methods |
-//! | [`batch_csv`] | A batch as a table for spreadsheets and scripts: one row for each file |
+//! | [`batch_csv`] | a batch as a table for spreadsheets and scripts: one row for each file |
 //! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate |
 //! | [`canvas`] | the SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up |
 //! | [`certificate`] | the certificate of a result, and the number of times its best answer was found, in words |
-//! | [`chain_sheet`] | A drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |
+//! | [`chain_sheet`] | a drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |
 //! | [`chain_text`] | an analysis of a compound mechanism as text and as CSV |
 //! | [`cognates_sheet`] | Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share |
 //! | [`compare`] | comparison of linkages from several results: ranked by chosen figures, with the Pareto front of error, worst transmission angle and size marked, and differences from a chosen one in per cent |
@@ -35,17 +36,17 @@
 //! | [`exact_sheet`] | small drawings of every real linkage through nine points, side by side |
 //! | [`export`] | export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists |
 //! | [`figure`] | the drawing of a scene: curve, linkage, target and labels |
-//! | [`grid`] | A table of text with aligned columns, and the colours of a terminal |
-//! | [`html`] | A run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
+//! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
+//! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
 //! | [`parts`] | the parts of drawings of linkages: stands, bars, the coupler's triangle, letters |
-//! | [`plot`] | A small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
+//! | [`plot`] | a small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
 //! | [`practicality`] | the practicality of a linkage as text: layers, distances, sensitivities |
 //! | [`price`] | the costs of requirements and the relaxations that would help, in words |
 //! | [`scene`] | the scene of a candidate's drawing: target points, the circuits used, and one position of the linkage |
 //! | [`sheet`] | sheets: framed drawings with a title each, laid out on one page |
 //! | [`snap`] | the cost of snapping as text: before and after, and the next best linkages |
-//! | [`suite`] | A suite for the terminal and as Markdown: the same tables in two formats |
+//! | [`suite`] | a suite for the terminal and as Markdown: the same tables in two formats |
 //! | [`svg`] | the drawing of one candidate: a self-contained SVG with the linkage, its coupler curve, the target and the figures |
 //! | [`table`] | the output of `synth`: the candidates of a run, or one line for each file of a batch |
 //! | [`text`] | formatting of numbers and foreign text for a terminal, for XML and for a spreadsheet |

@@ -1,4 +1,4 @@
-//! The errors that are left without each of the requirements on which the best candidate lies.
+//! The error that is left without each requirement that is active at the best candidate.
 
 use super::constants::errors_without::{SHORT_SEARCH, SHORT_SHARE};
 use super::multistart::{LONG_FIT, judged, polish};

@@ -2,7 +2,7 @@
 //! cognates, families, warnings, buildable ones); what the requirements cost; and the relaxations that help if nothing
 //! is acceptable.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`answers`] | the parts of a record beside its ranked candidates: warnings, the family of exact answers, and a buildable candidate |
 //! | [`atlas`] | an atlas of coupler curves: a table of linkages from which those whose curves resemble a given target are taken as starts |
@@ -14,7 +14,7 @@
 //! | [`context`] | the inputs that every search is given, as one value |
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
-//! | [`errors_without`] | the errors that are left without each of the requirements on which the best candidate lies |
+//! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
 //! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
@@ -27,7 +27,7 @@
 //! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
 //! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
 //! | [`reduced`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
-//! | [`relaxed`] | search with one requirement left out, whose ends are then fitted under all requirements |
+//! | [`relaxed`] | search with one requirement left out, whose results are then fitted under all requirements |
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |

@@ -1,4 +1,4 @@
-//! Search with one requirement left out, whose ends are then fitted under all requirements.
+//! Search with one requirement left out, whose results are then fitted under all requirements.
 //!
 //! A search under all requirements follows their active limits from its first step, and can end on one of them although
 //! a design that keeps all of them lies near an optimum of the problem without it. If a search has ended with nothing

@@ -1,6 +1,6 @@
 //! Tasks: the targets, the requirements, and both as mathematics.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`builder`] | a builder of problems from points, with the defaults of a problem file |
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |

@@ -2,6 +2,31 @@
 //!
 //! stdout carries the answer, stderr progress and diagnostics. Exit codes: 0 done, 1 ran but nothing is
 //! acceptable (or a check failed), 2 bad input or usage, 70 a bug of ours, 130 interrupted.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`analyze`] | `analyze` and `cognates`: what a given linkage does |
+//! | [`arguments`] | what can be typed |
+//! | [`build`] | `build`: what stands between a linkage and a workshop |
+//! | [`certify`] | `certify`: a bound below which no linkage that it covers can be |
+//! | [`check`] | `check`: is a file what it should be? |
+//! | [`compare`] | `compare`: results and linkages side by side |
+//! | [`error`] | the reasons for which a command refuses its input, if no room below the command line names them |
+//! | [`export`] | `export`: a linkage as a file to build from |
+//! | [`inputs`] | what `synth` is given: files, and folders of problem files; and where the result of each goes |
+//! | [`interrupt`] | signals |
+//! | [`man`] | `man`: the manual pages, made from the same definitions that `--help` is made from |
+//! | [`new`] | `new`: a problem file to start from |
+//! | [`output`] | files that a command writes where its user says: what is there and is not ours stays, unless `--force` |
+//! | [`progress`] | a bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it |
+//! | [`report`] | `report`: a result as a page, from its record alone |
+//! | [`result`] | RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate, or a linkage file |
+//! | [`snap`] | `snap`: lengths brought to stock sizes |
+//! | [`studio`] | `studio`: a local page that answers while a target is drawn |
+//! | [`suite`] | `suite`: problems whose answer is known, from many seeds |
+//! | [`synth`] | `synth`: problems in, results out |
+//! | [`terminal`] | writing to the two streams, and how colourful the terminal is |
+//! | [`verify`] | `verify`: recompute a result |
 
 mod analyze;
 mod arguments;

@@ -1,6 +1,6 @@
 //! Jobs: from a problem to its record, and the record in its folder.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`run`](mod@run) | one run: from a problem to its record |
 //! | [`checkpoint`] | checkpoints of unfinished searches on disk, from which `synth --resume` continues |

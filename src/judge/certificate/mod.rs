@@ -1,5 +1,5 @@
 //! Certificates of a record: a certified lower bound of the sum of squares for prescribed timing, searched by
-//! [`bound`](crate::numbers::bound) and checked by [`checker`](crate::numbers::checker), which shares no code with it.
+//! [`bound`](crate::numbers::bound) and checked by [`checker`](crate::numbers::checker), which shares with it the file format of the proofs alone.
 //! docs/certificate.md has the proofs.
 
 mod axis;

@@ -1,4 +1,13 @@
 //! Verification of a record: every figure and verdict is recomputed from its problem and its linkages.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`certificate`] | verification of a recorded certificate: the statements that follow from its bounds, and the bounds recomputed box by box |
+//! | [`coverage`] | coverage of the verification of a record: each key is recomputed, held to limits, or not checked |
+//! | [`exact`] | verification of exact linkages: the census adds up, and each linkage passes the points, has the stated abilities, and is proved again |
+//! | [`extras`] | verification of the other parts of a record: warnings, alternatives, the family, the buildable candidate |
+//! | [`searched`] | verification of a record's statements about its search |
+//! | [`mod@verdict`] | verdicts on requirements, compared exactly except for those whose figure lies within rounding of the limit |
 
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::costs::{marginal, weighted_rms};

@@ -13,6 +13,18 @@
 //!
 //! The nine parameters and two signs are those of N. N. Romero Nunez (2016), "Analisis de posicion de un mecanismo de
 //! cuatro barras utilizando coordenadas naturales" ("Romero" in this module). Points of the plane are complex numbers.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`assembly_condition`] | assembly conditions of a four-bar at a crank angle: Romero's necessary condition and the sufficient one |
+//! | [`cognate`] | the Roberts-Chebyshev cognates: the two other four-bars that trace the same coupler curve |
+//! | [`coupler_curve`] | the coupler curve of a circuit: samples, length, and the distance from a point |
+//! | [`gradient`] | gradient of the coupler point by the linkage's parameters and by the crank angle |
+//! | [`loop_closure`] | loop-closure methods of position analysis from the literature, as reference solvers beside the natural coordinates of `position.rs` |
+//! | [`mobility`] | mobility of a four-bar: its type by Grashof, the range of its input, and its circuits, branches and toggles |
+//! | [`motion`] | velocity and acceleration at one crank angle, in natural coordinates |
+//! | [`position`] | position analysis of the four-bar in closed form, in natural coordinates: the kernel that the other modules call |
+//! | [`transmission`] | the transmission angle mu between coupler and follower at D, in [0, 180] degrees, and its extremes |
 
 pub mod assembly_condition;
 pub mod cognate;

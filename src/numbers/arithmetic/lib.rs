@@ -1,4 +1,14 @@
-//! Numbers: points of the plane as complex numbers, eight numbers side by side, double-double numbers.
+//! Numbers: points of the plane as complex numbers, eight numbers side by side, double-double numbers,
+//! streams of pseudo-random numbers.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`complex_lanes`] | complex numbers side by side in lanes, and the 8x8 linear systems that eight paths solve at once |
+//! | [`dispatch`] | run-time choice of vector instructions: the one file of this crate that may use `unsafe` |
+//! | [`double_double`] | real and complex numbers as unevaluated sums of two doubles, about 32 digits |
+//! | [`lane`] | SIMD lanes: the arithmetic of the position solver, written once for one `f64` and for eight of them side by side |
+//! | [`mod@operators`] | operators of number types, written as functions of their operands |
+//! | [`streams`] | streams of pseudo-random numbers, each determined by a seed and an index, and the draws made from them |
 
 pub mod complex_lanes;
 pub mod dispatch;

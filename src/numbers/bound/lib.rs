@@ -8,6 +8,17 @@
 //! they are fixed: [`absolute`]); the linkages whose input turns fully lie in a compact box of four numbers
 //! ([`chart`]); [`mod@bound`] bounds a box from below in arithmetic with enclosed rounding ([`ball`]); [`search`]
 //! halves boxes until each is decided. docs/certificate.md has the proofs.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`absolute`] | the lower bound of a box if crank angles are from the x axis: K = kappa is a real length |
+//! | [`affine`] | affine enclosures of functions over a box: a linear function and a bound of the remainder (the rest) |
+//! | [`ball`] | ball arithmetic: numbers with a bound of their error, on which every discarded box relies |
+//! | [`mod@bound`] | the lower bound of a box: a number L such that no point of the box has a sum of squares below it |
+//! | [`chart`] | the chart: coordinates of every four-bar whose input turns fully, in a compact box of four numbers |
+//! | [`expansion`] | the expansion of the coupler's directions over a box: first derivatives at its centre, and a bound of the remainder |
+//! | [`search`] | best-first branch and bound over the chart |
+//! | [`target`] | the target, prepared for bounds: T', its length, and the directions that the linear unknowns take away |
 
 pub mod absolute;
 mod affine;

@@ -5,6 +5,14 @@
 //! below: intervals with outward rounding ([`interval`]), functions over a box as polynomials of second degree with an
 //! enclosed rest ([`model`]), the target's directions in intervals ([`frame`]). A leaf that is too large for that is
 //! halved here until it is proved ([`region`]).
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`frame`] | the target in intervals: the directions 1, e and T' with bounds of their errors |
+//! | [`interval`] | interval arithmetic with outward rounding: every end is moved to the next number outwards |
+//! | [`model`] | Taylor models of second degree: functions over a box, enclosed by a polynomial and an interval for the remainder (the rest) |
+//! | [`real`] | the check of a box if K is a real length: crank angles from the x axis |
+//! | [`region`] | the check of one box: a proof that every linkage in it has a sum of squares of at least the claimed one |
 
 pub mod frame;
 pub mod interval;

@@ -21,9 +21,10 @@ pub use class::{Axis, Cell, Class, Lengths, Line};
 
 use sha2::{Digest, Sha256};
 
-/// The chart: p, phi_0, g, d. The ends are a little beyond 1, pi, pi, pi/2 and have few digits, so that halving is
+/// The chart: p, phi_0, g, d. p ends at 1, the others a little beyond pi, pi and pi/2; all ends have few digits, so that halving is
 /// exact.
 pub const ROOT: Cell = Cell { low: [0.0, -3.15625, 0.0, -1.578125], high: [1.0, 3.15625, 3.15625, 1.578125] };
+
 /// The reference direction of the crank angles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Angles {

@@ -18,6 +18,27 @@
 //!
 //! Source: C. W. Wampler, A. P. Morgan, A. J. Sommese, "Complete solution of the nine-point path synthesis problem for
 //! four-bar linkages", ASME J. Mech. Des. 114 (1992) 153-159.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`careful`] | homotopy path tracking of one path in double-double, for a solution nearer to infinity than doubles can follow |
+//! | [`certificate`] | the proof that a solution of the sixteen equations exists and is the only one near |
+//! | [`classes`] | the six images of a solution, and the grouping of solutions into classes of images |
+//! | [`conjugation`] | the proof that a certified solution is real, or draws a real curve, or does neither |
+//! | [`correction`] | Newton's method at fixed displacements, eight solutions at once |
+//! | [`discs`] | discs of complex numbers and upper bounds, both with outward rounding |
+//! | [`distinct`] | the proof that certified solutions belong to different classes |
+//! | [`double_discs`] | discs with double-double midpoints: enclosures that stay narrow where differences cancel |
+//! | [`equations`] | the sixteen equations, their derivatives, and the 8x8 system that is left when the rotations are eliminated |
+//! | [`live`] | homotopy path tracking from target to target: the solutions of a target that has moved a little, from those of the target before |
+//! | [`monodromy`] | monodromy: finds all classes of a target in general position, without a start set |
+//! | [`polynomial`] | the sixteen equations as polynomials, over any numbers that can be added and multiplied |
+//! | [`refinement`] | Newton's method with residuals in double-double: a solution to more digits than a double holds |
+//! | [`settle`] | homotopy path tracking of all classes: all paths are tracked together, lost ones again in further rounds, and each end is classified |
+//! | [`mod@solve`] | the solver for all classes of a target: tracks straight paths from the start set, tracks lost ones again, and classifies the ends |
+//! | [`start`] | the start set: one solution of each of the 1442 classes at a fixed complex target in general position |
+//! | [`target`] | the problem, nine precision points, and its answer, a solution of the sixteen equations |
+//! | [`tracker`] | homotopy path tracking of solutions while the displacements move along a straight line: predictor, corrector, step control |
 
 mod careful;
 pub mod certificate;

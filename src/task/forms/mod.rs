@@ -1,6 +1,6 @@
 //! The task as mathematics: design space, residuals with derivatives, requirements, fitness.
 //!
-//! | room | what it holds |
+//! | module | holds |
 //! |---|---|
 //! | [`design_space`] | the design vector and its coordinates; only this file knows the meaning of each component |
 //! | [`fitness`] | fitness of a population search in the physical parameters: the design's free numbers in, violation and cost out |

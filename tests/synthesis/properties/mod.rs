@@ -79,7 +79,7 @@ fn one_and_two_threads_give_equal_bytes() {
 #[ignore = "slow: .ci/run runs it"]
 fn the_plain_checks_see_what_is_wrong() {
     type Spoil = fn(&mut ProblemSpec, &mut Candidate) -> bool;
-    let spoils: [(&str, Spoil); 12] = [
+    let spoils: [(&str, Spoil); 14] = [
         ("another sum", |_, c| {
             c.error.sum_sq = 1.001 * c.error.sum_sq + 1e-6 * c.linkage.crank().powi(2);
             true
@@ -121,6 +121,19 @@ fn the_plain_checks_see_what_is_wrong() {
             spec.require.footprint_in = Some([x + beyond(x), -1e12, 1e12, 1e12]);
             true
         }),
+        ("a link that is too long", |spec, c| {
+            let l = &c.linkage;
+            spec.require.longest_max =
+                Some(0.99 * l.longest_link().max(l.crank_side()).max(l.follower_side()));
+            true
+        }),
+        ("too large an extent", |spec, c| {
+            let joints = c.linkage.position_with(c.crank_deg[0].to_radians(), c.t1_at[0]).joints();
+            let reach = joints.map_or(0.0, |j| (j.coupler_point - c.linkage.crank_pivot()).norm());
+            spec.require.extent_max = Some(0.99 * reach);
+            // The box is measured along a motion on one branch.
+            spec.require.branch == OnePolicy::One && spec.require.circuit == OnePolicy::One
+        }),
         ("a flat transmission angle", |spec, c| {
             spec.require.transmission_deg_min = Some(c.transmission_deg.worst + 5.0);
             spec.require.transmission_over = Some(c.transmission_deg.over);
@@ -153,9 +166,9 @@ fn the_plain_checks_see_what_is_wrong() {
         }),
     ];
     const TRIES: usize = 5;
-    let mut seen = [0; 12];
+    let mut seen = [0; 14];
     for case in (0..CASES).filter_map(|index| case(SEED, index)) {
-        if seen == [TRIES; 12] {
+        if seen == [TRIES; 14] {
             break;
         }
         let spec = case.file.spec.clone();

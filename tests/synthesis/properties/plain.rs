@@ -212,6 +212,9 @@ impl Look<'_> {
         let links = [(l.follower_pivot() - l.crank_pivot()).norm(), l.crank(), l.coupler(), l.follower()];
         let (least, most) = span(&links);
         self.at_most("the link ratio", most / least, self.spec.require.link_ratio_max);
+        if let Some(limit) = self.spec.require.longest_max {
+            self.at_most("the longest link", most.max(l.crank_side()).max(l.follower_side()), limit);
+        }
         let margin = links.iter().sum::<f64>() - 2.0 * (least + most);
         let shortest = links.iter().position(|v| *v == least);
         let kind = match shortest {
@@ -322,6 +325,15 @@ impl Look<'_> {
             let mu = between(j.crank_pin - j.follower_pin, l.follower_pivot() - j.follower_pin);
             mu.min(180.0 - mu)
         };
+        let mut corners = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        let mut hold = |p: Complex| {
+            let [x0, y0, x1, y1] = corners;
+            corners = [x0.min(p.re), y0.min(p.im), x1.max(p.re), y1.max(p.im)];
+        };
+        [l.crank_pivot(), l.follower_pivot()].into_iter().for_each(&mut hold);
+        for j in joints {
+            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(&mut hold);
+        }
         if let Some(b) = require.footprint_in {
             self.inside("A in footprint_in", l.crank_pivot(), b);
             self.inside("B in footprint_in", l.follower_pivot(), b);
@@ -392,11 +404,16 @@ impl Look<'_> {
             if over == TransmissionOver::Used {
                 self.at_least("the transmission angle on the way", angle_of(&j), limit - 1e-5);
             }
+            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(&mut hold);
             if let Some(b) = require.footprint_in {
                 for p in [j.crank_pin, j.follower_pin, j.coupler_point] {
                     self.inside("a joint on the way in footprint_in", p, b);
                 }
             }
+        }
+        if let Some(limit) = require.extent_max {
+            let [x0, y0, x1, y1] = corners;
+            self.at_most("the extent", (x1 - x0).hypot(y1 - y0), limit);
         }
     }
 }

@@ -336,4 +336,10 @@ fn require(draws: &mut Stream, size: f64, centre: [f64; 2], turnable: bool, out:
     if chance(draws, 0.35) {
         line("branch = \"any\"".into());
     }
+    if chance(draws, 0.1) {
+        line(format!("extent_max = {:?}", size * log_uniform(draws, 1.5, 30.0)));
+    }
+    if chance(draws, 0.1) {
+        line(format!("longest_max = {:?}", size * log_uniform(draws, 0.5, 15.0)));
+    }
 }

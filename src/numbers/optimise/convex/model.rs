@@ -300,7 +300,7 @@ impl<'a, const N: usize> Model<'a, N> {
 
     /// Minimises the model with cones for the chosen points only.
     ///
-    /// The variables are v = (y, [theta], sigma) with dx_i = widths_i y_i, T = unit theta, and sigma the slack.
+    /// The variables are v = (y, theta where there is one, sigma) with dx_i = widths_i y_i, T = `unit` times theta, and sigma the slack.
     fn solve_with(&self, curvature: &Curvature<N>, price: f64, chosen: &[usize]) -> Option<Step<N>> {
         let theta = self.free.len();
         let sigma = theta + usize::from(self.is_minimax());
