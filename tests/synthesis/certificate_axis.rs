@@ -8,7 +8,10 @@ use linkwright::internals::judge::certificate::{CheckError, Proof, Request, chec
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
 use linkwright::internals::numbers::bound::absolute::{bound, exclude};
 use linkwright::internals::numbers::bound::{Outcome, Point, Question, Search, Target};
-use linkwright::internals::numbers::checker::region::{Claim, Region, Shown};
+use linkwright::internals::numbers::checker::{
+    claim::Claim,
+    region::{Region, Shown},
+};
 use linkwright::internals::numbers::leaves::root;
 use linkwright::internals::numbers::leaves::{Axis, Cell, Class, Leaves, Lengths, Line};
 use linkwright::internals::record::Record;

@@ -6,7 +6,10 @@ use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::judge::certificate::{CheckError, Checked, Proof, Request, check};
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
 use linkwright::internals::numbers::bound::Question;
-use linkwright::internals::numbers::checker::region::{Claim, Region, Shown};
+use linkwright::internals::numbers::checker::{
+    claim::Claim,
+    region::{Region, Shown},
+};
 use linkwright::internals::numbers::leaves::ROOT;
 use linkwright::internals::numbers::leaves::{Leaves, LeavesError};
 use linkwright::internals::record::{Certificate, Record};

@@ -11,7 +11,8 @@
 use super::affine::Affine;
 use super::ball::{Ball, not_negative};
 use super::bound::{Bound, SMALLER, WIDER, Witness, largest};
-use super::expansion::{Expansion, LARGER, Moved, STEEPEST};
+use super::expansion::{Expansion, Moved, STEEPEST};
+use super::halving::LARGER;
 use super::target::{MAX_POINTS, Target};
 use linkwright_leaves::{Cell, Class, Lengths};
 

@@ -5,29 +5,10 @@
 //! from the box's centre; both are expanded there with exact first derivatives, and the remainder of the expansion is
 //! bounded by the second derivatives of theta over the box (docs/certificate.md has each line).
 
-use super::expansion::{Expansion, LARGER, Moved};
+use super::expansion::{Expansion, Moved};
+use super::halving::LARGER;
 use super::target::{MAX_POINTS, Target};
 use linkwright_leaves::{Cell, Class};
-
-/// Returns the middle and half the width, such that the box lies within them.
-pub(super) fn centre(cell: &Cell) -> ([f64; 4], [f64; 4]) {
-    let mut c = [0.0; 4];
-    let mut h = [0.0; 4];
-    for k in 0..4 {
-        c[k] = 0.5 * (cell.low[k] + cell.high[k]);
-        h[k] = (cell.high[k] - c[k]).max(c[k] - cell.low[k]) * LARGER;
-    }
-    (c, h)
-}
-
-/// Returns both halves of the box, split along an axis.
-pub(super) fn split(cell: &Cell, axis: usize) -> [Cell; 2] {
-    let middle = 0.5 * (cell.low[axis] + cell.high[axis]);
-    let (mut lower, mut upper) = (*cell, *cell);
-    lower.high[axis] = middle;
-    upper.low[axis] = middle;
-    [lower, upper]
-}
 
 /// The factor that covers the rounding of a few products and roots in a lower bound.
 pub(super) const SMALLER: f64 = 1.0 - 1e-13;

@@ -5,14 +5,11 @@
 //! theta over the box bound; if these are not bounded, the chord of u_j is (docs/certificate.md has each line).
 
 use super::ball::Ball;
-use super::bound::centre;
 use super::chart::{Centre, Motion};
+use super::halving::{LARGER, centre};
 use super::target::MAX_POINTS;
 use linkwright_leaves::{Cell, Class};
 
-/// The factor that covers the rounding of majorants: they are computed in plain arithmetic from non-negative numbers
-/// and from differences that are kept above [`NEAR`] times the numbers they are taken from.
-pub(super) const LARGER: f64 = 1.0 + 1e-9;
 /// The least f and sin gamma with which second derivatives are used.
 const NEAR: f64 = 1e-4;
 /// An upper bound of every slope |t_k| of a [`Moved`], to which the rounding of the sums of n products with slopes is

@@ -17,6 +17,7 @@
 //! | [`mod@bound`] | the lower bound of a box: a number L such that no point of the box has a sum of squares below it |
 //! | [`chart`] | the chart: coordinates of every four-bar whose input turns fully, in a compact box of four numbers |
 //! | [`expansion`] | the expansion of the coupler's directions over a box: first derivatives at its centre, and a bound of the remainder |
+//! | [`halving`] | boxes of the chart: their middle and half widths, and their halves |
 //! | [`search`] | best-first branch and bound over the chart |
 //! | [`target`] | the target, prepared for bounds: T', its length, and the directions that the linear unknowns take away |
 
@@ -26,6 +27,7 @@ pub mod ball;
 pub mod bound;
 pub mod chart;
 mod expansion;
+mod halving;
 pub mod search;
 pub mod target;
 

@@ -6,7 +6,8 @@
 //! number of threads, and their results are taken in order: the same boxes, the same digits.
 
 use super::absolute;
-use super::bound::{Bound, bound, centre, split};
+use super::bound::{Bound, bound};
+use super::halving::{centre, split};
 use super::target::{Target, TargetError};
 use linkwright_leaves::{Angles, HALVED, Nodes, OPEN, ROOT, root};
 use linkwright_leaves::{Axis, Cell, Class};

@@ -8,21 +8,24 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | [`claim`] | the claim that a box is checked for, and linear functionals of the directions u over a box |
 //! | [`frame`] | the target in intervals: the directions 1, e and T' with bounds of their errors |
 //! | [`interval`] | interval arithmetic with outward rounding: every end is moved to the next number outwards |
 //! | [`model`] | Taylor models of second degree: functions over a box, enclosed by a polynomial and an interval for the remainder (the rest) |
 //! | [`real`] | the check of a box if K is a real length: crank angles from the x axis |
 //! | [`region`] | the check of one box: a proof that every linkage in it has a sum of squares of at least the claimed one |
 
+pub mod claim;
 pub mod frame;
 pub mod interval;
 pub mod model;
 mod real;
 pub mod region;
 
+use claim::Claim;
 use linkwright_leaves::{Angles, Cell, LeavesPart};
 use rayon::prelude::*;
-use region::{Claim, Region, Shown};
+use region::{Region, Shown};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The number of leaves checked between two reports of progress and checks for cancellation.

@@ -3,10 +3,10 @@
 //! In the frame of T, e and u of docs/certificate.md the sum of squares is at least L exactly where
 //! X^2 + Y^2 >= L W^2; X cos a + Y sin a >= L^(1/2) W is enough, at any angle a. The functions are [`Model`]s.
 
+use super::claim::{Claim, Direction, functional, witness, witness_slack};
 use super::frame::Frame;
 use super::interval::Interval;
 use super::model::{Model, UP};
-use super::region::{Claim, Direction, functional, witness, witness_slack};
 use linkwright_leaves::{Axis, Class};
 
 /// Returns a lower bound of the least and an upper bound of the greatest length of a crank, over a range of p.
