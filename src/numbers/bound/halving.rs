@@ -3,7 +3,7 @@
 use linkwright_leaves::Cell;
 
 /// The factor that covers the rounding of majorants: they are computed in plain arithmetic from non-negative numbers
-/// and from differences that are kept above [`NEAR`] times the numbers they are taken from.
+/// and from differences that are kept above `NEAR` (in `expansion`) times the numbers they are taken from.
 pub(super) const LARGER: f64 = 1.0 + 1e-9;
 
 /// Returns the middle and half the width, such that the box lies within them.
