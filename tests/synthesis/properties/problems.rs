@@ -208,6 +208,7 @@ fn text(draws: &mut Stream, points: &[Complex], closed: bool, asks: &Asks) -> St
     let offset = if timed { timing(draws, points.len(), &mut out) } else { None };
     design(draws, size, centre, &mut out);
     require(draws, size, centre, offset.is_none_or(|o| o == "free"), &mut out);
+    limits_of_size(&mut stream(LIMITS_OF_SIZE, index), size, &mut out);
     let method = one_of(
         draws,
         &[
@@ -336,10 +337,16 @@ fn require(draws: &mut Stream, size: f64, centre: [f64; 2], turnable: bool, out:
     if chance(draws, 0.35) {
         line("branch = \"any\"".into());
     }
-    if chance(draws, 0.1) {
-        line(format!("extent_max = {:?}", size * log_uniform(draws, 1.5, 30.0)));
-    }
-    if chance(draws, 0.1) {
-        line(format!("longest_max = {:?}", size * log_uniform(draws, 0.5, 15.0)));
+}
+
+/// The seed of the draws of [`limits_of_size`]: a stream of their own leaves the other draws as they are without them.
+const LIMITS_OF_SIZE: u64 = 17;
+
+/// Limits of the extent and of the longest link, each in one problem of ten; the table is `[require]`.
+fn limits_of_size(draws: &mut Stream, size: f64, out: &mut String) {
+    for (key, low, high) in [("extent_max", 1.5, 30.0), ("longest_max", 0.5, 15.0)] {
+        if chance(draws, 0.1) {
+            writeln!(out, "{key} = {:?}", size * log_uniform(draws, low, high)).expect("memory");
+        }
     }
 }
