@@ -80,7 +80,7 @@ struct Asks {
 }
 
 fn parsed(draws: &mut Stream, index: u64, points: &[Complex], closed: bool, asks: &Asks) -> Option<Case> {
-    let text = text(draws, points, closed, asks);
+    let text = text(draws, index, points, closed, asks);
     let mut file = problem_file::parse("random.toml", &text, None, &[]).ok()?;
     let path = &mut file.spec.task.path;
     let [x0, y0, x1, y1] = bounding_box(points);
@@ -190,7 +190,7 @@ fn along(corners: &[Complex], n: usize, closed: bool) -> Vec<Complex> {
 }
 
 /// A problem file with random tables.
-fn text(draws: &mut Stream, points: &[Complex], closed: bool, asks: &Asks) -> String {
+fn text(draws: &mut Stream, index: u64, points: &[Complex], closed: bool, asks: &Asks) -> String {
     let [x0, y0, x1, y1] = bounding_box(points);
     let (size, centre) = ((x1 - x0).hypot(y1 - y0), [0.5 * (x0 + x1), 0.5 * (y0 + y1)]);
     let listed: Vec<String> = points.iter().map(|p| format!("[{:?}, {:?}]", p.re, p.im)).collect();
