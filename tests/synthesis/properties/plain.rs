@@ -326,13 +326,17 @@ impl Look<'_> {
             mu.min(180.0 - mu)
         };
         let mut corners = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-        let mut hold = |p: Complex| {
-            let [x0, y0, x1, y1] = corners;
-            corners = [x0.min(p.re), y0.min(p.im), x1.max(p.re), y1.max(p.im)];
+        let hold = |[x0, y0, x1, y1]: &mut [f64; 4], p: Complex| {
+            (*x0, *y0) = (x0.min(p.re), y0.min(p.im));
+            (*x1, *y1) = (x1.max(p.re), y1.max(p.im));
         };
-        [l.crank_pivot(), l.follower_pivot()].into_iter().for_each(&mut hold);
+        [l.crank_pivot(), l.follower_pivot()].into_iter().for_each(|p| hold(&mut corners, p));
         for j in joints {
-            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(&mut hold);
+            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(|p| hold(&mut corners, p));
+        }
+        let extent = |[x0, y0, x1, y1]: [f64; 4]| (x1 - x0).hypot(y1 - y0);
+        if let Some(limit) = require.extent_max {
+            self.at_most("the extent at the points", extent(corners), limit);
         }
         if let Some(b) = require.footprint_in {
             self.inside("A in footprint_in", l.crank_pivot(), b);
@@ -404,7 +408,7 @@ impl Look<'_> {
             if over == TransmissionOver::Used {
                 self.at_least("the transmission angle on the way", angle_of(&j), limit - 1e-5);
             }
-            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(&mut hold);
+            [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(|p| hold(&mut corners, p));
             if let Some(b) = require.footprint_in {
                 for p in [j.crank_pin, j.follower_pin, j.coupler_point] {
                     self.inside("a joint on the way in footprint_in", p, b);
@@ -412,8 +416,7 @@ impl Look<'_> {
             }
         }
         if let Some(limit) = require.extent_max {
-            let [x0, y0, x1, y1] = corners;
-            self.at_most("the extent", (x1 - x0).hypot(y1 - y0), limit);
+            self.at_most("the extent on the way", extent(corners), limit);
         }
     }
 }
