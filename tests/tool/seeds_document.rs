@@ -13,8 +13,8 @@ use std::fmt::Write;
 const HEAD: &str = "\
 # The seed papers, checked
 
-Three papers stand at the beginning of this project. Every example in them is computed here again; where a
-table is wrong, the right value stands beside it. This page is made from the library's own figures and compared
+This project began with three papers. Every example in them is computed here again; where a
+table is wrong, the right value is given beside it. This page is made from the library's own figures and compared
 by a test (`tests/tool/seeds_document.rs`), so it says what the program does.
 
 - **De Castro**: C. A. De Castro, *Analisis de posicion, velocidad y aceleracion de mecanismos de 4 barras por
