@@ -114,17 +114,19 @@ fn storey(file: &Path) -> Option<String> {
     (!first.ends_with(".rs")).then_some(first)
 }
 
-/// The storeys that a file uses, by absolute paths or by so many `super` that they lead out of its storey.
-fn used(file: &Path, storeys: &BTreeSet<String>) -> BTreeSet<String> {
-    let text = std::fs::read_to_string(file).expect("it is text");
+/// How many modules lie around what a file of `src` holds, its own counted: 1 for `judge/mod.rs`, 2 for `judge/rank.rs`.
+fn depth(file: &Path) -> usize {
+    let below = file.strip_prefix(root().join("src")).expect("below src");
+    below.components().count() - usize::from(file.ends_with("mod.rs"))
+}
+
+/// The storeys that a file of this [`depth`] uses, by absolute paths or by so many `super` that they lead to the crate.
+fn used(text: &str, depth: usize, storeys: &BTreeSet<String>) -> BTreeSet<String> {
     let mut used = BTreeSet::new();
-    for names in Paths::of(&text).0 {
-        let rest = names.iter().skip_while(|name| *name == "super" || *name == "crate");
-        let leads_out = names.first().is_some_and(|name| name == "crate" || name == "super");
-        let Some(first) = rest.take(1).next().filter(|_| leads_out) else { continue };
-        if names[0] == "crate" || names.iter().filter(|name| *name == "super").count() > 1 {
-            used.extend(storeys.get(first).cloned());
-        }
+    for names in Paths::of(text).0 {
+        let up = names.iter().take_while(|name| *name == "super").count();
+        let first = if up >= depth { names.get(up) } else { names.get(1).filter(|_| names[0] == "crate") };
+        used.extend(first.and_then(|first| storeys.get(first)).cloned());
     }
     used
 }
@@ -143,7 +145,8 @@ fn every_folder_of_src_is_a_storey_of_the_table_and_uses_only_what_its_row_names
         if own == "numbers" {
             continue;
         }
-        for name in used(&file, &storeys) {
+        let text = std::fs::read_to_string(&file).expect("it is text");
+        for name in used(&text, depth(&file), &storeys) {
             let allowed = may.as_ref().is_none_or(|may| may.contains(&name)) || name == own;
             assert!(allowed, "{} uses {name}", file.display());
         }
@@ -154,19 +157,21 @@ fn every_folder_of_src_is_a_storey_of_the_table_and_uses_only_what_its_row_names
 #[test]
 fn a_storey_that_uses_another_is_seen() {
     let storeys: BTreeSet<String> = ["judge", "synthesis"].map(str::to_owned).into();
-    let folder = tempfile::tempdir().expect("a folder");
-    let file = folder.path().join("it.rs");
-    for (text, sees) in [
-        ("use crate::{\n    synthesis::plan,\n    record::Record,\n};", true),
-        ("fn f() { let x = crate::synthesis::plan(); }", true),
-        ("fn f() { println!(\"{}\", crate::synthesis::NAME); }", true),
-        ("use super::super::synthesis::plan;", true),
-        ("// crate::synthesis\n#[cfg(test)]\nmod tests { use crate::synthesis::plan; }", false),
-        ("use super::synthesis;", false),
+    for (text, depth, sees) in [
+        ("use crate::{\n    synthesis::plan,\n    record::Record,\n};", 3, true),
+        ("fn f() { let x = crate::synthesis::plan(); }", 2, true),
+        ("fn f() { println!(\"{}\", crate::synthesis::NAME); }", 2, true),
+        ("use super::super::synthesis::plan;", 2, true),
+        ("use super::super::synthesis::plan;", 3, false),
+        ("use super::synthesis;", 1, true),
+        ("use super::synthesis;", 2, false),
+        ("// crate::synthesis\n#[cfg(test)]\nmod tests { use crate::synthesis::plan; }", 2, false),
     ] {
-        std::fs::write(&file, text).expect("written");
-        assert_eq!(!used(&file, &storeys).is_empty(), sees, "{text}");
+        assert_eq!(!used(text, depth, &storeys).is_empty(), sees, "{text} at depth {depth}");
     }
+    assert_eq!(depth(&root().join("src/judge/mod.rs")), 1);
+    assert_eq!(depth(&root().join("src/judge/rank.rs")), 2);
+    assert_eq!(depth(&root().join("src/judge/verify/mod.rs")), 2);
 }
 
 /// The dependencies of a package below `src/numbers` on others of this repository, but for its tests.
