@@ -256,10 +256,10 @@ fn require_of(
     timing: Option<&TimingSpec>,
 ) -> Result<RequireSpec, Box<Diagnostic>> {
     let require = RequireSpec::from(raw);
-    for kind in RequirementKind::ALL {
+    for kind in RequirementKind::all() {
         let definition = kind.definition();
-        if let Err(refusal) = definition.check(&require, timing) {
-            return Err(Box::new(toml.at(definition.key(), refusal.message).with_help(refusal.help)));
+        if let Err(refusal) = (definition.check)(&require, timing) {
+            return Err(Box::new(toml.at(definition.key, refusal.message).with_help(refusal.help)));
         }
     }
     Ok(require)
