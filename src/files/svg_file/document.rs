@@ -4,7 +4,7 @@ use super::shape::{Outline, Scope};
 use super::viewport;
 use super::viewport::Page;
 use super::{MAX_DEPTH, MAX_ELEMENTS};
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use kurbo::{Affine, Vec2};
 use roxmltree::Node;
 use std::collections::BTreeMap;
@@ -45,8 +45,6 @@ pub(super) struct Document<'a, 'input> {
     warnings: Vec<Diagnostic>,
 }
 
-type Answer<T> = Result<T, Box<Diagnostic>>;
-
 /// Returns whether an element is a container: a group, a symbol or a drawing inside another.
 fn is_container(name: &str) -> bool {
     matches!(name, "g" | "a" | "switch" | "svg" | "symbol")
@@ -70,7 +68,7 @@ fn name_of<'a>(node: &Node<'a, '_>) -> &'a str {
 }
 
 impl<'a, 'input> Document<'a, 'input> {
-    pub fn new(file: &'a str, text: &'a str, parsed: &'a roxmltree::Document<'input>) -> Answer<Self> {
+    pub fn new(file: &'a str, text: &'a str, parsed: &'a roxmltree::Document<'input>) -> Checked<Self> {
         let root = parsed.root_element();
         let mut ids = BTreeMap::new();
         for node in parsed.descendants() {
@@ -104,7 +102,7 @@ impl<'a, 'input> Document<'a, 'input> {
     }
 
     /// Returns the shape with an id, or the first.
-    pub fn target(&mut self, id: Option<&str>) -> Answer<Chosen> {
+    pub fn target(&mut self, id: Option<&str>) -> Checked<Chosen> {
         let mut shapes = Vec::new();
         match id {
             None => {
@@ -162,7 +160,7 @@ impl<'a, 'input> Document<'a, 'input> {
         extent: Option<Vec2>,
         depth: usize,
         shapes: &mut Vec<Placed<'a, 'input>>,
-    ) -> Answer<()> {
+    ) -> Checked<()> {
         if !node.is_element() || is_hidden(&node) {
             return Ok(());
         }
@@ -202,7 +200,7 @@ impl<'a, 'input> Document<'a, 'input> {
         extent: Option<Vec2>,
         depth: usize,
         shapes: &mut Vec<Placed<'a, 'input>>,
-    ) -> Answer<()> {
+    ) -> Checked<()> {
         let href = node.attribute("href").or_else(|| node.attribute((XLINK, "href"))).unwrap_or("");
         let Some(shown) = href.strip_prefix('#').and_then(|id| self.ids.get(id)).copied() else {
             let message = format!("this use shows {}, which is not in the drawing", quoted(href));
@@ -234,7 +232,7 @@ impl<'a, 'input> Document<'a, 'input> {
         transform: Affine,
         extent: Option<Vec2>,
         size: (Option<f64>, Option<f64>),
-    ) -> Answer<(Affine, Option<Vec2>)> {
+    ) -> Checked<(Affine, Option<Vec2>)> {
         let scope = Scope { file: self.file, text: self.text, node: *node, extent };
         let own = |key, axis| scope.length(key, axis);
         let width = size.0.or(own("width", 'x')?).or(extent.map(|e| e.x));
@@ -257,7 +255,7 @@ impl<'a, 'input> Document<'a, 'input> {
     }
 
     /// Returns the transform of everything above an element.
-    fn above(&self, node: &Node<'a, 'input>) -> Answer<(Affine, Option<Vec2>)> {
+    fn above(&self, node: &Node<'a, 'input>) -> Checked<(Affine, Option<Vec2>)> {
         let mut line: Vec<Node<'a, 'input>> = node.ancestors().skip(1).filter(Node::is_element).collect();
         line.reverse();
         let (mut transform, mut extent) = (Affine::IDENTITY, None);
@@ -274,7 +272,7 @@ impl<'a, 'input> Document<'a, 'input> {
         Ok((transform, extent))
     }
 
-    fn transform_of(&self, node: &Node<'a, 'input>) -> Answer<Affine> {
+    fn transform_of(&self, node: &Node<'a, 'input>) -> Checked<Affine> {
         let styled = node.attribute("style").is_some_and(|style| {
             style
                 .split(';')
@@ -309,7 +307,7 @@ impl<'a, 'input> Document<'a, 'input> {
         }
     }
 
-    fn size_of(&self, node: &Node<'a, 'input>, key: &str) -> Answer<Option<Length>> {
+    fn size_of(&self, node: &Node<'a, 'input>, key: &str) -> Checked<Option<Length>> {
         let Some(text) = node.attribute(key).filter(|text| text.trim() != "auto") else { return Ok(None) };
         match text.trim().parse::<Length>() {
             Ok(length) if length.number.is_finite() && length.number > 0.0 => Ok(Some(length)),
@@ -320,7 +318,7 @@ impl<'a, 'input> Document<'a, 'input> {
         }
     }
 
-    fn view_of(&self, node: &Node<'a, 'input>) -> Answer<Option<ViewBox>> {
+    fn view_of(&self, node: &Node<'a, 'input>) -> Checked<Option<ViewBox>> {
         let Some(text) = node.attribute("viewBox") else { return Ok(None) };
         match text.parse::<ViewBox>() {
             Ok(v) if [v.x, v.y, v.w, v.h].iter().all(|n| n.is_finite()) => Ok(Some(v)),
@@ -336,7 +334,7 @@ impl<'a, 'input> Document<'a, 'input> {
         }
     }
 
-    fn aspect_of(&self, node: &Node<'a, 'input>) -> Answer<AspectRatio> {
+    fn aspect_of(&self, node: &Node<'a, 'input>) -> Checked<AspectRatio> {
         let Some(text) = node.attribute("preserveAspectRatio") else { return Ok(AspectRatio::default()) };
         text.trim().parse().map_err(|_| {
             let message = format!("preserveAspectRatio = {} is not known", quoted(text));

@@ -6,7 +6,7 @@ use super::MAX_SEGMENTS;
 use super::arc_length::hull;
 use super::pen::Pen;
 use super::viewport::px_of;
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use kurbo::{Affine, Arc, CubicBez, Line, PathSeg, Point, SvgArc, Vec2};
 use roxmltree::Node;
 use std::f64::consts::TAU;
@@ -122,11 +122,9 @@ pub(super) struct Scope<'a, 'input> {
     pub extent: Option<Vec2>,
 }
 
-type Answer<T> = Result<T, Box<Diagnostic>>;
-
 impl Scope<'_, '_> {
     /// Returns the curve of a shape; `None` if it draws nothing.
-    pub fn outline(&self) -> Answer<Option<Outline>> {
+    pub fn outline(&self) -> Checked<Option<Outline>> {
         let outline = match self.node.tag_name().name() {
             "path" => self.path()?,
             "polyline" => self.polyline(false)?,
@@ -183,7 +181,7 @@ impl Scope<'_, '_> {
     }
 
     /// Returns a length in user units; `axis` is the axis to which a percentage refers: x, y or r.
-    pub fn length(&self, key: &str, axis: char) -> Answer<Option<f64>> {
+    pub fn length(&self, key: &str, axis: char) -> Checked<Option<f64>> {
         let Some(text) = self.node.attribute(key).filter(|text| text.trim() != "auto") else {
             return Ok(None);
         };
@@ -207,12 +205,12 @@ impl Scope<'_, '_> {
         if value.is_finite() { Ok(Some(value)) } else { refuse("write a finite number") }
     }
 
-    fn or_zero(&self, key: &str, axis: char) -> Answer<f64> {
+    fn or_zero(&self, key: &str, axis: char) -> Checked<f64> {
         Ok(self.length(key, axis)?.unwrap_or(0.0))
     }
 
     /// Returns a length that must not be negative.
-    fn size(&self, key: &str, axis: char) -> Answer<Option<f64>> {
+    fn size(&self, key: &str, axis: char) -> Checked<Option<f64>> {
         match self.length(key, axis)? {
             Some(value) if value < 0.0 => {
                 Err(self.at(key, format!("{key} = {value} is negative"), "write 0 or more"))
@@ -221,7 +219,7 @@ impl Scope<'_, '_> {
         }
     }
 
-    fn line(&self) -> Answer<Option<Outline>> {
+    fn line(&self) -> Checked<Option<Outline>> {
         let from = Point::new(self.or_zero("x1", 'x')?, self.or_zero("y1", 'y')?);
         let to = Point::new(self.or_zero("x2", 'x')?, self.or_zero("y2", 'y')?);
         let mut outline = Outline::default();
@@ -231,7 +229,7 @@ impl Scope<'_, '_> {
         Ok(Some(outline))
     }
 
-    fn ellipse(&self, x_radius: &str, y_radius: &str) -> Answer<Option<Outline>> {
+    fn ellipse(&self, x_radius: &str, y_radius: &str) -> Checked<Option<Outline>> {
         let axis = |key: &str, own: char| if key == "r" { 'r' } else { own };
         let rx = self.size(x_radius, axis(x_radius, 'x'))?;
         let ry = self.size(y_radius, axis(y_radius, 'y'))?;
@@ -246,7 +244,7 @@ impl Scope<'_, '_> {
     }
 
     /// Returns the outline of a rectangle, from the end of its upper left corner, clockwise with y down (SVG 1.1, 9.2).
-    fn rect(&self) -> Answer<Option<Outline>> {
+    fn rect(&self) -> Checked<Option<Outline>> {
         let (x, y) = (self.or_zero("x", 'x')?, self.or_zero("y", 'y')?);
         let (w, h) = (self.size("width", 'x')?.unwrap_or(0.0), self.size("height", 'y')?.unwrap_or(0.0));
         if w == 0.0 || h == 0.0 {
@@ -274,7 +272,7 @@ impl Scope<'_, '_> {
         Ok(Some(outline))
     }
 
-    fn polyline(&self, closed: bool) -> Answer<Option<Outline>> {
+    fn polyline(&self, closed: bool) -> Checked<Option<Outline>> {
         let text = self.node.attribute("points").unwrap_or("");
         let mut numbers = Vec::new();
         for number in NumberListParser::from(text) {
@@ -309,7 +307,7 @@ impl Scope<'_, '_> {
         )
     }
 
-    fn path(&self) -> Answer<Option<Outline>> {
+    fn path(&self) -> Checked<Option<Outline>> {
         let text = self.node.attribute("d").unwrap_or("");
         let mut pen = Pen::default();
         for (i, segment) in PathParser::from(text).enumerate() {

@@ -336,7 +336,7 @@ impl Default for RequireSpec {
 impl From<RawRequire> for RequireSpec {
     fn from(raw: RawRequire) -> RequireSpec {
         let number = |given: Option<Number>| given.map(|number| number.0);
-        let corners = |given: Option<Corners>| given.map(|corners| corners.0.map(|number| number.0));
+        let corners = |given: Option<Corners>| given.map(|corners| corners.0);
         let mut types = raw.types.map_or(Vec::new(), |types| types.0);
         types.sort_unstable();
         types.dedup();
