@@ -31,6 +31,9 @@ pub struct Diagnostic {
     pub help: Option<String>,
 }
 
+/// A value that was read from a text, or the reason why the text is refused.
+pub type Checked<T> = Result<T, Box<Diagnostic>>;
+
 /// The largest number of characters of a source line that are displayed.
 const WINDOW: usize = 96;
 /// The number of characters that a window shows before the caret.
@@ -51,10 +54,10 @@ impl Diagnostic {
         }
     }
 
-    /// Returns the diagnostic with a place in the text.
+    /// Returns the diagnostic with a place in the text; `None`: it is about the whole file.
     #[must_use]
-    pub fn at(mut self, span: Range<usize>) -> Self {
-        self.span = Some(span);
+    pub fn at(mut self, span: impl Into<Option<Range<usize>>>) -> Self {
+        self.span = span.into();
         self
     }
 

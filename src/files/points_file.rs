@@ -1,6 +1,6 @@
 //! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
 
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::input_text;
 use crate::files::toml_text::nearest;
 use crate::mechanism::MAX_MAGNITUDE;
@@ -163,7 +163,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Returns the first row, after the line `sep=,` that some spreadsheets write above it.
-    fn header(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
+    fn header(&mut self) -> Checked<Option<Row>> {
         let first = self.next_row()?;
         match &first {
             Some(row) if self.text.get(row.span.clone()).is_some_and(|line| line.trim() == "sep=,") => {
@@ -173,7 +173,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn next_row(&mut self) -> Result<Option<Row>, Box<Diagnostic>> {
+    fn next_row(&mut self) -> Checked<Option<Row>> {
         let mut record = csv::StringRecord::new();
         loop {
             let start = self.reader.position().byte() as usize;
@@ -219,14 +219,14 @@ impl<'a> Rows<'a> {
     }
 
     /// Returns the finite number in a cell.
-    fn number(&self, row: &Row, index: usize, column: &str) -> Result<f64, Box<Diagnostic>> {
+    fn number(&self, row: &Row, index: usize, column: &str) -> Checked<f64> {
         let cell = row.cells.get(index).map_or("", String::as_str);
         let refuse =
             |message: String, help: &str| Err(self.at(row.cell_span(self.text, index), message, help));
         match cell.parse::<f64>() {
             Ok(value) if value.abs() <= MAX_MAGNITUDE => Ok(value),
             Ok(value) if value.is_finite() => refuse(
-                format!("{column} = {} is too large: numbers go up to 1e12", quoted(cell)),
+                format!("{column} = {} is too large: numbers go up to {MAX_MAGNITUDE:e}", quoted(cell)),
                 crate::files::toml_text::too_large_help(column),
             ),
             Ok(_) => refuse(
@@ -280,7 +280,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(table: &Rows<'_>, header: &Row) -> Result<Columns, Box<Diagnostic>> {
+    fn of(table: &Rows<'_>, header: &Row) -> Checked<Columns> {
         let whole = || header.span.clone();
         if let [only] = header.cells.as_slice() {
             for (separator, name) in [(';', "semicolons"), ('\t', "tabs")] {

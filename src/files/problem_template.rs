@@ -51,7 +51,7 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
         }
         _ => HEAD.to_owned(),
     };
-    let required: String = RequirementKind::ALL.iter().map(|kind| kind.definition().template()).collect();
+    let required: String = RequirementKind::all().iter().map(|kind| kind.definition().template).collect();
     Ok(head.replace("NAME", &quoted(name)) + &points + TAIL + &required + SEARCH)
 }
 

@@ -3,8 +3,9 @@
 //! Errors of syntax and of type have a place; errors of meaning name a key by its path (`task.path.points.3`), and the
 //! place is looked up here. Serde's messages are translated into a designer's words.
 
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::toml_values::TOO_LARGE;
+use crate::mechanism::MAX_MAGNITUDE;
 use serde::de::DeserializeOwned;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -16,45 +17,48 @@ pub(crate) struct TomlText<'a> {
     pub text: &'a str,
 }
 
-/// A key that is known but not supported yet.
-struct KeyToCome {
-    key: &'static str,
-    /// Another key in the same table: elsewhere the same word is just unknown.
-    beside: &'static str,
-    /// The feature that is not supported.
-    what: &'static str,
-    /// The feature to use instead.
-    instead: &'static str,
+/// The tables of `[task]` that are known but not supported yet.
+const TASKS_TO_COME: [&str; 2] = ["motion", "function"];
+const ONLY_PATH: &str = "a problem has one task, and [task.path] is the only kind that is supported";
+
+/// A key, or an item of a list, with its places in the text.
+struct Place<'p> {
+    /// The names of the keys and the indices of the items that lead to it, its own last.
+    path: &'p [String],
+    is_item: bool,
+    key: Range<usize>,
+    value: Range<usize>,
 }
 
-const ONLY_PATH: &str = "a problem has one task, and [task.path] is the only kind that is supported";
-const KEYS_TO_COME: [KeyToCome; 2] = [
-    KeyToCome { key: "motion", beside: "path", what: "[task.motion]", instead: ONLY_PATH },
-    KeyToCome { key: "function", beside: "path", what: "[task.function]", instead: ONLY_PATH },
-];
+/// Calls `visit` for every key and item inside a value; a table or list comes before its contents.
+fn walk(value: &DeValue<'_>, path: &mut Vec<String>, visit: &mut dyn FnMut(&Place<'_>)) {
+    let inside: Vec<_> = match value {
+        DeValue::Table(table) => table.iter().map(|(k, v)| (k.get_ref().to_string(), k.span(), v)).collect(),
+        DeValue::Array(list) => list.iter().enumerate().map(|(i, v)| (i.to_string(), v.span(), v)).collect(),
+        _ => return,
+    };
+    for (name, key, inner) in inside {
+        path.push(name);
+        visit(&Place { path, is_item: value.is_array(), key, value: inner.span() });
+        walk(inner.get_ref(), path, visit);
+        path.pop();
+    }
+}
 
 impl<'a> TomlText<'a> {
     /// Reads the text as a value of type T.
-    pub fn read<T: DeserializeOwned>(&self) -> Result<T, Box<Diagnostic>> {
+    pub fn read<T: DeserializeOwned>(&self) -> Checked<T> {
         toml::from_str(self.text).map_err(|error| self.explain(&error))
     }
 
     /// Returns a diagnostic about the value at a path, or about the nearest table around it if it does not exist.
     pub fn at(&self, path: &str, message: impl Into<String>) -> Diagnostic {
-        let diagnostic = self.about_file(message);
-        match self.place(path) {
-            Some((_, value)) => diagnostic.at(value),
-            None => diagnostic,
-        }
+        self.about_file(message).at(self.place(path).map(|(_, value)| value))
     }
 
     /// Returns a diagnostic about the key at a path.
     pub fn at_key(&self, path: &str, message: impl Into<String>) -> Diagnostic {
-        let diagnostic = self.about_file(message);
-        match self.place(path) {
-            Some((key, _)) => diagnostic.at(key),
-            None => diagnostic,
-        }
+        self.about_file(message).at(self.place(path).map(|(key, _)| key))
     }
 
     /// Returns a diagnostic about the whole file.
@@ -62,81 +66,68 @@ impl<'a> TomlText<'a> {
         Diagnostic::new(self.file, self.text, message)
     }
 
+    /// Refuses the value at a path, with a remedy.
+    pub fn refuse<T>(&self, path: &str, message: impl Into<String>, help: impl Into<String>) -> Checked<T> {
+        Err(Box::new(self.at(path, message).with_help(help)))
+    }
+
+    /// Refuses the key at a path, with a remedy.
+    pub fn refuse_key<T>(
+        &self,
+        path: &str,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Checked<T> {
+        Err(Box::new(self.at_key(path, message).with_help(help)))
+    }
+
+    /// Refuses the whole file, with a remedy.
+    pub fn refuse_file<T>(&self, message: impl Into<String>, help: impl Into<String>) -> Checked<T> {
+        Err(Box::new(self.about_file(message).with_help(help)))
+    }
+
+    /// Visits every key and item of the text; none if it is no TOML.
+    fn walk(&self, visit: &mut dyn FnMut(&Place<'_>)) {
+        if let Ok(document) = DeTable::parse(self.text) {
+            walk(&DeValue::Table(document.into_inner()), &mut Vec::new(), visit);
+        }
+    }
+
     /// Returns the places of the key and of the value at a path, or of the last part of the path that exists.
     fn place(&self, path: &str) -> Option<(Range<usize>, Range<usize>)> {
-        let document = DeTable::parse(self.text).ok()?;
-        let mut table = Some(document.get_ref());
-        let mut array = None;
+        let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
         let mut found = None;
-        for part in path.split('.') {
-            let value = match (table, array) {
-                (Some(t), _) => {
-                    let Some((key, value)) = t.get_key_value(part) else { break };
-                    found = Some((key.span(), value.span()));
-                    value
-                }
-                (None, Some(list)) => {
-                    let list: &toml::de::DeArray<'_> = list;
-                    let Some(value) = part.parse().ok().and_then(|i: usize| list.get(i)) else { break };
-                    found = Some((value.span(), value.span()));
-                    value
-                }
-                (None, None) => break,
-            };
-            (table, array) = match value.get_ref() {
-                DeValue::Table(t) => (Some(t), None),
-                DeValue::Array(list) => (None, Some(list)),
-                _ => (None, None),
-            };
-        }
+        self.walk(&mut |place| {
+            if parts.starts_with(place.path) {
+                found = Some((place.key.clone(), place.value.clone()));
+            }
+        });
         found
     }
 
-    /// Returns the path of the table that contains the key at a place.
-    fn table_around(&self, key_start: usize) -> Option<String> {
-        fn search(table: &DeTable<'_>, start: usize, path: &str) -> Option<String> {
-            table.iter().find_map(|(key, value)| {
-                if key.span().start == start {
-                    return Some(path.to_owned());
-                }
-                let below = if path.is_empty() {
-                    key.get_ref().to_string()
-                } else {
-                    format!("{path}.{}", key.get_ref())
-                };
-                match value.get_ref() {
-                    DeValue::Table(t) => search(t, start, &below),
-                    DeValue::Array(list) => list.iter().find_map(|item| match item.get_ref() {
-                        DeValue::Table(t) => search(t, start, &below),
-                        _ => None,
-                    }),
-                    _ => None,
-                }
-            })
-        }
-        search(DeTable::parse(self.text).ok()?.get_ref(), key_start, "")
+    /// Returns the path of the table that contains the key at a place, without indices of lists.
+    fn table_around(&self, key_start: usize) -> String {
+        let mut table = String::new();
+        self.walk(&mut |place| {
+            if let ([around @ .., _], false) = (place.path, place.is_item)
+                && place.key.start == key_start
+            {
+                let named = around.iter().filter(|name| name.parse::<usize>().is_err());
+                table = named.cloned().collect::<Vec<_>>().join(".");
+            }
+        });
+        table
     }
 
-    /// Returns the key whose value contains a place.
+    /// Returns the innermost key whose value contains a place; that of a `[table]` is its header.
     fn key_around(&self, start: usize) -> Option<String> {
-        fn in_table(table: &DeTable<'_>, start: usize) -> Option<String> {
-            table.iter().find_map(|(key, value)| {
-                let holds = value.span().contains(&start).then(|| key.get_ref().to_string());
-                match value.get_ref() {
-                    // The span of [table] is that of its header.
-                    DeValue::Table(t) => in_table(t, start).or(holds),
-                    DeValue::Array(list) => {
-                        let below = list.iter().find_map(|item| match item.get_ref() {
-                            DeValue::Table(t) => in_table(t, start),
-                            _ => None,
-                        });
-                        below.or(holds)
-                    }
-                    _ => holds,
-                }
-            })
-        }
-        in_table(DeTable::parse(self.text).ok()?.get_ref(), start)
+        let mut innermost = None;
+        self.walk(&mut |place| {
+            if !place.is_item && place.value.contains(&start) {
+                innermost = place.path.last().cloned();
+            }
+        });
+        innermost
     }
 
     /// Translates an error of the parser or of serde into a designer's words.
@@ -158,28 +149,21 @@ impl<'a> TomlText<'a> {
                 Some((message, help)) => (message, Some(help.to_owned())),
                 None => (message, self.syntax_help(message, span.as_ref())),
             };
-            let diagnostic = self.about_file(plain_words(message));
-            match help {
-                Some(help) => diagnostic.with_help(help),
-                None => diagnostic,
-            }
+            Diagnostic { help, ..self.about_file(plain_words(message)) }
         };
-        Box::new(match span {
-            Some(span) => diagnostic.at(span),
-            None => diagnostic,
-        })
+        Box::new(diagnostic.at(span))
     }
 
     fn unknown_key(&self, key: &str, allowed: &[&str], span: Option<&Range<usize>>) -> Diagnostic {
-        let to_come = KEYS_TO_COME.iter().find(|k| k.key == key && allowed.contains(&k.beside));
-        if let Some(KeyToCome { what, instead, beside, .. }) = to_come {
-            let message = match self.place("task.path") {
-                Some((key, _)) if *beside == "path" && self.text.get(key.clone()) == Some("path") => {
-                    format!("two tasks: [task.path] and {what}, which is not supported yet")
-                }
-                _ => format!("{what} is not supported yet"),
+        if TASKS_TO_COME.contains(&key) && allowed.contains(&"path") {
+            let is_second =
+                self.place("task.path").is_some_and(|(key, _)| self.text.get(key) == Some("path"));
+            let message = if is_second {
+                format!("two tasks: [task.path] and [task.{key}], which is not supported yet")
+            } else {
+                format!("[task.{key}] is not supported yet")
             };
-            return self.about_file(message).with_help(*instead);
+            return self.about_file(message).with_help(ONLY_PATH);
         }
         if key == "task" && allowed.contains(&"vector_loop") {
             return self.about_file("this is a problem file, not a linkage file").with_help(
@@ -194,7 +178,7 @@ impl<'a> TomlText<'a> {
                 .about_file("this is a linkage file, not a problem file")
                 .with_help("`linkwright analyze` reads it; a problem file has [task.path]");
         }
-        let table = span.and_then(|s| self.table_around(s.start)).unwrap_or_default();
+        let table = span.map_or(String::new(), |s| self.table_around(s.start));
         let place = if table.is_empty() { "at the top of the file".into() } else { format!("in [{table}]") };
         let kind = match self.text.get(..span.map_or(0, |s| s.start)) {
             Some(before) if before.trim_end_matches([' ', '\t']).ends_with('[') => "table",
@@ -272,7 +256,7 @@ fn plain_words(message: &str) -> String {
         return match message {
             "wanted string or table" => "expected a text in quotes".into(),
             "floating-point number overflowed" | "integer number overflowed" => {
-                "the number is too large: numbers go up to 1e12".into()
+                format!("the number is too large: numbers go up to {MAX_MAGNITUDE:e}")
             }
             other => other.to_owned(),
         };

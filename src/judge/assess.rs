@@ -125,7 +125,7 @@ pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorReco
 fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
     let of = |kind: &RequirementKind| judged.row(*kind);
     let before = |kind: &&RequirementKind| **kind != RequirementKind::Tolerance;
-    let mut rows: Vec<Requirement> = RequirementKind::ALL.iter().filter(before).filter_map(of).collect();
+    let mut rows: Vec<Requirement> = RequirementKind::all().iter().filter(before).filter_map(of).collect();
     rows.extend(design_rows(judged.problem, &judged.candidate.linkage));
     rows.extend(of(&RequirementKind::Tolerance));
     rows

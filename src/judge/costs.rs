@@ -205,9 +205,9 @@ impl At<'_> {
                 // If no type is asked for, the crank has to turn fully to come back to the first point.
                 let turns_fully = of == RequirementKind::Type && spec.require.types.is_empty();
                 let name = if turns_fully { RequirementKind::Closing } else { of }.name();
-                let limits = of.definition().limits(spec).unwrap_or_default();
+                let limits = (of.definition().limits)(spec).unwrap_or_default();
                 let limit = limits.get(side.map_or(0, Side::index)).map_or(0.0, |limit| limit.value);
-                let unit = of.definition().unit();
+                let unit = of.definition().unit;
                 let scale = match unit {
                     LimitUnit::Length => size,
                     LimitUnit::Degree => 90.0,

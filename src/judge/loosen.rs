@@ -67,7 +67,7 @@ impl Demand {
 
     /// Returns the demands of a problem in a fixed order; design keys last.
     pub fn of(problem: &Problem) -> Vec<Demand> {
-        let asked = |kind: &RequirementKind| kind.definition().is_asked(problem);
+        let asked = |kind: &RequirementKind| (kind.definition().is_asked)(problem);
         let given = |key: &DesignKey| !key.get(&problem.spec().design).is_empty();
         let requirements = RequirementKind::IN_CONFLICTS.into_iter().filter(asked).map(Demand::Require);
         requirements.chain(DESIGN_KEYS.into_iter().filter(given).map(Demand::Design)).collect()
@@ -82,7 +82,7 @@ impl Demand {
     /// Returns whether it is a choice among words, with no measure of how far it is loosened.
     pub fn is_policy(self) -> bool {
         match self {
-            Demand::Require(kind) => kind.definition().choice(&RequireSpec::default()).is_some(),
+            Demand::Require(kind) => (kind.definition().choice)(&RequireSpec::default()).is_some(),
             Demand::Design(_) => false,
         }
     }
@@ -90,7 +90,7 @@ impl Demand {
     /// Returns the key in the problem file.
     pub fn key(self) -> &'static str {
         match self {
-            Demand::Require(kind) => kind.definition().key(),
+            Demand::Require(kind) => kind.definition().key,
             Demand::Design(key) => key.key(),
         }
     }
@@ -98,7 +98,7 @@ impl Demand {
     /// Returns the problem without this demand; design keys keep within reach of the target.
     pub fn dropped(self, problem: &Problem, mut spec: ProblemSpec) -> ProblemSpec {
         match self {
-            Demand::Require(kind) => kind.definition().drop_from(&mut spec),
+            Demand::Require(kind) => (kind.definition().set_limits)(&mut spec, &[]),
             Demand::Design(key) => key.widen(problem, &mut spec.design),
         }
         spec
@@ -108,7 +108,7 @@ impl Demand {
     /// point).
     pub fn limits(self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
         match self {
-            Demand::Require(kind) => kind.definition().limits(spec),
+            Demand::Require(kind) => (kind.definition().limits)(spec),
             Demand::Design(key) => {
                 let limits = key.get(&spec.design);
                 let pair =
@@ -121,7 +121,7 @@ impl Demand {
     /// Returns the problem with other limits, as many as [`Demand::limits`] gives.
     pub fn with_limits(self, mut spec: ProblemSpec, limits: &[f64]) -> ProblemSpec {
         match self {
-            Demand::Require(kind) => kind.definition().set_limits(&mut spec, limits),
+            Demand::Require(kind) => (kind.definition().set_limits)(&mut spec, limits),
             Demand::Design(key) => {
                 key.set(&mut spec.design, |i| Limits(limits[2 * i], limits[2 * i + 1]));
             }
@@ -197,7 +197,7 @@ impl Demand {
                     _ => None,
                 }
             }
-            Demand::Require(kind) => match kind.definition().choice(&spec.require) {
+            Demand::Require(kind) => match (kind.definition().choice)(&spec.require) {
                 Some(Choice::Word(word)) => Some(TypedValue::Word(word.into())),
                 Some(Choice::Words(words)) => {
                     Some(TypedValue::Words(words.into_iter().map(str::to_owned).collect()))

@@ -79,7 +79,7 @@ const SIDES: [&str; 4] = [" xmin", " ymin", " xmax", " ymax"];
 fn on_bound(problem: &Problem, requirement: &Requirement, each: &mut dyn FnMut(&str, &str, f64, f64)) {
     let name = requirement.name.as_str();
     let unit = match RequirementKind::named(name) {
-        Some(kind) => kind.definition().unit(),
+        Some(kind) => kind.definition().unit,
         None if name == "design.ground_angle_deg" => LimitUnit::Degree,
         None => LimitUnit::Length,
     };

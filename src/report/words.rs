@@ -87,9 +87,9 @@ fn of_requirement(requirement: &Requirement) -> Objection {
     }
     let name = clean(&requirement.name);
     if let Some(kind) = RequirementKind::named(&requirement.name) {
-        let sentence = kind.definition().objection(&value, &limit);
+        let sentence = (kind.definition().objection)(&value, &limit);
         let sentence = sentence.unwrap_or_else(|| format!("{name}: {value}, limit {limit}"));
-        return Objection { key: kind.definition().words().short.to_owned(), sentence };
+        return Objection { key: kind.definition().short.to_owned(), sentence };
     }
     if let (Some(key), Figure::Numbers(_)) = (name.strip_prefix("design."), &requirement.limit) {
         let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");

@@ -59,7 +59,7 @@ pub(super) fn search(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evalu
     let mut evaluations = Evaluations::default();
     let mut found = Vec::new();
     let in_turn = |demand: &Demand| match demand {
-        Demand::Require(kind) => kind.definition().is_left_out_in_turn(),
+        Demand::Require(kind) => kind.definition().is_left_out_in_turn,
         Demand::Design(_) => false,
     };
     let asked: Vec<Demand> = Demand::of(problem).into_iter().filter(in_turn).collect();

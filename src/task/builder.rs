@@ -1,7 +1,7 @@
 //! A builder of problems from points, with the defaults of a problem file.
 
 use super::spec::{DesignSpec, PathSpec, ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec};
-use super::{AngleOffset, PathTask, Problem, TaskError};
+use super::{AngleOffset, Problem, TaskError};
 
 /// A problem that is put together from its points; every part that is left out has the default of a problem file.
 ///
@@ -18,22 +18,20 @@ use super::{AngleOffset, PathTask, Problem, TaskError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProblemBuilder {
-    path: PathSpec,
-    design: DesignSpec,
-    require: RequireSpec,
-    solve: SolveSpec,
+    spec: ProblemSpec,
 }
 
 impl Problem {
     /// Begins a problem: a path through these points, open, with free timing.
     pub fn builder(points: Vec<[f64; 2]>) -> ProblemBuilder {
         let path = PathSpec { points, closed: false, weight: None, tolerance: None, timing: None, raw: None };
-        ProblemBuilder {
-            path,
+        let spec = ProblemSpec {
+            task: TaskSpec { path },
             design: DesignSpec::default(),
             require: RequireSpec::default(),
             solve: SolveSpec::default(),
-        }
+        };
+        ProblemBuilder { spec }
     }
 }
 
@@ -41,56 +39,56 @@ impl ProblemBuilder {
     /// Makes the target a closed curve, or an open one.
     #[must_use]
     pub fn closed(mut self, closed: bool) -> Self {
-        self.path.closed = closed;
+        self.spec.task.path.closed = closed;
         self
     }
 
     /// Sets the weights of the squared errors, one for each point, above 0.
     #[must_use]
     pub fn weights(mut self, weights: Vec<f64>) -> Self {
-        self.path.weight = Some(weights);
+        self.spec.task.path.weight = Some(weights);
         self
     }
 
     /// Sets the largest error accepted at every point, 0 or more.
     #[must_use]
     pub fn tolerance(self, tolerance: f64) -> Self {
-        let points = self.path.points.len();
+        let points = self.spec.task.path.points.len();
         self.tolerances(vec![tolerance; points])
     }
 
     /// Sets the largest error accepted at each point, 0 or more.
     #[must_use]
     pub fn tolerances(mut self, tolerances: Vec<f64>) -> Self {
-        self.path.tolerance = Some(tolerances);
+        self.spec.task.path.tolerance = Some(tolerances);
         self
     }
 
     /// Prescribes the timing: the crank angle at each point, degrees, counter-clockwise positive, measured from `offset`.
     #[must_use]
     pub fn timing(mut self, crank_deg: Vec<f64>, offset: AngleOffset) -> Self {
-        self.path.timing = Some(TimingSpec { crank_deg, offset });
+        self.spec.task.path.timing = Some(TimingSpec { crank_deg, offset });
         self
     }
 
     /// Sets the limits of the parameters; those that are `None` get their defaults from the points.
     #[must_use]
     pub fn design(mut self, design: DesignSpec) -> Self {
-        self.design = design;
+        self.spec.design = design;
         self
     }
 
     /// Sets the requirements.
     #[must_use]
     pub fn require(mut self, require: RequireSpec) -> Self {
-        self.require = require;
+        self.spec.require = require;
         self
     }
 
     /// Sets the options of the search.
     #[must_use]
     pub fn solve(mut self, solve: SolveSpec) -> Self {
-        self.solve = solve;
+        self.spec.solve = solve;
         self
     }
 
@@ -98,9 +96,9 @@ impl ProblemBuilder {
     ///
     /// # Errors
     /// [`TaskError`] if the points with their lists make no task.
-    pub fn spec(self) -> Result<ProblemSpec, TaskError> {
-        let task = self.path.to_task()?;
-        Ok(self.spec_of(&task))
+    pub fn spec(mut self) -> Result<ProblemSpec, TaskError> {
+        self.spec.design.resolve(&self.spec.task.path.to_task()?);
+        Ok(self.spec)
     }
 
     /// Returns the checked problem.
@@ -109,26 +107,6 @@ impl ProblemBuilder {
     /// [`TaskError`] if the points with their lists make no task.
     pub fn build(self) -> Result<Problem, TaskError> {
         Problem::new(self.spec()?)
-    }
-
-    /// Returns the problem as data, for the task that its path is.
-    fn spec_of(mut self, task: &PathTask) -> ProblemSpec {
-        self.design.resolve(task);
-        let ProblemBuilder { path, design, require, solve } = self;
-        ProblemSpec { task: TaskSpec { path }, design, require, solve }
-    }
-}
-
-impl ProblemSpec {
-    /// Returns the problem of a path, which is this task, with the defaults of a problem file where the parts are silent.
-    pub(crate) fn resolved(
-        path: PathSpec,
-        task: &PathTask,
-        design: DesignSpec,
-        require: RequireSpec,
-        solve: SolveSpec,
-    ) -> Self {
-        ProblemBuilder { path, design, require, solve }.spec_of(task)
     }
 }
 

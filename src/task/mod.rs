@@ -23,5 +23,6 @@ pub(crate) mod values;
 
 pub use builder::ProblemBuilder;
 pub use defect::Defect;
+pub(crate) use path::corners;
 pub use path::{AngleOffset, PathOptions, PathTask, Return, SMALLEST_SIZE, TaskError, Timing};
 pub use problem::{Problem, Setting};

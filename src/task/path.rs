@@ -110,6 +110,13 @@ pub enum TaskError {
     },
 }
 
+/// Returns the lower left and the upper right corner of the points' box.
+pub(crate) fn corners(points: &[[f64; 2]]) -> ([f64; 2], [f64; 2]) {
+    points.iter().fold(([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]), |(low, high), [x, y]| {
+        ([low[0].min(*x), low[1].min(*y)], [high[0].max(*x), high[1].max(*y)])
+    })
+}
+
 /// The optional lists of a path task.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathOptions {
@@ -149,27 +156,19 @@ impl PathTask {
                 return Err(TaskError::NotFinite { index, value: crank_angles[index] });
             }
         }
-        if let Some(weights) = &options.weights {
-            same_length("weight", weights.len())?;
-            if let Some(index) = weights.iter().position(|w| !(*w > 0.0 && usable(*w))) {
-                let value = weights[index];
-                return Err(TaskError::OutOfRange { what: "weight", index, value, must: "positive" });
+        let positive: fn(f64) -> bool = |value| value > 0.0;
+        let lists = [
+            ("weight", &options.weights, positive, "positive"),
+            ("tolerance", &options.tolerances, |value| value >= 0.0, "0 or more"),
+        ];
+        for (what, list, is_within, must) in lists {
+            let Some(list) = list else { continue };
+            same_length(what, list.len())?;
+            if let Some(index) = list.iter().position(|v| !(is_within(*v) && usable(*v))) {
+                return Err(TaskError::OutOfRange { what, index, value: list[index], must });
             }
         }
-        if let Some(tolerances) = &options.tolerances {
-            same_length("tolerance", tolerances.len())?;
-            if let Some(index) = tolerances.iter().position(|t| !(*t >= 0.0 && usable(*t))) {
-                let value = tolerances[index];
-                return Err(TaskError::OutOfRange { what: "tolerance", index, value, must: "0 or more" });
-            }
-        }
-        let (mut low, mut high) = (points[0], points[0]);
-        for p in &points {
-            for axis in 0..2 {
-                low[axis] = low[axis].min(p[axis]);
-                high[axis] = high[axis].max(p[axis]);
-            }
-        }
+        let (low, high) = corners(&points);
         let size = f64::hypot(high[0] - low[0], high[1] - low[1]);
         if size < SMALLEST_SIZE {
             return Err(TaskError::NoExtent);

@@ -265,7 +265,17 @@ pub enum OnePolicy {
     Any,
 }
 
-/// Which way the crank turns along the points.
+impl OnePolicy {
+    /// Returns the name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            OnePolicy::One => "one",
+            OnePolicy::Any => "any",
+        }
+    }
+}
+
+/// The direction in which the crank turns along the points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum DirectionPolicy {

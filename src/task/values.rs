@@ -6,6 +6,7 @@
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::spec::Limits;
 use schemars::JsonSchema;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{
     self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
 };
@@ -24,7 +25,7 @@ fn usable<E: de::Error>(value: f64) -> Result<f64, E> {
     if value.abs() <= MAX_MAGNITUDE {
         Ok(value)
     } else if value.is_finite() {
-        Err(refuse(format_args!("{value:e} is too large: numbers go up to 1e12"), TOO_LARGE))
+        Err(refuse(format_args!("{value:e} is too large: numbers go up to {MAX_MAGNITUDE:e}"), TOO_LARGE))
     } else {
         let name = if value.is_nan() { "nan".to_owned() } else { value.to_string() };
         Err(refuse(format_args!("{name} is not a number that can be used"), "write a finite number"))
@@ -68,6 +69,11 @@ impl<'de> Deserialize<'de> for Number {
     }
 }
 
+/// Returns the values of numbers.
+pub(crate) fn numbers(list: &[Number]) -> Vec<f64> {
+    list.iter().map(|number| number.0).collect()
+}
+
 /// 2^53: up to this value, a float distinguishes neighbouring whole numbers.
 const LARGEST_WHOLE: f64 = 9_007_199_254_740_992.0;
 
@@ -105,38 +111,23 @@ impl<'de> Deserialize<'de> for Count {
     }
 }
 
-/// The description of a fixed-length list of numbers.
-pub(crate) trait ListName {
-    /// The text of the expected list, such as `[x, y]`.
-    const EXPECTED: &'static str;
-}
-
-/// A list of exactly N values.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Exactly<T, const N: usize, Name>(pub [T; N], PhantomData<Name>);
-
-impl<'de, T, const N: usize, Name> Deserialize<'de> for Exactly<T, N, Name>
+/// Reads a list of exactly N values; `expected` describes it.
+pub(crate) fn list_of<'de, T, D, const N: usize>(from: D, expected: &'static str) -> Result<[T; N], D::Error>
 where
     T: Deserialize<'de>,
-    Name: ListName,
+    D: Deserializer<'de>,
 {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ListVisitor<T, const N: usize, Name>(PhantomData<(T, Name)>);
-        impl<'de, T, const N: usize, Name> Visitor<'de> for ListVisitor<T, N, Name>
-        where
-            T: Deserialize<'de>,
-            Name: ListName,
-        {
-            type Value = Exactly<T, N, Name>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(Name::EXPECTED)
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
-                exactly(seq, Name::EXPECTED).map(|list| Exactly(list, PhantomData))
-            }
+    struct ListVisitor<T, const N: usize>(&'static str, PhantomData<T>);
+    impl<'de, T: Deserialize<'de>, const N: usize> Visitor<'de> for ListVisitor<T, N> {
+        type Value = [T; N];
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(self.0)
         }
-        deserializer.deserialize_any(ListVisitor(PhantomData))
+        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<[T; N], A::Error> {
+            exactly(seq, self.0)
+        }
     }
+    from.deserialize_any(ListVisitor(expected, PhantomData))
 }
 
 /// Reads a list of exactly N values.
@@ -159,48 +150,38 @@ where
     if count == N { list.try_into().map_err(|_| wrong()) } else { Err(wrong()) }
 }
 
-impl<T: JsonSchema, const N: usize, Name> JsonSchema for Exactly<T, N, Name>
-where
-    [T; N]: JsonSchema,
-{
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        <[T; N]>::schema_name()
-    }
-    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        <[T; N]>::json_schema(generator)
-    }
-}
-
-/// The names of the list types.
-pub(crate) mod names {
-    macro_rules! list_name {
-        ($name:ident, $expected:literal) => {
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub(crate) struct $name;
-            impl super::ListName for $name {
-                const EXPECTED: &'static str = $expected;
-            }
-        };
-    }
-    list_name!(XY, "a point [x, y]");
-    list_name!(BoundedXY, "a point [x, y], each a number or bounds [min, max]");
-    list_name!(Corners, "a box [xmin, ymin, xmax, ymax]");
-}
-
 /// A point.
-pub(crate) type XY = Exactly<Number, 2, names::XY>;
-/// A point, each coordinate fixed or bounded.
-pub(crate) type BoundedXY = Exactly<Bounds, 2, names::BoundedXY>;
-/// A rectangle, given by four numbers.
-pub(crate) type Corners = Exactly<Number, 4, names::Corners>;
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(transparent)]
+pub(crate) struct XY(#[schemars(with = "[Number; 2]")] pub [f64; 2]);
 
-impl XY {
-    /// Returns x and y.
-    pub(crate) fn numbers(self) -> [f64; 2] {
-        self.0.map(|n| n.0)
+impl<'de> Deserialize<'de> for XY {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "a point [x, y]").map(|point: [Number; 2]| XY(point.map(|n| n.0)))
+    }
+}
+
+/// A rectangle, given by four numbers.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(transparent)]
+pub(crate) struct Corners(#[schemars(with = "[Number; 4]")] pub [f64; 4]);
+
+impl<'de> Deserialize<'de> for Corners {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "a box [xmin, ymin, xmax, ymax]")
+            .map(|corners: [Number; 4]| Corners(corners.map(|n| n.0)))
+    }
+}
+
+/// A point, each coordinate fixed or bounded.
+#[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
+#[schemars(transparent)]
+pub(crate) struct BoundedXY(#[schemars(with = "[Bounds; 2]")] pub [Limits; 2]);
+
+impl<'de> Deserialize<'de> for BoundedXY {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "a point [x, y], each a number or bounds [min, max]")
+            .map(|point: [Bounds; 2]| BoundedXY(point.map(|bounds| bounds.0)))
     }
 }
 
@@ -264,12 +245,9 @@ impl<'de> Deserialize<'de> for OneOrEach {
                 f.write_str("a number for all points, or a list of one for each")
             }
             visit_numbers!(OneOrEach::One);
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<OneOrEach, A::Error> {
-                let mut list = Vec::new();
-                while let Some(Number(value)) = seq.next_element()? {
-                    list.push(value);
-                }
-                Ok(OneOrEach::Each(list))
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<OneOrEach, A::Error> {
+                let list = Vec::deserialize(SeqAccessDeserializer::new(seq))?;
+                Ok(OneOrEach::Each(numbers(&list)))
             }
         }
         deserializer.deserialize_any(OneOrEachVisitor)
@@ -289,7 +267,8 @@ impl JsonSchema for OneOrEach {
 }
 
 /// A table and nothing else: serde's own structs would accept a list as their fields in order.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
+#[schemars(transparent)]
 pub(crate) struct OnlyTable<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for OnlyTable<T> {
@@ -301,25 +280,10 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OnlyTable<T> {
                 f.write_str("a table")
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
-                T::deserialize(de::value::MapAccessDeserializer::new(map)).map(OnlyTable)
+                T::deserialize(MapAccessDeserializer::new(map)).map(OnlyTable)
             }
         }
         deserializer.deserialize_any(TableVisitor(PhantomData))
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for OnlyTable<T> {
-    fn inline_schema() -> bool {
-        T::inline_schema()
-    }
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        T::schema_name()
-    }
-    fn schema_id() -> std::borrow::Cow<'static, str> {
-        T::schema_id()
-    }
-    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
-        T::json_schema(generator)
     }
 }
 
@@ -338,12 +302,8 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
             fn visit_str<E: de::Error>(self, value: &str) -> Result<Self::Value, E> {
                 T::deserialize(value.into_deserializer()).map(|one| OneOrMore(vec![one]))
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-                let mut list = Vec::new();
-                while let Some(value) = seq.next_element()? {
-                    list.push(value);
-                }
-                Ok(OneOrMore(list))
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
+                Vec::deserialize(SeqAccessDeserializer::new(seq)).map(OneOrMore)
             }
         }
         deserializer.deserialize_any(ListVisitor(PhantomData))
@@ -360,5 +320,40 @@ impl<T: JsonSchema> JsonSchema for OneOrMore<T> {
     fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
         let one = generator.subschema_for::<T>();
         schemars::json_schema!({"anyOf": [one.clone(), {"type": "array", "items": one}]})
+    }
+}
+
+/// Functions that read fields of plain types as strictly as the types here.
+pub(crate) mod plain {
+    use super::{Count, Deserialize, Deserializer, Number, OnlyTable};
+
+    /// Reads a number.
+    pub fn number<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+        Ok(Option::<Number>::deserialize(from)?.map(|number| number.0))
+    }
+
+    /// Reads a list of numbers.
+    pub fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        Ok(super::numbers(&Vec::deserialize(from)?))
+    }
+
+    /// Reads a list of numbers that may be absent.
+    pub fn list<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Vec<f64>>, D::Error> {
+        Ok(Option::<Vec<Number>>::deserialize(from)?.as_deref().map(super::numbers))
+    }
+
+    /// Reads a whole number.
+    pub fn count<'de, D: Deserializer<'de>>(from: D) -> Result<Option<usize>, D::Error> {
+        Ok(Option::<Count>::deserialize(from)?.map(|count| count.0 as usize))
+    }
+
+    /// Reads a table.
+    pub fn table<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
+        Ok(Option::<OnlyTable<T>>::deserialize(from)?.map(|table| table.0))
+    }
+
+    /// Reads a list of tables.
+    pub fn tables<'de, T: Deserialize<'de>, D: Deserializer<'de>>(from: D) -> Result<Vec<T>, D::Error> {
+        Ok(Vec::<OnlyTable<T>>::deserialize(from)?.into_iter().map(|table| table.0).collect())
     }
 }

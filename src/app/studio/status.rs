@@ -80,7 +80,7 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
 /// A requirement in plain words.
 pub(super) fn plain(key: &str) -> String {
     let bounds = || key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}"));
-    RequirementKind::with_key(key).map_or_else(bounds, |kind| kind.definition().words().plain.to_owned())
+    RequirementKind::with_key(key).map_or_else(bounds, |kind| kind.definition().plain.to_owned())
 }
 
 /// Which requirements are not met together, and whether a change helps.

@@ -1,33 +1,39 @@
 //! The `[chain]` form of linkage files: pivots, a crank and stages by name, the stages in the order of the file.
 
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::toml_text::{TomlText, nearest};
-use crate::files::toml_values::{Exactly, ListName, Number, OnlyTable, XY};
+use crate::files::toml_values::{Number, OnlyTable, XY, list_of};
 use crate::mechanism::chain::{
     Attachment, Chain, ChainBuilder, ChainError, ChainFault, ChainPlace, SliderLine, Stage,
 };
 use crate::mechanism::{AssemblyMode, CouplerSide};
 use schemars::JsonSchema;
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use toml::Spanned;
 
 /// Two names of points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct TwoNames;
-impl ListName for TwoNames {
-    const EXPECTED: &'static str = "two names of points [\"B\", \"D\"]";
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+struct Names([String; 2]);
+
+impl<'de> Deserialize<'de> for Names {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "two names of points [\"B\", \"D\"]").map(Names)
+    }
 }
 
 /// Two lengths.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct TwoLengths;
-impl ListName for TwoLengths {
-    const EXPECTED: &'static str = "two lengths [from the first point, from the second]";
-}
+#[derive(JsonSchema)]
+#[schemars(transparent)]
+struct Lengths([f64; 2]);
 
-type Names = Exactly<String, 2, TwoNames>;
-type Lengths = Exactly<Number, 2, TwoLengths>;
+impl<'de> Deserialize<'de> for Lengths {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        list_of(from, "two lengths [from the first point, from the second]")
+            .map(|lengths: [Number; 2]| Lengths(lengths.map(|n| n.0)))
+    }
+}
 
 /// A driven crank and stages, each hung on points that stand above it.
 #[derive(Deserialize, JsonSchema)]
@@ -79,10 +85,8 @@ struct RawDyad {
     /// The name of the new joint.
     joint: String,
     /// The two points that it hangs on.
-    #[schemars(with = "[String; 2]")]
     from: Names,
     /// The two links.
-    #[schemars(with = "[f64; 2]")]
     lengths: Lengths,
     /// 1: the joint lies left of the line from the first point to the second; -1: right.
     #[schemars(with = "i64")]
@@ -97,12 +101,10 @@ struct RawPoint {
     /// The name of the new point.
     name: String,
     /// Two points of the link.
-    #[schemars(with = "[String; 2]")]
     on: Names,
     /// Along the line from the first point to the second, and to its left, from the first point.
     at: Option<XY>,
     /// From the first point, from the second.
-    #[schemars(with = "Option<[f64; 2]>")]
     distances: Option<Lengths>,
     /// With distances; 1: left of the line from the first point to the second; -1: right.
     #[schemars(with = "Option<i64>")]
@@ -125,7 +127,6 @@ struct RawSlider {
     /// The direction of that line, from the x axis.
     angle_deg: Option<Number>,
     /// Two points of a link that carries the line.
-    #[schemars(with = "Option<[String; 2]>")]
     along: Option<Names>,
     /// With along: how far the line lies to the left of these points; 0 where this is missing.
     offset: Option<Number>,
@@ -158,14 +159,14 @@ struct RawGuide {
 struct Placed {
     start: usize,
     path: String,
-    stage: Result<Stage, Box<Diagnostic>>,
+    stage: Checked<Stage>,
 }
 
 /// Builds the chain of a file's table.
-pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Result<Chain, Box<Diagnostic>> {
+pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Checked<Chain> {
     let mut placed = Vec::new();
     place(&mut placed, "dyad", raw.dyad, |_, d| {
-        Ok(Stage::Dyad { joint: d.joint, from: d.from.0, lengths: d.lengths.0.map(|n| n.0), side: d.side })
+        Ok(Stage::Dyad { joint: d.joint, from: d.from.0, lengths: d.lengths.0, side: d.side })
     });
     place(&mut placed, "point", raw.point, |path, p| attached(toml, path, p));
     place(&mut placed, "slider", raw.slider, |path, s| sliding(toml, path, s));
@@ -174,7 +175,7 @@ pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Result<Chain, Box<Dia
             joint: g.joint,
             pivot: g.pivot,
             block: g.block,
-            at: g.at.numbers(),
+            at: g.at.0,
             offset: g.offset.map_or(0.0, |n| n.0),
             side: g.side.unwrap_or(AssemblyMode::Plus),
         })
@@ -183,7 +184,7 @@ pub(super) fn chain(toml: &TomlText<'_>, raw: RawChain) -> Result<Chain, Box<Dia
     let (paths, stages): (Vec<String>, Vec<_>) = placed.into_iter().map(|p| (p.path, p.stage)).unzip();
     let OnlyTable(crank) = raw.crank;
     let builder = ChainBuilder {
-        pivots: raw.pivots.0.into_iter().map(|(name, at)| (name, at.numbers())).collect(),
+        pivots: raw.pivots.0.into_iter().map(|(name, at)| (name, at.0)).collect(),
         crank_pivot: crank.pivot,
         crank_joint: crank.joint,
         crank: crank.length.0,
@@ -198,7 +199,7 @@ fn place<T>(
     placed: &mut Vec<Placed>,
     kind: &str,
     raw: Vec<Spanned<OnlyTable<T>>>,
-    stage: impl Fn(&str, T) -> Result<Stage, Box<Diagnostic>>,
+    stage: impl Fn(&str, T) -> Checked<Stage>,
 ) {
     for (i, spanned) in raw.into_iter().enumerate() {
         let path = format!("chain.{kind}.{i}");
@@ -208,13 +209,13 @@ fn place<T>(
     }
 }
 
-fn attached(toml: &TomlText<'_>, path: &str, raw: RawPoint) -> Result<Stage, Box<Diagnostic>> {
+fn attached(toml: &TomlText<'_>, path: &str, raw: RawPoint) -> Checked<Stage> {
     let refuse = |key: &str, message: &str, help: &str| {
         Box::new(toml.at_key(&format!("{path}.{key}"), message).with_help(help))
     };
     let at = match (raw.at, raw.distances, raw.side) {
-        (Some(at), None, None) => Attachment::Offset(at.numbers()),
-        (None, Some(distances), Some(side)) => Attachment::Distances(distances.0.map(|n| n.0), side),
+        (Some(at), None, None) => Attachment::Offset(at.0),
+        (None, Some(distances), Some(side)) => Attachment::Distances(distances.0, side),
         (Some(_), Some(_), _) => {
             return Err(refuse("distances", "two places: at and distances", "keep one of the two keys"));
         }
@@ -234,13 +235,13 @@ fn attached(toml: &TomlText<'_>, path: &str, raw: RawPoint) -> Result<Stage, Box
     Ok(Stage::Point { name: raw.name, on: raw.on.0, at })
 }
 
-fn sliding(toml: &TomlText<'_>, path: &str, raw: RawSlider) -> Result<Stage, Box<Diagnostic>> {
+fn sliding(toml: &TomlText<'_>, path: &str, raw: RawSlider) -> Checked<Stage> {
     let refuse = |key: &str, message: &str, help: &str| {
         Box::new(toml.at_key(&format!("{path}.{key}"), message).with_help(help))
     };
     let line = match (raw.through, raw.angle_deg, raw.along) {
         (Some(through), Some(angle), None) if raw.offset.is_none() => {
-            SliderLine::Fixed { through: through.numbers(), angle: angle.0.to_radians() }
+            SliderLine::Fixed { through: through.0, angle: angle.0.to_radians() }
         }
         (None, None, Some(along)) => {
             SliderLine::OnLink { along: along.0, offset: raw.offset.map_or(0.0, |n| n.0) }

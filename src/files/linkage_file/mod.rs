@@ -2,7 +2,7 @@
 
 mod chain;
 
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::name;
 use crate::files::toml_text::TomlText;
@@ -153,7 +153,7 @@ pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>
             let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
             let message = "a chain is not a four-bar, and a four-bar is needed here";
             let help = "give a linkage file with [linkage] or [vector_loop]";
-            Err(Box::new(toml.at_key("chain", message).with_help(help)))
+            toml.refuse_key("chain", message, help)
         }
     }
 }
@@ -165,7 +165,7 @@ pub fn parse(file_name: &str, text: &str) -> Result<LinkageFile, Box<Diagnostic>
 pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diagnostic>> {
     let toml = TomlText { file: file_name, text: input_text::without_mark(text) };
     if toml.text.trim().is_empty() {
-        return Err(Box::new(toml.about_file("the file is empty").with_help(KINDS)));
+        return toml.refuse_file("the file is empty", KINDS);
     }
     let raw: RawLinkageFile = toml.read()?;
     check_format(&toml, raw.format, FORMAT)?;
@@ -179,7 +179,7 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
         }
         (None, None, Some(OnlyTable(chain))) => Linkage::Chain(Box::new(chain::chain(&toml, chain)?)),
         (None, None, None) => {
-            return Err(Box::new(toml.about_file("there is no linkage in this file").with_help(KINDS)));
+            return toml.refuse_file("there is no linkage in this file", KINDS);
         }
         (natural, vector_loop, chain) => {
             let kinds = [
@@ -198,8 +198,8 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
 
 fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {
     FourBar::new(NaturalCoordinates {
-        crank_pivot: raw.crank_pivot.numbers(),
-        follower_pivot: raw.follower_pivot.numbers(),
+        crank_pivot: raw.crank_pivot.0,
+        follower_pivot: raw.follower_pivot.0,
         crank: raw.a.0,
         coupler: raw.b.0,
         follower: raw.c.0,
@@ -212,8 +212,8 @@ fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {
 
 fn from_vector_loop(raw: &RawVectorLoop) -> Result<FourBar, LinkageError> {
     FourBar::from_vector_loop(VectorLoop {
-        crank_pivot: raw.crank_pivot.numbers(),
-        follower_pivot: raw.follower_pivot.numbers(),
+        crank_pivot: raw.crank_pivot.0,
+        follower_pivot: raw.follower_pivot.0,
         crank: raw.crank.0,
         coupler: raw.coupler.0,
         follower: raw.follower.0,
@@ -237,13 +237,15 @@ fn explain(toml: &TomlText<'_>, error: &LinkageError, table: &str) -> Box<Diagno
         LinkageError::DistanceNegative { key, value } => toml
             .at(&path(key), format!("{} = {value}: a distance cannot be negative", name(key)))
             .with_help("write a distance of 0 or more; t2, or beta_deg, tells the side of the coupler point"),
-        LinkageError::NoCouplerTriangle { b, d, e } => toml
-            .at(
-                &path("d"),
-                format!("impossible triangle: no coupler has the sides b = {b}, d = {d}, e = {e}"),
-            )
-            .with_help(triangle_remedy(*b, *d, *e)),
+        LinkageError::NoCouplerTriangle { b, d, e } => {
+            toml.at(&path("d"), no_triangle(*b, *d, *e)).with_help(triangle_remedy(*b, *d, *e))
+        }
     })
+}
+
+/// Returns the message about sides b, d, e that make no triangle.
+pub(crate) fn no_triangle(b: f64, d: f64, e: f64) -> String {
+    format!("impossible triangle: no coupler has the sides b = {b}, d = {d}, e = {e}")
 }
 
 /// Returns help for sides b, d, e that make no triangle.
@@ -272,38 +274,31 @@ fn vector_loop_key(key: &str) -> &'static str {
 }
 
 /// Refuses a file of another format.
-pub(crate) fn check_format(
-    toml: &TomlText<'_>,
-    format: Option<Count>,
-    read: u64,
-) -> Result<(), Box<Diagnostic>> {
+pub(crate) fn check_format(toml: &TomlText<'_>, format: Option<Count>, read: u64) -> Checked<()> {
     match format {
         Some(Count(version)) if version == read => Ok(()),
-        Some(Count(version)) => Err(Box::new(
-            toml.at("format", format!("this program reads format {read}, this file has format {version}"))
-                .with_help(if version > read {
-                    "install a newer linkwright".to_owned()
-                } else {
-                    format!("write format = {read}")
-                }),
-        )),
-        None => Err(Box::new(
-            toml.about_file(format!("the key `format` is missing: this program reads format {read}"))
-                .with_help(format!("write format = {read} as the first line")),
-        )),
+        Some(Count(version)) => toml.refuse(
+            "format",
+            format!("this program reads format {read}, this file has format {version}"),
+            if version > read {
+                "install a newer linkwright".to_owned()
+            } else {
+                format!("write format = {read}")
+            },
+        ),
+        None => toml.refuse_file(
+            format!("the key `format` is missing: this program reads format {read}"),
+            format!("write format = {read} as the first line"),
+        ),
     }
 }
 
 /// Returns the name in the file, or one made from the file's name.
-pub(crate) fn checked_name(
-    toml: &TomlText<'_>,
-    given: Option<String>,
-    fallback: &str,
-) -> Result<String, Box<Diagnostic>> {
+pub(crate) fn checked_name(toml: &TomlText<'_>, given: Option<String>, fallback: &str) -> Checked<String> {
     let Some(given) = given else { return Ok(name::from_file(toml.file, fallback)) };
     match name::check(&given) {
         Ok(()) => Ok(given),
-        Err(error) => Err(Box::new(toml.at("name", error.to_string()).with_help(error.remedy()))),
+        Err(error) => toml.refuse("name", error.to_string(), error.remedy()),
     }
 }
 

@@ -1,41 +1,31 @@
-//! `solve.certify` and the table `[certify]`.
+//! Reads `solve.certify` and the table `[certify]`.
 
 use super::raw::RawCertify;
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::toml_text::TomlText;
 use crate::task::spec::{CertifySpec, MAX_CERTIFY_S, PathSpec};
 
-/// What a file asks of a certificate.
-pub(super) struct Asked {
-    /// Absent where none is asked for.
-    pub(super) spec: Option<CertifySpec>,
-    /// What is asked for in vain.
-    pub(super) warning: Option<Diagnostic>,
-}
-
-/// Reads both; `asked` is `solve.certify`.
+/// Returns how a certificate is worked out, if `asked` (`solve.certify`) is true, and a warning if something is asked
+/// for in vain.
 pub(super) fn of(
     toml: &TomlText<'_>,
     asked: bool,
     table: Option<RawCertify>,
     path: &PathSpec,
-) -> Result<Asked, Box<Diagnostic>> {
+) -> Checked<(Option<CertifySpec>, Option<Diagnostic>)> {
     let default = CertifySpec::default();
     let is_given = table.is_some();
     let RawCertify { gap, time_limit_s } = table.unwrap_or_default();
     let gap = gap.map_or(default.gap, |n| n.0);
     if !(gap > 0.0 && gap < 1.0) {
-        let message = format!("gap = {gap} is not between 0 and 1");
         let help = "write the part of the best sum that the proof may leave open, such as 1e-4";
-        return Err(Box::new(toml.at("certify.gap", message).with_help(help)));
+        return toml.refuse("certify.gap", format!("gap = {gap} is not between 0 and 1"), help);
     }
     let time_limit_s = time_limit_s.map_or(default.time_limit_s, |n| n.0);
     if !(time_limit_s > 0.0 && time_limit_s <= MAX_CERTIFY_S) {
-        let message =
-            format!("time_limit_s = {time_limit_s}: a time limit is above 0 and at most 1e6 seconds");
-        return Err(Box::new(
-            toml.at("certify.time_limit_s", message).with_help("write seconds; the default is 300"),
-        ));
+        let range = format!("a time limit is above 0 and at most {MAX_CERTIFY_S:e} seconds");
+        let message = format!("time_limit_s = {time_limit_s}: {range}");
+        return toml.refuse("certify.time_limit_s", message, "write seconds; the default is 300");
     }
     let warning = if asked && path.timing.is_none() {
         let help = "give the points crank angles (task.path.timing), or remove the key; how often the best answer \
@@ -47,5 +37,5 @@ pub(super) fn of(
     } else {
         None
     };
-    Ok(Asked { spec: asked.then_some(CertifySpec { gap, time_limit_s }), warning })
+    Ok((asked.then_some(CertifySpec { gap, time_limit_s }), warning))
 }

@@ -1,8 +1,8 @@
-//! What can be said against `[design]` before anything is searched: bounds that no linkage satisfies.
+//! Checks `[design]` before anything is searched: bounds that no linkage satisfies are refused.
 
 use super::raw::RawDesign;
-use crate::files::diagnostic::Diagnostic;
-use crate::files::linkage_file::triangle_remedy;
+use crate::files::diagnostic::{Checked, Diagnostic};
+use crate::files::linkage_file::{no_triangle, triangle_remedy};
 use crate::files::toml_text::TomlText;
 use crate::mechanism::FLAT_TOLERANCE;
 use crate::task::spec::{DesignSpec, Limits, RequireSpec};
@@ -10,12 +10,12 @@ use crate::task::spec::{DesignSpec, Limits, RequireSpec};
 /// Two quantities that should agree may differ by this part of their scale: a person types few digits.
 const TYPED_DIGITS: f64 = 1e-6;
 
-/// The `[design]` table as data; nothing is judged.
+/// Returns the `[design]` table as data, unchecked.
 pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
     let limits = |b: Option<crate::files::toml_values::Bounds>| b.map(|b| b.0);
     DesignSpec {
-        crank_pivot: raw.crank_pivot.map(|p| p.0.map(|b| b.0)),
-        follower_pivot: raw.follower_pivot.map(|p| p.0.map(|b| b.0)),
+        crank_pivot: raw.crank_pivot.map(|p| p.0),
+        follower_pivot: raw.follower_pivot.map(|p| p.0),
         a: limits(raw.a),
         b: limits(raw.b),
         c: limits(raw.c),
@@ -29,75 +29,61 @@ pub(super) fn spec_of(raw: &RawDesign) -> DesignSpec {
 }
 
 /// Refuses lengths that are no lengths and bounds that contradict one another.
-pub(super) fn check(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
+pub(super) fn check(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     lengths(toml, design)?;
     triangle(toml, design)?;
     coupler_point(toml, design)?;
     ground(toml, design)
 }
 
-fn lengths(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
+fn lengths(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     let links = [("a", design.a), ("b", design.b), ("c", design.c), ("ground", design.ground)];
     let distances = [("d", design.d), ("e", design.e)];
     for (key, limits) in links.into_iter().chain(distances) {
         let Some(limits) = limits else { continue };
         let path = format!("design.{key}");
         if limits.0 < 0.0 {
-            let message = if limits.is_fixed() {
-                format!("{key} = {}: a length cannot be negative", limits.0)
-            } else {
-                format!("the lower bound of {key} is {}: a length cannot be negative", limits.0)
+            let (given, help) = match limits.is_fixed() {
+                true => (format!("{key} ="), "write a length above 0"),
+                false => (format!("the lower bound of {key} is"), "write a lower bound of 0 or more"),
             };
-            let help =
-                if limits.is_fixed() { "write a length above 0" } else { "write a lower bound of 0 or more" };
-            return Err(Box::new(toml.at(&path, message).with_help(help)));
+            let message = format!("{given} {}: a length cannot be negative", limits.0);
+            return toml.refuse(&path, message, help);
         }
         if limits.1 == 0.0 && links.iter().any(|(link, _)| *link == key) {
             let message = format!("{key} is fixed at 0: a link's length must be positive");
-            return Err(Box::new(
-                toml.at(&path, message).with_help("write a length above 0, or bounds [min, max]"),
-            ));
+            return toml.refuse(&path, message, "write a length above 0, or bounds [min, max]");
         }
     }
     Ok(())
 }
 
-/// b, d, e as the sides of the coupler's triangle.
-fn triangle(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
+/// Refuses b, d and e that are not the sides of a triangle.
+fn triangle(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     let (Some(b), Some(d), Some(e)) = (design.b, design.d, design.e) else { return Ok(()) };
     let sides = [("b", b), ("d", d), ("e", e)];
-    let Some(longest) = (0..3)
-        .find(|&i| sides[i].1.0 > (sides[(i + 1) % 3].1.1 + sides[(i + 2) % 3].1.1) * (1.0 + FLAT_TOLERANCE))
-    else {
-        return Ok(());
-    };
-    let path = format!("design.{}", if longest == 0 { "d" } else { sides[longest].0 });
-    let diagnostic = if sides.iter().all(|(_, s)| s.is_fixed()) {
-        toml.at(
-            &path,
-            format!("impossible triangle: no coupler has the sides b = {}, d = {}, e = {}", b.0, d.0, e.0),
-        )
-        .with_help(triangle_remedy(b.0, d.0, e.0))
-    } else {
-        let (name, side) = sides[longest];
-        let [(n1, s1), (n2, s2)] = [sides[(longest + 1) % 3], sides[(longest + 2) % 3]];
-        toml.at(
-            &path,
-            format!(
-                "impossible triangle: {name} is at least {}, but {n1} + {n2} at most {} + {} = {}",
-                side.0,
-                s1.1,
-                s2.1,
-                s1.1 + s2.1
-            ),
-        )
-        .with_help(format!("lower {name}, or raise the upper bounds of {n1} and {n2}"))
-    };
-    Err(Box::new(diagnostic))
+    for i in 0..3 {
+        let [(name, Limits(least, _)), (n1, Limits(_, s1)), (n2, Limits(_, s2))] =
+            [sides[i], sides[(i + 1) % 3], sides[(i + 2) % 3]];
+        if least <= (s1 + s2) * (1.0 + FLAT_TOLERANCE) {
+            continue;
+        }
+        let path = if name == "b" { "design.d".to_owned() } else { format!("design.{name}") };
+        if sides.iter().all(|(_, side)| side.is_fixed()) {
+            return toml.refuse(&path, no_triangle(b.0, d.0, e.0), triangle_remedy(b.0, d.0, e.0));
+        }
+        let sum = s1 + s2;
+        let message = format!(
+            "impossible triangle: {name} is at least {least}, but {n1} + {n2} at most {s1} + {s2} = {sum}"
+        );
+        let help = format!("lower {name}, or raise the upper bounds of {n1} and {n2}");
+        return toml.refuse(&path, message, help);
+    }
+    Ok(())
 }
 
-/// d and e against coupler_x and coupler_y, which say the same thing twice.
-fn coupler_point(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
+/// Refuses d and e that contradict coupler_x and coupler_y, which determine the same point.
+fn coupler_point(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     let (Some(x), Some(y)) = (design.coupler_x, design.coupler_y) else { return Ok(()) };
     let along_from_d = design.b.map(|b| Limits(x.0 - b.1, x.1 - b.0));
     let given = [("d", design.d, Some(x), "from C"), ("e", design.e, along_from_d, "from D")];
@@ -105,78 +91,61 @@ fn coupler_point(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Dia
         let (Some(limits), Some(along)) = (limits, along) else { continue };
         let reach = norm_range([along, y]);
         if are_apart(limits, reach) {
-            let message = format!(
-                "{key} is {}, but coupler_x and coupler_y put the coupler point {} {from}",
-                words(limits),
-                words(reach)
-            );
-            return Err(Box::new(
-                toml.at(&format!("design.{key}"), message)
-                    .with_help("give either d and e or coupler_x and coupler_y, or make them agree"),
-            ));
+            let (given, reach) = (words(limits), words(reach));
+            let message =
+                format!("{key} is {given}, but coupler_x and coupler_y put the coupler point {reach} {from}");
+            let help = "give either d and e or coupler_x and coupler_y, or make them agree";
+            return toml.refuse(&format!("design.{key}"), message, help);
         }
     }
     Ok(())
 }
 
-/// The pivots against `ground` and `ground_angle_deg`.
-fn ground(toml: &TomlText<'_>, design: &DesignSpec) -> Result<(), Box<Diagnostic>> {
+/// Refuses pivots that contradict `ground` and `ground_angle_deg`.
+fn ground(toml: &TomlText<'_>, design: &DesignSpec) -> Checked<()> {
     let (Some(a), Some(b)) = (design.crank_pivot, design.follower_pivot) else { return Ok(()) };
     let apart = [0, 1].map(|axis| Limits(b[axis].0 - a[axis].1, b[axis].1 - a[axis].0));
     let reach = norm_range(apart);
     if reach.1 == 0.0 {
-        return Err(Box::new(
-            toml.at("design.B", "A and B are the same point".to_owned())
-                .with_help("put the pivots apart: a four-bar has a ground link of some length"),
-        ));
+        let help = "put the pivots apart: a four-bar has a ground link of some length";
+        return toml.refuse("design.B", "A and B are the same point", help);
     }
     if let Some(ground) = design.ground
         && are_apart(ground, reach)
     {
         let message = format!("ground is {}, but A and B are {} apart", words(ground), words(reach));
-        return Err(Box::new(
-            toml.at("design.ground", message).with_help("leave out ground, or make it agree with A and B"),
-        ));
+        return toml.refuse("design.ground", message, "leave out ground, or make it agree with A and B");
     }
     if let Some(angle) = design.ground_angle_deg
         && apart.iter().all(Limits::is_fixed)
-        && reach.1 > 0.0
     {
         let given = f64::atan2(apart[1].0, apart[0].0).to_degrees();
         let turns_below = ((angle.1 - given) / 360.0 + TYPED_DIGITS).floor();
         if given + 360.0 * turns_below < angle.0 - 360.0 * TYPED_DIGITS {
-            let message = format!(
-                "ground_angle_deg is {}, but the line from A to B is at {} degrees",
-                words(angle),
-                rounded(given)
-            );
-            return Err(Box::new(
-                toml.at("design.ground_angle_deg", message)
-                    .with_help("leave out ground_angle_deg, or make it agree with A and B"),
-            ));
+            let (angle, given) = (words(angle), rounded(given));
+            let message =
+                format!("ground_angle_deg is {angle}, but the line from A to B is at {given} degrees");
+            let help = "leave out ground_angle_deg, or make it agree with A and B";
+            return toml.refuse("design.ground_angle_deg", message, help);
         }
     }
     Ok(())
 }
 
-/// A requirement that no linkage inside the bounds can meet: pivots outside their box are refused, a link
-/// ratio is only warned of, since the search is still of use.
+/// Refuses pivots outside their box, and returns a warning about a link ratio that no linkage inside the bounds has: the
+/// search is still of use.
 pub(super) fn against_requirements(
     toml: &TomlText<'_>,
     design: &DesignSpec,
     require: &RequireSpec,
-) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+) -> Checked<Option<Diagnostic>> {
     if let Some([x0, y0, x1, y1]) = require.pivots_in {
         for (key, pivot) in [("A", design.crank_pivot), ("B", design.follower_pivot)] {
             let Some([x, y]) = pivot else { continue };
             if x.0 > x1 || x.1 < x0 || y.0 > y1 || y.1 < y0 {
-                return Err(Box::new(
-                    toml.at(
-                        &format!("design.{key}"),
-                        format!("{key} lies outside pivots_in = [{x0}, {y0}, {x1}, {y1}]"),
-                    )
-                    .with_help(format!("move {key}, or widen pivots_in in [require]")),
-                ));
+                let message = format!("{key} lies outside pivots_in = [{x0}, {y0}, {x1}, {y1}]");
+                let help = format!("move {key}, or widen pivots_in in [require]");
+                return toml.refuse(&format!("design.{key}"), message, help);
             }
         }
     }
@@ -185,22 +154,17 @@ pub(super) fn against_requirements(
     let longest = given().max_by(|l, r| l.1.0.total_cmp(&r.1.0));
     let shortest = given().min_by(|l, r| l.1.1.total_cmp(&r.1.1));
     let (Some((long, longest)), Some((short, shortest))) = (longest, shortest) else { return Ok(None) };
-    if longest.0 <= require.link_ratio_max * shortest.1 * (1.0 + TYPED_DIGITS) {
+    let most = require.link_ratio_max;
+    if longest.0 <= most * shortest.1 * (1.0 + TYPED_DIGITS) {
         return Ok(None);
     }
-    let message = format!(
-        "no answer can be accepted: {long} is {} and {short} is {}, while link_ratio_max is {}",
-        words(longest),
-        words(shortest),
-        require.link_ratio_max
-    );
-    Ok(Some(
-        toml.at(&format!("design.{long}"), message)
-            .with_help("raise link_ratio_max in [require], or change the lengths"),
-    ))
+    let lengths = format!("{long} is {} and {short} is {}", words(longest), words(shortest));
+    let message = format!("no answer can be accepted: {lengths}, while link_ratio_max is {most}");
+    let help = "raise link_ratio_max in [require], or change the lengths";
+    Ok(Some(toml.at(&format!("design.{long}"), message).with_help(help)))
 }
 
-/// The lengths that the vectors of a box can have.
+/// Returns the bounds of the lengths of the vectors in a box.
 fn norm_range([x, y]: [Limits; 2]) -> Limits {
     let least = |l: Limits| if l.0 > 0.0 { l.0 } else { (-l.1).max(0.0) };
     let most = |l: Limits| l.0.abs().max(l.1.abs());
@@ -217,7 +181,7 @@ fn words(limits: Limits) -> String {
     if low == high { low.to_string() } else { format!("between {low} and {high}") }
 }
 
-/// Six digits, enough for a message.
+/// Returns a number with six digits, enough for a message.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
 }

@@ -6,20 +6,21 @@
 mod certify;
 mod closing;
 mod design;
+mod expect;
 mod overrides;
 mod path;
 mod raw;
 mod target;
 
+pub use expect::{Expect, ExpectedCensus, Published};
 pub(crate) use raw::RawProblem;
 
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::input_text;
 use crate::files::linkage_file::{check_format, checked_name};
 use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, OnlyTable};
-use crate::mechanism::AssemblyMode;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::task::Problem;
@@ -29,11 +30,9 @@ use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
     MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec, ProblemSpec, RequireSpec,
-    SolveSpec, TimingSpec,
+    SolveSpec, TaskSpec, TimingSpec,
 };
-use raw::{RawExpect, RawSolve};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use raw::RawSolve;
 use std::path::Path;
 use target::Whereabouts;
 
@@ -55,72 +54,6 @@ pub struct ProblemFile {
     pub expect: Option<Expect>,
     /// Warnings about values that are ignored or cannot succeed.
     pub warnings: Vec<Diagnostic>,
-}
-
-/// What is known of a problem's answer.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Expect {
-    /// The least sum of squared errors that is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub best_known_sum_sq: Option<f64>,
-    /// What a run has to reach to count as a hit; absent: the best known sum.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub goal_sum_sq: Option<f64>,
-    /// How many linkages there are through nine points.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub exact: Option<ExpectedCensus>,
-    /// Answers that were published.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub published: Vec<Published>,
-}
-
-/// How many classes of exact linkages a problem has; what is not known is absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ExpectedCensus {
-    /// Isolated solutions up to cognates.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub classes: Option<usize>,
-    /// Those that are real linkages.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub real: Option<usize>,
-    /// Of these, on one circuit.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub one_circuit: Option<usize>,
-    /// Of these, in the order of the points.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub in_order: Option<usize>,
-    /// Of these, on one branch.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub free_of_defects: Option<usize>,
-}
-
-/// A published answer.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Published {
-    /// Author and year.
-    pub source: String,
-    /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians); or empty.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub vector: Vec<f64>,
-    /// Which way it closes.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schemars(with = "Option<i64>")]
-    pub t1: Option<AssemblyMode>,
-    /// The crank angles that were published, degrees from the ground line.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub crank_deg: Option<Vec<f64>>,
-    /// The error that was printed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub printed_sum_sq: Option<f64>,
-    /// The error that the vector has when this project evaluates it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub recomputed_sum_sq: Option<f64>,
-    /// A remark.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub note: Option<String>,
 }
 
 /// Reads the problem of a file; `overrides` are dotted keys with values in TOML or bare words.
@@ -189,11 +122,11 @@ fn parse_at(
     text: &str,
     whereabouts: &Whereabouts<'_>,
     overrides: &[(String, String)],
-) -> Result<ProblemFile, Box<Diagnostic>> {
+) -> Checked<ProblemFile> {
     let plain = TomlText { file: file_name, text: input_text::without_mark(text) };
     if plain.text.trim().is_empty() {
         let help = "`linkwright new NAME` writes a problem file to start from";
-        return Err(Box::new(plain.about_file("the file is empty").with_help(help)));
+        return plain.refuse_file("the file is empty", help);
     }
     let (file, text) = overrides::apply(&plain, overrides)?;
     let toml = TomlText { file: &file, text: &text };
@@ -207,20 +140,24 @@ fn parse_at(
     let path = raw.task.take().and_then(|t| t.0.path).map(|p| p.0);
     let path::PathRead { spec: path, task, unit, mut warnings } =
         path::path_of(&toml, path, whereabouts, raw.unit, tolerance_is_set)?;
-    let design = design::spec_of(&raw.design.0);
+    let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
     let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
     warnings.extend(design::against_requirements(&toml, &design, &require)?);
     let asked = raw.solve.0.certify;
     let mut solve = solve_of(&toml, raw.solve.0)?;
-    let certificate = certify::of(&toml, asked, raw.certify.map(|table| table.0), &path)?;
-    solve.certify = certificate.spec;
-    warnings.extend(certificate.warning);
+    let (certify, in_vain) = certify::of(&toml, asked, raw.certify.map(|table| table.0), &path)?;
+    solve.certify = certify;
+    warnings.extend(in_vain);
     if solve.objective == Objective::MaxDeviation {
         warnings.extend(deviation_of(&toml, &path)?);
     }
-    let expect = raw.expect.map(|e| expect_of(&toml, e.0, path.points.len())).transpose()?;
-    let spec = ProblemSpec::resolved(path, &task, design, require, solve);
+    let expect = raw.expect.map(|OnlyTable(expect)| expect);
+    if let Some(expect) = &expect {
+        expect::check(&toml, expect, path.points.len())?;
+    }
+    design.resolve(&task);
+    let spec = ProblemSpec { task: TaskSpec { path }, design, require, solve };
     continuation_of(&toml, &spec)?;
     warnings.extend(variables_of(&toml, &spec)?);
     warnings.extend(closing::against(&toml, &spec));
@@ -235,9 +172,8 @@ fn parse_at(
 pub fn from_points_file(path: &Path, overrides: &[(String, String)]) -> Result<ProblemFile, Box<Diagnostic>> {
     let shown = path.display().to_string();
     let Some(file) = path.file_name().and_then(|f| f.to_str()) else {
-        return Err(Box::new(
-            Diagnostic::new(shown, "", "the name of this file is not text").with_help("rename the file"),
-        ));
+        let diagnostic = Diagnostic::new(shown, "", "the name of this file is not text");
+        return Err(Box::new(diagnostic.with_help("rename the file")));
     };
     let key = if is_drawing(path) { "svg" } else { "file" };
     let value = toml::Value::String(file.to_owned());
@@ -250,30 +186,27 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-fn require_of(
-    toml: &TomlText<'_>,
-    raw: RawRequire,
-    timing: Option<&TimingSpec>,
-) -> Result<RequireSpec, Box<Diagnostic>> {
+fn require_of(toml: &TomlText<'_>, raw: RawRequire, timing: Option<&TimingSpec>) -> Checked<RequireSpec> {
     let require = RequireSpec::from(raw);
-    for kind in RequirementKind::ALL {
+    for kind in RequirementKind::all() {
         let definition = kind.definition();
-        if let Err(refusal) = definition.check(&require, timing) {
-            return Err(Box::new(toml.at(definition.key(), refusal.message).with_help(refusal.help)));
+        if let Err(refusal) = (definition.check)(&require, timing) {
+            return toml.refuse(definition.key, refusal.message, refusal.help);
         }
     }
     Ok(require)
 }
 
-fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnostic>> {
+fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
     let default = SolveSpec::default();
     let within = |key: &str, given: Option<Count>, default: u64, least: u64, most: u64| match given {
         None => Ok(default),
         Some(Count(value)) if (least..=most).contains(&value) => Ok(value),
-        Some(Count(value)) => Err(Box::new(
-            toml.at(&format!("solve.{key}"), format!("{key} = {value} is not between {least} and {most}"))
-                .with_help(format!("write a whole number from {least} to {most}; the default is {default}")),
-        )),
+        Some(Count(value)) => toml.refuse(
+            &format!("solve.{key}"),
+            format!("{key} = {value} is not between {least} and {most}"),
+            format!("write a whole number from {least} to {most}; the default is {default}"),
+        ),
     };
     let seed = within("seed", raw.seed, default.seed, 0, i64::MAX as u64)?;
     let candidates =
@@ -283,33 +216,27 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
         && t.0 <= 0.0
     {
         let message = format!("time_limit_s = {}: a time limit must be positive", t.0);
-        return Err(Box::new(
-            toml.at("solve.time_limit_s", message)
-                .with_help("write seconds above 0, or remove the key for no limit"),
-        ));
+        let help = "write seconds above 0, or remove the key for no limit";
+        return toml.refuse("solve.time_limit_s", message, help);
     }
+    let (OnlyTable(genetic), OnlyTable(differential_evolution)) = (raw.genetic, raw.differential_evolution);
     let parameters = [
-        ("genetic", raw.genetic.0.check(), raw.genetic.0.population),
-        (
-            "differential-evolution",
-            raw.differential_evolution.0.check(),
-            raw.differential_evolution.0.population,
-        ),
+        ("genetic", genetic.check(), genetic.population),
+        ("differential-evolution", differential_evolution.check(), differential_evolution.population),
     ];
     for (table, check, population) in parameters {
-        let refuse = |key: &str, message: String| toml.at(&format!("solve.{table}.{key}"), message);
+        let path = |key: &str| format!("solve.{table}.{key}");
         match check {
-            Ok(()) => {}
+            Ok(()) if population <= MAX_POPULATION => {}
+            Ok(()) => {
+                let message = format!("population = {population} is above {MAX_POPULATION}");
+                return toml.refuse(&path("population"), message, "a few hundred are usual");
+            }
             Err(PopulationError::Parameter { name, value, requirement }) => {
-                let diagnostic = refuse(name, format!("{name} = {value} is out of range"));
-                return Err(Box::new(diagnostic.with_help(format!("write {requirement}"))));
+                let message = format!("{name} = {value} is out of range");
+                return toml.refuse(&path(name), message, format!("write {requirement}"));
             }
             Err(other) => return Err(Box::new(toml.at(&format!("solve.{table}"), other.to_string()))),
-        }
-        if population > MAX_POPULATION {
-            let diagnostic =
-                refuse("population", format!("population = {population} is above {MAX_POPULATION}"));
-            return Err(Box::new(diagnostic.with_help("a few hundred are usual")));
         }
     }
     Ok(SolveSpec {
@@ -322,113 +249,52 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Result<SolveSpec, Box<Diagnos
         time_limit_s: raw.time_limit_s.map(|t| t.0),
         advice: raw.advice.unwrap_or(default.advice),
         certify: None,
-        genetic: raw.genetic.0,
-        differential_evolution: raw.differential_evolution.0,
+        genetic,
+        differential_evolution,
     })
 }
 
 /// Checks the points for the objective of the largest deviation: tolerances must be above zero; weights give a warning.
-fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+fn deviation_of(toml: &TomlText<'_>, path: &PathSpec) -> Checked<Option<Diagnostic>> {
     if let Some(j) = path.tolerance.iter().flatten().position(|t| *t == 0.0) {
         let message = format!("deviations are measured by the tolerances, and that of point {j} is 0");
-        return Err(Box::new(
-            toml.at("solve.objective", message).with_help("give every point a tolerance above 0, or none"),
-        ));
+        return toml.refuse("solve.objective", message, "give every point a tolerance above 0, or none");
     }
     let message = "weights do not enter the largest deviation";
-    Ok(path.weight.is_some().then(|| {
-        toml.at("solve.objective", message)
-            .with_help("give tolerances: a point with half the tolerance counts twice")
-    }))
+    let help = "give tolerances: a point with half the tolerance counts twice";
+    Ok(path.weight.is_some().then(|| toml.at("solve.objective", message).with_help(help)))
 }
 
 /// Checks that continuation has nine precision points.
-fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<(), Box<Diagnostic>> {
+fn continuation_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<()> {
     if spec.solve.method != Method::Continuation {
         return Ok(());
     }
     // Faults of the task itself have been reported before.
-    let refusal = Problem::new(spec.clone()).ok().and_then(|problem| precision_points(&problem).err());
-    refusal.map_or(Ok(()), |refusal| {
-        let key = match refusal {
-            precision::Refusal::Points { .. } | precision::Refusal::Timed => "solve.method".to_owned(),
-            precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
-        };
-        Err(Box::new(toml.at(&key, refusal.to_string()).with_help(refusal.remedy())))
-    })
+    let Some(Err(refusal)) = Problem::new(spec.clone()).ok().map(|problem| precision_points(&problem)) else {
+        return Ok(());
+    };
+    let key = match refusal {
+        precision::Refusal::Points { .. } | precision::Refusal::Timed => "solve.method".to_owned(),
+        precision::Refusal::Coincident { second, .. } => format!("task.path.points.{second}"),
+    };
+    toml.refuse(&key, refusal.to_string(), refusal.remedy())
 }
 
 /// Checks that reduced variables have a reduced form; returns a warning if the method does not use them.
-fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+fn variables_of(toml: &TomlText<'_>, spec: &ProblemSpec) -> Checked<Option<Diagnostic>> {
     if spec.solve.variables.is_nine() {
         return Ok(None);
     }
     if !spec.solve.moves_reduced() {
-        let message =
-            format!("variables = \"reduced\" is not read by method = \"{}\"", spec.solve.method.name());
-        return Ok(Some(
-            toml.at("solve.variables", message)
-                .with_help("it is for genetic and differential-evolution; remove it, or choose one of them"),
-        ));
+        let method = spec.solve.method.name();
+        let message = format!("variables = \"reduced\" is not read by method = \"{method}\"");
+        let help = "it is for genetic and differential-evolution; remove it, or choose one of them";
+        return Ok(Some(toml.at("solve.variables", message).with_help(help)));
     }
     // Faults of the task itself have been reported before.
     match Problem::new(spec.clone()).ok().and_then(|problem| reduced::refusal(&problem)) {
         None => Ok(None),
-        Some(refusal) => {
-            Err(Box::new(toml.at("solve.variables", refusal.to_string()).with_help(refusal.remedy())))
-        }
+        Some(refusal) => toml.refuse("solve.variables", refusal.to_string(), refusal.remedy()),
     }
-}
-
-/// The number of values of a published vector.
-const PUBLISHED_VECTOR: usize = 9;
-
-fn expect_of(toml: &TomlText<'_>, raw: RawExpect, points: usize) -> Result<Expect, Box<Diagnostic>> {
-    let not_negative = |path: String, value: Option<f64>| match value {
-        Some(v) if v < 0.0 => Err(Box::new(
-            toml.at(&path, format!("{v} is negative: a sum of squares is 0 or more"))
-                .with_help("write 0 or more"),
-        )),
-        other => Ok(other),
-    };
-    let best = not_negative("expect.best_known_sum_sq".into(), raw.best_known_sum_sq.map(|n| n.0))?;
-    let goal = not_negative("expect.goal_sum_sq".into(), raw.goal_sum_sq.map(|n| n.0))?;
-    let mut published = Vec::with_capacity(raw.published.len());
-    for (i, OnlyTable(p)) in raw.published.into_iter().enumerate() {
-        let path = |key: &str| format!("expect.published.{i}.{key}");
-        if !p.vector.is_empty() && p.vector.len() != PUBLISHED_VECTOR {
-            let message =
-                format!("a published vector has {PUBLISHED_VECTOR} numbers, this one {}", p.vector.len());
-            return Err(Box::new(toml.at(&path("vector"), message).with_help(
-                "[ground, crank, coupler, follower, rcx, rcy, x0, y0, theta0]; or leave it empty",
-            )));
-        }
-        if let Some(list) = p.crank_deg.as_ref().filter(|list| list.len() != points) {
-            let (points, angles) = (path::counted(points, "point"), path::counted(list.len(), "crank angle"));
-            let message = format!("{points} and {angles}");
-            return Err(Box::new(
-                toml.at(&path("crank_deg"), message).with_help("give one crank angle for each point"),
-            ));
-        }
-        published.push(Published {
-            source: p.source,
-            vector: p.vector.iter().map(|n| n.0).collect(),
-            t1: p.t1,
-            crank_deg: p.crank_deg.map(|list| list.iter().map(|n| n.0).collect()),
-            printed_sum_sq: not_negative(path("printed_sum_sq"), p.printed_sum_sq.map(|n| n.0))?,
-            recomputed_sum_sq: not_negative(path("recomputed_sum_sq"), p.recomputed_sum_sq.map(|n| n.0))?,
-            note: p.note,
-        });
-    }
-    let exact = raw.exact.map(|OnlyTable(e)| {
-        let count = |given: Option<Count>| given.map(|Count(n)| n as usize);
-        ExpectedCensus {
-            classes: count(e.classes),
-            real: count(e.real),
-            one_circuit: count(e.one_circuit),
-            in_order: count(e.in_order),
-            free_of_defects: count(e.free_of_defects),
-        }
-    });
-    Ok(Expect { best_known_sum_sq: best, goal_sum_sq: goal, exact, published })
 }

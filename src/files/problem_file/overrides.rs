@@ -1,14 +1,11 @@
 //! `--set KEY=VALUE`: keys of the document replaced in its text, which is then read like any other.
 
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::toml_text::TomlText;
 use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
 
 /// The name and the text of a document with the overrides written into it.
-pub(super) fn apply(
-    toml: &TomlText<'_>,
-    overrides: &[(String, String)],
-) -> Result<(String, String), Box<Diagnostic>> {
+pub(super) fn apply(toml: &TomlText<'_>, overrides: &[(String, String)]) -> Checked<(String, String)> {
     if overrides.is_empty() {
         return Ok((toml.file.to_owned(), toml.text.to_owned()));
     }

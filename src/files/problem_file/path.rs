@@ -1,16 +1,16 @@
-//! `[task.path]`: the points, where they come from, and what stands beside them.
+//! Reads `[task.path]`: the points from their source, with weights, tolerances and crank angles.
 
 use super::raw::RawPath;
 use super::target::{Source, Target, Whereabouts};
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::files::toml_text::TomlText;
-use crate::files::toml_values::OneOrEach;
+use crate::files::toml_values::{OneOrEach, OnlyTable, numbers};
 use crate::mechanism::Unit;
 use crate::task::resampling::MAX_SMOOTHED;
 use crate::task::spec::{PathSpec, RawPoints, TimingSpec};
-use crate::task::{AngleOffset, PathTask, TaskError};
+use crate::task::{AngleOffset, PathTask, TaskError, corners};
 
-/// What `[task.path]` says.
+/// The values of `[task.path]`.
 pub(super) struct PathRead {
     pub spec: PathSpec,
     pub task: PathTask,
@@ -19,83 +19,73 @@ pub(super) struct PathRead {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// The path with what stands beside its points, and the task that it is. A tolerance that is set by hand takes the
-/// place of the column of a points file.
+/// Returns the path with its lists, and the task that it is. A tolerance that is set on the command line takes the place
+/// of the column of a points file.
 pub(super) fn path_of(
     toml: &TomlText<'_>,
     path: Option<RawPath>,
     whereabouts: &Whereabouts<'_>,
     unit: Option<Unit>,
     tolerance_is_set: bool,
-) -> Result<PathRead, Box<Diagnostic>> {
+) -> Checked<PathRead> {
     let Some(path) = path else {
-        return Err(Box::new(
-            toml.at_key("task", "there is no task in this file")
-                .with_help("add a table [task.path] with points = [[x, y], ...] or file = \"points.csv\""),
-        ));
+        let help = "add a table [task.path] with points = [[x, y], ...] or file = \"points.csv\"";
+        return toml.refuse_key("task", "there is no task in this file", help);
     };
     let mut target = Target::of(toml, &path, whereabouts, unit)?;
-    let columns = match &mut target.source {
+    let (crank_column, weight_column, tolerance_column) = match &mut target.source {
         Source::Csv(csv) => (csv.crank_deg.take(), csv.weight.take(), csv.tolerance.take()),
         Source::File | Source::Svg(_) => (None, None, None),
     };
-    let (csv_crank, csv_weight, csv_tolerance) = columns;
+    let tolerance_column = tolerance_column.filter(|_| !tolerance_is_set);
+    let has_tolerances = tolerance_column.is_some() || matches!(path.tolerance, Some(OneOrEach::Each(_)));
     let beside = [
-        ("crank angles", csv_crank.is_some() || path.timing.is_some()),
-        ("weights", csv_weight.is_some() || path.weight.is_some()),
-        (
-            "tolerances",
-            csv_tolerance.is_some() && !tolerance_is_set
-                || matches!(path.tolerance, Some(OneOrEach::Each(_))),
-        ),
+        ("crank angles", crank_column.is_some() || path.timing.is_some()),
+        ("weights", weight_column.is_some() || path.weight.is_some()),
+        ("tolerances", has_tolerances),
     ];
     let raw = raw_of(toml, &path, &mut target, beside)?;
     let n = target.points.len();
-    let tolerance = match (&path.tolerance, csv_tolerance) {
-        (Some(_), Some(_)) if !tolerance_is_set => {
-            return Err(twice(toml, "task.path.tolerance", "tolerance", &path));
-        }
-        (Some(OneOrEach::One(t)), _) => {
-            not_negative(toml, "task.path.tolerance", *t)?;
-            Some(vec![*t; n])
-        }
-        (Some(OneOrEach::Each(list)), _) => {
-            one_each(toml, "task.path.tolerance", list.len(), n, "tolerance")?;
-            for (j, t) in list.iter().enumerate() {
-                not_negative(toml, &format!("task.path.tolerance.{j}"), *t)?;
+    // A list is given in the problem file or as a column of the points file.
+    let list_of = |key: &str, what: &str, here: Option<Vec<f64>>, column: Option<Vec<f64>>| {
+        let place = format!("task.path.{key}");
+        match (here, column) {
+            (Some(_), Some(_)) => {
+                let (name, file) =
+                    (key.trim_start_matches("timing."), path.file.as_deref().unwrap_or_default());
+                let message = format!("{name} is given here and as a column of {file}");
+                toml.refuse(&place, message, "remove one of the two")
             }
-            Some(list.clone())
-        }
-        (None, column) => column,
-    };
-    let weight = match (&path.weight, csv_weight) {
-        (Some(_), Some(_)) => return Err(twice(toml, "task.path.weight", "weight", &path)),
-        (Some(list), None) => {
-            one_each(toml, "task.path.weight", list.len(), n, "weight")?;
-            if let Some(j) = list.iter().position(|w| w.0 <= 0.0) {
-                let message = format!("weight = {}: a weight is positive", list[j].0);
-                let help = "write a number above 0; leave the point out to ignore it";
-                return Err(Box::new(toml.at(&format!("task.path.weight.{j}"), message).with_help(help)));
+            (Some(list), _) if list.len() != n => {
+                let message = format!("{} and {}", counted(n, "point"), counted(list.len(), what));
+                toml.refuse(&place, message, format!("give one {what} for each point"))
             }
-            Some(list.iter().map(|w| w.0).collect())
+            (here, column) => Ok(here.or(column)),
         }
-        (None, column) => column,
     };
-    let offset = path.timing.as_ref().map_or(AngleOffset::default(), |t| t.0.offset);
-    let file_crank = path.timing.as_ref().and_then(|t| t.0.crank_deg.as_ref());
-    let crank_deg = match (file_crank, csv_crank) {
-        (Some(_), Some(_)) => return Err(twice(toml, "task.path.timing.crank_deg", "crank_deg", &path)),
-        (Some(list), None) => Some(list.iter().map(|v| v.0).collect::<Vec<f64>>()),
-        (None, Some(column)) => Some(column),
-        (None, None) if path.timing.is_some() => {
-            return Err(Box::new(toml.at_key("task.path.timing", "the crank angles are missing").with_help(
-                "add crank_deg, one angle a point, or remove [task.path.timing] for free timing",
-            )));
-        }
-        (None, None) => None,
+    let here = path.tolerance.as_ref().map(|tolerance| match tolerance {
+        OneOrEach::One(tolerance) => vec![*tolerance; n],
+        OneOrEach::Each(list) => list.clone(),
+    });
+    let tolerance = list_of("tolerance", "tolerance", here, tolerance_column)?;
+    if let Some((j, t)) = tolerance.iter().flatten().enumerate().find(|(_, t)| **t < 0.0) {
+        let message = format!("tolerance = {t}: a distance cannot be negative");
+        return toml.refuse(&format!("task.path.tolerance.{j}"), message, "write 0 or more");
+    }
+    let weight = list_of("weight", "weight", path.weight.as_deref().map(numbers), weight_column)?;
+    if let Some((j, w)) = weight.iter().flatten().enumerate().find(|(_, w)| **w <= 0.0) {
+        let message = format!("weight = {w}: a weight is positive");
+        let help = "write a number above 0; leave the point out to ignore it";
+        return toml.refuse(&format!("task.path.weight.{j}"), message, help);
+    }
+    let (here, offset) = match &path.timing {
+        Some(OnlyTable(timing)) => (timing.crank_deg.as_deref().map(numbers), timing.offset),
+        None => (None, AngleOffset::default()),
     };
-    if let Some(list) = &crank_deg {
-        one_each(toml, "task.path.timing.crank_deg", list.len(), n, "crank angle")?;
+    let crank_deg = list_of("timing.crank_deg", "crank angle", here, crank_column)?;
+    if crank_deg.is_none() && path.timing.is_some() {
+        let help = "add crank_deg, one angle a point, or remove [task.path.timing] for free timing";
+        return toml.refuse_key("task.path.timing", "the crank angles are missing", help);
     }
     let timing = crank_deg.map(|crank_deg| TimingSpec { crank_deg, offset });
     let points = std::mem::take(&mut target.points);
@@ -109,30 +99,27 @@ pub(super) fn path_of(
     Ok(PathRead { spec, task, unit, warnings })
 }
 
-/// Smooths and resamples the points where that is asked for; what they were then stands in the answer.
+/// Smooths and resamples the points if that is asked for; returns the points as they were then.
 fn raw_of(
     toml: &TomlText<'_>,
     path: &RawPath,
     target: &mut Target,
     beside: [(&str, bool); 3],
-) -> Result<Option<RawPoints>, Box<Diagnostic>> {
-    let refuse = |key: &str, message: String, help: &str| {
-        Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
-    };
+) -> Checked<Option<RawPoints>> {
+    let refuse =
+        |key: &str, message: String, help: &str| toml.refuse(&format!("task.path.{key}"), message, help);
     let smooth = path.smooth.map(|s| s.0);
     if let Some(deviation) = smooth {
-        let size = extent(&target.points);
+        let (low, high) = corners(&target.points);
+        let size = (high[0] - low[0]).hypot(high[1] - low[1]);
         if deviation <= 0.0 {
             let help = "write a length along the path, a few times the distance of points; or remove the key";
             return refuse("smooth", format!("smooth = {deviation} is not above 0"), help);
         }
         if deviation > size {
             let message = format!("smooth = {deviation} is more than the size of the path, {size:.4}");
-            return refuse(
-                "smooth",
-                message,
-                "write a length along the path, a few times the distance of points",
-            );
+            let help = "write a length along the path, a few times the distance of points";
+            return refuse("smooth", message, help);
         }
         if target.points.len() > MAX_SMOOTHED {
             let message = format!("{} points; at most {MAX_SMOOTHED} are smoothed", target.points.len());
@@ -163,56 +150,12 @@ fn raw_of(
     Ok(Some(raw))
 }
 
-/// The diagonal of the points' box.
-fn extent(points: &[[f64; 2]]) -> f64 {
-    let span = |axis: usize| {
-        let (low, high) = points
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p[axis]), high.max(p[axis])));
-        high - low
-    };
-    span(0).hypot(span(1))
-}
-
-/// "3 points".
+/// Returns a number with its noun: `3 points`.
 pub(super) fn counted(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
-/// Refuses a list of another length than there are points.
-fn one_each(
-    toml: &TomlText<'_>,
-    key: &str,
-    values: usize,
-    points: usize,
-    what: &str,
-) -> Result<(), Box<Diagnostic>> {
-    if values == points {
-        return Ok(());
-    }
-    let message = format!("{} and {}", counted(points, "point"), counted(values, what));
-    Err(Box::new(toml.at(key, message).with_help(format!("give one {what} for each point"))))
-}
-
-/// Refuses a negative tolerance.
-fn not_negative(toml: &TomlText<'_>, key: &str, tolerance: f64) -> Result<(), Box<Diagnostic>> {
-    if tolerance >= 0.0 {
-        return Ok(());
-    }
-    let message = format!("tolerance = {tolerance}: a distance cannot be negative");
-    Err(Box::new(toml.at(key, message).with_help("write 0 or more")))
-}
-
-/// The same thing in the problem file and in the points file.
-fn twice(toml: &TomlText<'_>, path: &str, what: &str, raw: &RawPath) -> Box<Diagnostic> {
-    let file = raw.file.as_deref().unwrap_or_default();
-    Box::new(
-        toml.at(path, format!("{what} is given here and as a column of {file}"))
-            .with_help("remove one of the two"),
-    )
-}
-
-/// A task's error at the point that it is about.
+/// Returns the diagnostic of a task's error, at the point that it is about.
 fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &PathSpec, error: &TaskError) -> Box<Diagnostic> {
     Box::new(match error {
         TaskError::TooFewPoints(n) => target
@@ -226,13 +169,14 @@ fn explain_task(toml: &TomlText<'_>, target: &Target, spec: &PathSpec, error: &T
         TaskError::NoExtent => target
             .at_all(toml, "all points are equal: a path needs an extent".into())
             .with_help("give points in at least two places"),
-        TaskError::NotFinite { index, .. } => target.at_point(toml, *index, error.to_string()),
-        TaskError::OutOfRange { index, .. } => target.at_point(toml, *index, error.to_string()),
+        TaskError::NotFinite { index, .. } | TaskError::OutOfRange { index, .. } => {
+            target.at_point(toml, *index, error.to_string())
+        }
         TaskError::LengthMismatch { .. } => target.at_all(toml, error.to_string()),
     })
 }
 
-/// What to do about points i and i + 1.
+/// Returns the remedy for equal points i and i + 1.
 fn equal_neighbours_remedy(spec: &PathSpec, i: usize) -> String {
     match &spec.timing {
         None => "remove one of them, or prescribe the timing with the same crank angle at both".to_owned(),

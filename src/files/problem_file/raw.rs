@@ -1,7 +1,8 @@
 //! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
 
+use super::Expect;
 use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, XY};
-use crate::mechanism::{AssemblyMode, Unit};
+use crate::mechanism::Unit;
 use crate::numbers::optimise::differential_evolution::DifferentialEvolutionParameters;
 use crate::numbers::optimise::genetic::GeneticParameters;
 use crate::task::AngleOffset;
@@ -40,7 +41,7 @@ pub(crate) struct RawProblem {
     #[serde(default)]
     pub certify: Option<OnlyTable<RawCertify>>,
     /// What is known of the answer; no search reads it.
-    pub expect: Option<OnlyTable<RawExpect>>,
+    pub expect: Option<OnlyTable<Expect>>,
 }
 
 /// What is wanted: a path.
@@ -167,60 +168,4 @@ pub(crate) struct RawCertify {
     pub gap: Option<Number>,
     /// Seconds at most, up to 1e6; what is proved by then stands; 300 where silent.
     pub time_limit_s: Option<Number>,
-}
-
-/// What is known of the answer.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Expect")]
-pub(crate) struct RawExpect {
-    /// The least sum of squared errors that is known.
-    pub best_known_sum_sq: Option<Number>,
-    /// What a run has to reach to count as a hit; where silent, best_known_sum_sq.
-    pub goal_sum_sq: Option<Number>,
-    /// How many linkages there are through nine points.
-    pub exact: Option<OnlyTable<RawExpectedCensus>>,
-    /// Answers that were published.
-    #[serde(default)]
-    pub published: Vec<OnlyTable<RawPublished>>,
-}
-
-/// How many linkages there are through nine points, up to cognates.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "ExpectedCensus")]
-pub(crate) struct RawExpectedCensus {
-    /// Isolated solutions, real and complex.
-    pub classes: Option<Count>,
-    /// Real linkages.
-    pub real: Option<Count>,
-    /// Of these, on one circuit.
-    pub one_circuit: Option<Count>,
-    /// Of these, in the order of the points.
-    pub in_order: Option<Count>,
-    /// Of these, on one branch.
-    pub free_of_defects: Option<Count>,
-}
-
-/// An answer that was published.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-#[schemars(rename = "Published")]
-pub(crate) struct RawPublished {
-    /// Author and year.
-    pub source: String,
-    /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
-    #[serde(default)]
-    pub vector: Vec<Number>,
-    /// Which way it closes: 1: D lies left of the line from C to B; -1: right.
-    #[schemars(with = "Option<i64>")]
-    pub t1: Option<AssemblyMode>,
-    /// The crank angles that were published, degrees from the ground line.
-    pub crank_deg: Option<Vec<Number>>,
-    /// The error that was printed.
-    pub printed_sum_sq: Option<Number>,
-    /// The error that the vector has when this project evaluates it.
-    pub recomputed_sum_sq: Option<Number>,
-    /// A remark.
-    pub note: Option<String>,
 }

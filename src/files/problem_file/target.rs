@@ -1,7 +1,7 @@
-//! Where the points of `[task.path]` come from: the file itself, a CSV or a drawing beside it.
+//! Reads the points of `[task.path]` from the file itself, or from a CSV or a drawing beside it.
 
 use super::raw::RawPath;
-use crate::files::diagnostic::{Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::points_file;
 use crate::files::points_file::{MAX_POINTS, PointsFile};
 use crate::files::svg_file;
@@ -10,7 +10,7 @@ use crate::files::toml_text::TomlText;
 use crate::mechanism::Unit;
 use std::path::{Component, Path, PathBuf};
 
-/// Where files that a problem file names are looked for.
+/// The places of the files that a problem file names.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Whereabouts<'a> {
     /// The folder of the problem file, where it has one.
@@ -21,7 +21,7 @@ pub(super) struct Whereabouts<'a> {
     pub beside: &'a [(&'a str, &'a str)],
 }
 
-/// What gave the points.
+/// The source of the points.
 pub(super) enum Source {
     /// The problem file.
     File,
@@ -31,37 +31,33 @@ pub(super) enum Source {
     Svg(SvgTarget),
 }
 
-/// Points with what stands beside them.
+/// Points with their source.
 pub(super) struct Target {
     pub points: Vec<[f64; 2]>,
     pub source: Source,
     pub closed: bool,
-    /// How many samples are asked for.
+    /// The number of samples asked for.
     pub samples: Option<usize>,
     /// Whether the points are no longer those of the source.
     pub resampled: bool,
 }
 
-type Answer<T> = Result<T, Box<Diagnostic>>;
-
 impl Target {
-    /// The points of a path, from wherever it says.
+    /// Reads the points of a path from its source.
     pub fn of(
         toml: &TomlText<'_>,
         path: &RawPath,
         whereabouts: &Whereabouts<'_>,
         unit: Option<Unit>,
-    ) -> Answer<Target> {
-        let refuse = |key: &str, message: String, help: &str| {
-            Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
-        };
+    ) -> Checked<Target> {
+        let refuse =
+            |key: &str, message: String, help: &str| toml.refuse(&format!("task.path.{key}"), message, help);
         let given =
             [("points", path.points.is_some()), ("file", path.file.is_some()), ("svg", path.svg.is_some())];
         let mut given = given.iter().filter(|(_, there)| *there).map(|(key, _)| *key);
         if let (Some(first), Some(second)) = (given.next(), given.next()) {
             let message = format!("two sources of points: {first} and {second}");
-            let place = toml.at_key(&format!("task.path.{second}"), message);
-            return Err(Box::new(place.with_help("keep one of the two")));
+            return toml.refuse_key(&format!("task.path.{second}"), message, "keep one of the two");
         }
         if path.svg_id.is_some() && path.svg.is_none() {
             let help = "name the drawing too: svg = \"drawing.svg\"; or remove svg_id";
@@ -80,9 +76,9 @@ impl Target {
             if points.len() > MAX_POINTS {
                 let message = format!("{} points; at most {MAX_POINTS} are read", points.len());
                 let help = "leave out points: a few hundred describe any path that a four-bar can trace";
-                return Err(Box::new(toml.at_key("task.path.points", message).with_help(help)));
+                return toml.refuse_key("task.path.points", message, help);
             }
-            (points.iter().map(|p| p.numbers()).collect(), Source::File)
+            (points.iter().map(|p| p.0).collect(), Source::File)
         } else if let Some(file) = &path.file {
             let mut csv = match whereabouts.beside.iter().find(|(name, _)| name == file) {
                 Some((name, text)) => points_file::parse(name, text)?,
@@ -100,30 +96,25 @@ impl Target {
             closed = svg.closed;
             (std::mem::take(&mut svg.points), Source::Svg(svg))
         } else {
-            let place = toml.at_key("task.path", "the path has no points");
             let help = "add points = [[x, y], ...] or file = \"points.csv\" or svg = \"drawing.svg\"";
-            return Err(Box::new(place.with_help(help)));
+            return toml.refuse_key("task.path", "the path has no points", help);
         };
         Ok(Target { points, source, closed, samples, resampled: false })
     }
 
-    /// A complaint about a point, where it is written.
+    /// Returns a diagnostic about a point, at its place.
     pub fn at_point(&self, toml: &TomlText<'_>, index: usize, message: String) -> Diagnostic {
         match &self.source {
             _ if self.resampled => self.at_all(toml, message),
             Source::Csv(csv) => {
-                let diagnostic = Diagnostic::new(csv.file.clone(), csv.text.clone(), message);
-                match csv.rows.get(index) {
-                    Some(row) => diagnostic.at(row.clone()),
-                    None => diagnostic,
-                }
+                Diagnostic::new(csv.file.clone(), csv.text.clone(), message).at(csv.rows.get(index).cloned())
             }
             Source::File => toml.at(&format!("task.path.points.{index}"), message),
             Source::Svg(_) => self.at_all(toml, message),
         }
     }
 
-    /// A complaint about all points.
+    /// Returns a diagnostic about all points.
     pub fn at_all(&self, toml: &TomlText<'_>, message: String) -> Diagnostic {
         match &self.source {
             Source::Csv(csv) => Diagnostic::new(csv.file.clone(), csv.text.clone(), message),
@@ -134,13 +125,11 @@ impl Target {
 }
 
 impl Whereabouts<'_> {
-    /// The file that `task.path.key` names: inside the problem file's folder, links followed, or anywhere where it
+    /// Returns the file that `task.path.key` names: inside the problem file's folder, links followed, or anywhere where it
     /// was named on the command line.
-    fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Answer<PathBuf> {
+    fn find(&self, toml: &TomlText<'_>, key: &str, file: &str) -> Checked<PathBuf> {
         let what = if key == "svg" { "drawing" } else { "points file" };
-        let refuse = |message: String, help: &str| {
-            Err(Box::new(toml.at(&format!("task.path.{key}"), message).with_help(help)))
-        };
+        let refuse = |message: String, help: &str| toml.refuse(&format!("task.path.{key}"), message, help);
         let Some(folder) = self.folder else {
             return refuse(
                 format!("a {what} cannot be read here: this text comes from no folder"),
@@ -174,7 +163,7 @@ impl Whereabouts<'_> {
     }
 }
 
-/// Whether a relative path leads nowhere above the folder that it starts from.
+/// Returns whether a relative path leads nowhere above the folder that it starts from.
 fn stays_inside(path: &Path) -> bool {
     let mut depth = 0_usize;
     for part in path.components() {

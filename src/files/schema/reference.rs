@@ -1,6 +1,7 @@
 //! The reference page of a file's keys, generated from its schema: a section for each table, a row for each key.
 
 use super::{SchemaKind, schema};
+use crate::mechanism::MAX_MAGNITUDE;
 use serde_json::{Map, Value};
 use std::fmt::Write;
 
@@ -97,10 +98,11 @@ pub fn reference(kind: SchemaKind) -> String {
     let schema = schema(kind);
     let mut page = Page { schema: &schema, text: String::new() };
     let name = kind.name();
-    let read = "Unknown keys are refused. All numbers are finite and below 1e12 in magnitude.";
+    let read =
+        format!("Unknown keys are refused. All numbers are finite and below {MAX_MAGNITUDE:e} in magnitude.");
     let (title, rules) = match kind {
-        SchemaKind::Problem => ("problem file", read),
-        SchemaKind::Linkage => ("linkage file", read),
+        SchemaKind::Problem => ("problem file", read.as_str()),
+        SchemaKind::Linkage => ("linkage file", read.as_str()),
         SchemaKind::Record => {
             ("record (record.json)", "All numbers are finite; keys that do not apply are absent.")
         }

@@ -1,7 +1,6 @@
 //! A curve measured by its arc length: s(t) = integral of |r'|, and the points at given s.
 
-use super::shape::Outline;
-use kurbo::{Affine, ParamCurve, ParamCurveArclen, PathSeg, Point};
+use kurbo::{Affine, BezPath, ParamCurve, ParamCurveArclen, PathSeg, Point};
 
 /// The relative distance below which two ends are one point: drawings are written with six digits.
 const SAME_END: f64 = 1e-5;
@@ -24,18 +23,18 @@ pub(super) struct Measured {
 }
 
 impl Measured {
-    /// Measures a curve; `None` if it has no extent.
-    pub fn new(outline: &Outline, closed: Option<bool>) -> Option<Measured> {
-        let mut segments = outline.segments.clone();
-        let corners = segments.iter().map(hull).reduce(|a, b| a.union(b))?;
+    /// Measures a curve; `None` if it has no extent. `closed`: whether it is closed, if not by where its ends lie.
+    pub fn new(outline: &BezPath, closed: Option<bool>) -> Option<Measured> {
+        let mut segments: Vec<PathSeg> = outline.segments().collect();
+        let corners = outline.control_box();
         let size = corners.width().hypot(corners.height());
         if !(size.is_finite() && size > crate::task::SMALLEST_SIZE) {
             return None;
         }
         let (first, last) = (segments.first()?.start(), segments.last()?.end());
         let meets = last.distance(first) <= SAME_END * size;
-        let closed = closed.unwrap_or(outline.closed || meets);
-        if (closed || outline.closed) && !meets {
+        let closed = closed.unwrap_or(meets);
+        if closed && !meets {
             segments.push(PathSeg::Line(kurbo::Line::new(last, first)));
         }
         let into_unit = Affine::scale(1.0 / size) * Affine::translate(-corners.center().to_vec2());
@@ -85,14 +84,4 @@ impl Measured {
         };
         self.segments[index].eval(t)
     }
-}
-
-/// Returns the bounding box of a segment's control points.
-pub(super) fn hull(segment: &PathSeg) -> kurbo::Rect {
-    let controls: &[Point] = match segment {
-        PathSeg::Line(line) => &[line.p0, line.p1],
-        PathSeg::Quad(quad) => &[quad.p0, quad.p1, quad.p2],
-        PathSeg::Cubic(cubic) => &[cubic.p0, cubic.p1, cubic.p2, cubic.p3],
-    };
-    controls.iter().fold(kurbo::Rect::from_points(controls[0], controls[0]), |b, p| b.union_pt(*p))
 }

@@ -7,14 +7,14 @@
 
 mod arc_length;
 mod document;
+mod element;
 mod pen;
 mod shape;
 mod viewport;
 
 use crate::files::diagnostic::Diagnostic;
 use crate::files::input_text;
-use crate::mechanism::MAX_MAGNITUDE;
-use crate::mechanism::Unit;
+use crate::mechanism::{MAX_MAGNITUDE, Unit};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -109,15 +109,17 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
     };
     // Shapes are drawn with y down.
     let upright = kurbo::Affine::scale_non_uniform(scale, -scale) * chosen.transform;
-    let outline = chosen.outline.transformed(upright);
+    let outline = upright * &chosen.outline;
     let at = |message: String, help: &str| {
         Box::new(Diagnostic::new(file, text, message).at(chosen.place.clone()).with_help(help))
     };
-    if !outline.reach().is_finite() || outline.reach() > MAX_MAGNITUDE {
-        return Err(at(
-            "the shape reaches further than 1e12".into(),
-            "scale the drawing down, or check its transforms",
-        ));
+    let corners = outline.control_box();
+    let reach =
+        [corners.x0, corners.y0, corners.x1, corners.y1].into_iter().map(f64::abs).fold(0.0, f64::max);
+    // A box does not show a point that is no number.
+    if !outline.is_finite() || reach > MAX_MAGNITUDE {
+        let message = format!("the shape reaches further than {MAX_MAGNITUDE:e}");
+        return Err(at(message, "scale the drawing down, or check its transforms"));
     }
     let Some(curve) = arc_length::Measured::new(&outline, options.closed) else {
         return Err(at("the shape has no extent once it is transformed".into(), "check its transforms"));

@@ -1,54 +1,57 @@
 //! Path data: each command draws from the current point of the pen (SVG 1.1, 8.3).
 
-use super::shape::Outline;
-use kurbo::{CubicBez, Line, PathSeg, Point, QuadBez, Vec2};
+use super::shape::arc_to;
+use kurbo::{BezPath, PathEl, Point, QuadBez, Vec2};
 use svgtypes::PathSegment;
 
 /// A pen, which draws the segments of path data.
 #[derive(Default)]
 pub(super) struct Pen {
-    /// The strokes drawn so far; some may be empty.
-    pub strokes: Vec<Outline>,
+    /// The strokes drawn so far, none of them empty.
+    path: BezPath,
     start: Point,
     at: Point,
     /// The last control point of a cubic and of a quadratic curve.
     cubic: Option<Point>,
     quadratic: Option<Point>,
-    /// Whether the next command begins a stroke.
-    lifted: bool,
+    /// Whether a stroke has begun, which the next command continues.
+    is_down: bool,
 }
 
 impl Pen {
-    fn stroke(&mut self) -> &mut Outline {
-        if self.lifted || self.strokes.is_empty() {
-            self.strokes.push(Outline::default());
-            self.lifted = false;
-        }
-        let last = self.strokes.len() - 1;
-        &mut self.strokes[last]
+    /// Returns what was drawn, and the number of its strokes.
+    pub fn drawn(self) -> (BezPath, usize) {
+        let strokes = self.path.iter().filter(|element| matches!(element, PathEl::MoveTo(_))).count();
+        (self.path, strokes)
     }
 
-    fn push(&mut self, segment: PathSeg, to: Point) {
-        self.stroke().segments.push(segment);
-        self.at = to;
+    /// Returns the path with a stroke begun where the pen is.
+    fn down(&mut self) -> &mut BezPath {
+        if !self.is_down {
+            self.path.move_to(self.at);
+            self.is_down = true;
+        }
+        &mut self.path
     }
 
     fn line(&mut self, to: Point) {
-        let from = self.at;
-        if to != from {
-            self.push(PathSeg::Line(Line::new(from, to)), to);
+        if to != self.at {
+            self.down().line_to(to);
+            self.at = to;
         }
     }
 
     fn curve(&mut self, p1: Point, p2: Point, to: Point) {
-        self.push(PathSeg::Cubic(CubicBez::new(self.at, p1, p2, to)), to);
+        self.down().curve_to(p1, p2, to);
+        self.at = to;
         self.cubic = Some(p2);
     }
 
     fn quad(&mut self, p1: Point, to: Point) {
         // Raised to a cubic, which is exact: one formula for arc lengths.
-        self.push(PathSeg::Cubic(QuadBez::new(self.at, p1, to).raise()), to);
-        self.quadratic = Some(p1);
+        let cubic = QuadBez::new(self.at, p1, to).raise();
+        self.curve(cubic.p1, cubic.p2, to);
+        (self.cubic, self.quadratic) = (None, Some(p1));
     }
 
     /// Draws one segment.
@@ -63,7 +66,7 @@ impl Pen {
             PathSegment::MoveTo { abs, x, y } => {
                 self.at = place(abs, x, y);
                 self.start = self.at;
-                self.lifted = true;
+                self.is_down = false;
             }
             PathSegment::LineTo { abs, x, y } => self.line(place(abs, x, y)),
             PathSegment::HorizontalLineTo { abs, x } => {
@@ -82,19 +85,16 @@ impl Pen {
             PathSegment::SmoothQuadratic { abs, x, y } => self.quad(mirrored(quadratic), place(abs, x, y)),
             PathSegment::EllipticalArc { abs, rx, ry, x_axis_rotation, large_arc, sweep, x, y } => {
                 let to = place(abs, x, y);
-                if to != base {
-                    self.stroke().arc_to(base, to, Vec2::new(rx, ry), x_axis_rotation, large_arc, sweep);
+                if to.distance(base) > 0.0 {
+                    arc_to(self.down(), base, to, Vec2::new(rx, ry), x_axis_rotation, large_arc, sweep);
                 }
                 self.at = to;
             }
             PathSegment::ClosePath { .. } => {
-                let start = self.start;
-                self.line(start);
-                if let (false, Some(stroke)) = (self.lifted, self.strokes.last_mut()) {
-                    stroke.closed = true;
+                if self.is_down {
+                    self.path.close_path();
                 }
-                self.at = start;
-                self.lifted = true;
+                (self.at, self.is_down) = (self.start, false);
             }
         }
     }

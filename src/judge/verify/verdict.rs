@@ -12,7 +12,7 @@ pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
         Figure::Numbers(_) | Figure::Word(_) | Figure::Words(_) => None,
     };
     match (RequirementKind::named(&requirement.name), requirement.name.as_str()) {
-        (Some(kind), _) => kind.definition().rounding(value, size),
+        (Some(kind), _) => (kind.definition().rounding)(value, size),
         (None, "design.ground_angle_deg") => 180.0,
         // d, e and the coupler's offset follow from each other by square roots of small differences.
         (None, "design.coupler_x" | "design.coupler_y" | "design.d" | "design.e") => 1e4 * size,

@@ -89,7 +89,7 @@ fn signed(text: &str, figure: &Figure) -> String {
 /// Returns the relation between value and limit.
 fn relation(r: &Requirement) -> &'static str {
     match (RequirementKind::named(&r.name), &r.limit) {
-        (Some(kind), _) => kind.definition().words().relation,
+        (Some(kind), _) => kind.definition().relation,
         (None, Figure::Numbers(_)) => "in ",
         (None, _) => "",
     }
@@ -98,7 +98,7 @@ fn relation(r: &Requirement) -> &'static str {
 /// Returns the name for readers; the problem file's key if there is no word for it.
 fn label(name: &str) -> String {
     if let Some(kind) = RequirementKind::named(name) {
-        return kind.definition().words().label.to_owned();
+        return kind.definition().label.to_owned();
     }
     let plain = clean(name.strip_prefix("design.").unwrap_or(name));
     if plain.is_empty() { "a requirement".to_owned() } else { plain }

@@ -16,9 +16,3 @@ pub(super) fn check(corners: Option<[f64; 4]>) -> Result<(), Refusal> {
         _ => Ok(()),
     }
 }
-
-/// Returns the scale of the rounding of a box that holds a linkage or its motion: extremes of a motion are found by
-/// search, to the square root of the rounding.
-pub(super) fn rounding(size: f64) -> f64 {
-    1e4 * size
-}

@@ -1,30 +1,15 @@
-//! Whether the motion must stay on one branch.
+//! Requirement that the motion stays on one branch.
 
-use super::{Choice, Definition, RequireSpec, Words};
-use crate::task::Problem;
-use crate::task::spec::{OnePolicy, ProblemSpec};
+use super::{Choice, Definition};
+use crate::task::spec::OnePolicy;
 
-pub(super) struct Branch;
-
-impl Definition for Branch {
-    fn key(&self) -> &'static str {
-        "require.branch"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        problem.spec().require.branch == OnePolicy::One
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.require.branch = OnePolicy::Any;
-    }
-
-    fn choice(&self, require: &RequireSpec) -> Option<Choice> {
-        let is_any = require.branch == OnePolicy::Any;
-        Some(Choice::Word(if is_any { "any" } else { "one" }))
-    }
-
-    fn words(&self) -> Words {
-        Words { short: "branch", label: "branch", relation: "", plain: "passing no toggle" }
-    }
-}
+pub(super) const BRANCH: Definition = Definition {
+    key: "require.branch",
+    short: "branch",
+    label: "branch",
+    plain: "passing no toggle",
+    is_asked: |problem| problem.spec().require.branch == OnePolicy::One,
+    set_limits: |spec, _| spec.require.branch = OnePolicy::Any,
+    choice: |require| Some(Choice::Word(require.branch.name())),
+    ..Definition::DEFAULT
+};

@@ -1,30 +1,15 @@
-//! Whether the motion must stay on one circuit.
+//! Requirement that the motion stays on one circuit.
 
-use super::{Choice, Definition, RequireSpec, Words};
-use crate::task::Problem;
-use crate::task::spec::{OnePolicy, ProblemSpec};
+use super::{Choice, Definition};
+use crate::task::spec::OnePolicy;
 
-pub(super) struct Circuit;
-
-impl Definition for Circuit {
-    fn key(&self) -> &'static str {
-        "require.circuit"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        problem.spec().require.circuit == OnePolicy::One
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.require.circuit = OnePolicy::Any;
-    }
-
-    fn choice(&self, require: &RequireSpec) -> Option<Choice> {
-        let is_any = require.circuit == OnePolicy::Any;
-        Some(Choice::Word(if is_any { "any" } else { "one" }))
-    }
-
-    fn words(&self) -> Words {
-        Words { short: "circuit", label: "circuit", relation: "", plain: "staying on one circuit" }
-    }
-}
+pub(super) const CIRCUIT: Definition = Definition {
+    key: "require.circuit",
+    short: "circuit",
+    label: "circuit",
+    plain: "staying on one circuit",
+    is_asked: |problem| problem.spec().require.circuit == OnePolicy::One,
+    set_limits: |spec, _| spec.require.circuit = OnePolicy::Any,
+    choice: |require| Some(Choice::Word(require.circuit.name())),
+    ..Definition::DEFAULT
+};

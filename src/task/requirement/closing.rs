@@ -1,34 +1,16 @@
-//! How a target that ends where it begins is closed.
+//! Requirement on the way back to the first point of a target that ends where it begins.
 
-use super::{Choice, Definition, RequireSpec, Words};
+use super::{Choice, Definition};
 use crate::task::Problem;
-use crate::task::spec::{ClosingPolicy, ProblemSpec};
+use crate::task::spec::ClosingPolicy;
 
-pub(super) struct Closing;
-
-impl Definition for Closing {
-    fn key(&self) -> &'static str {
-        "require.closing"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        problem.has_to_turn_on()
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.require.closing = ClosingPolicy::Any;
-    }
-
-    fn choice(&self, require: &RequireSpec) -> Option<Choice> {
-        Some(Choice::Word(if require.closing.is_one_way() { "one-way" } else { "any" }))
-    }
-
-    fn words(&self) -> Words {
-        Words {
-            short: "closing",
-            label: "return to the first point",
-            relation: "",
-            plain: "returning to the first point without reversing",
-        }
-    }
-}
+pub(super) const CLOSING: Definition = Definition {
+    key: "require.closing",
+    short: "closing",
+    label: "return to the first point",
+    plain: "returning to the first point without reversing",
+    is_asked: Problem::has_to_turn_on,
+    set_limits: |spec, _| spec.require.closing = ClosingPolicy::Any,
+    choice: |require| Some(Choice::Word(if require.closing.is_one_way() { "one-way" } else { "any" })),
+    ..Definition::DEFAULT
+};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the unit of a limit is.
+/// The unit of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum LimitUnit {
@@ -45,4 +45,10 @@ impl Limit {
     pub(super) fn least(value: Option<f64>) -> Option<Vec<Limit>> {
         Some(vec![Limit { value: value?, outward: -1.0 }])
     }
+}
+
+/// Returns the scale of the rounding of extremes of a motion: they are found by search, to the square root of the
+/// rounding.
+pub(super) fn rounding_of_extremes(_: Option<f64>, size: f64) -> f64 {
+    1e4 * size
 }

@@ -31,8 +31,9 @@ use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The requirements: the keys of `[require]`, and the tolerance of the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The requirements: the keys of `[require]`, and the tolerance of the path, in the order of a record. (The bounds of the
+/// design come before the tolerance there.)
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RequirementKind {
     /// The key `require.type`.
     Type,
@@ -62,84 +63,69 @@ pub enum RequirementKind {
     Tolerance,
 }
 
-use RequirementKind::{
-    Branch, Circuit, Closing, Direction, ExtentMax, FootprintIn, LinkRatio, LongestMax, Order, PivotsIn,
-    Tolerance, Transmission, Type,
-};
-
 impl RequirementKind {
-    /// Every kind, in the order of a record; the bounds of the design come before the tolerance there.
-    pub const ALL: [RequirementKind; 13] = [
-        Type,
-        Transmission,
-        LinkRatio,
-        PivotsIn,
-        FootprintIn,
-        ExtentMax,
-        LongestMax,
-        Direction,
-        Order,
-        Branch,
-        Circuit,
-        Closing,
-        Tolerance,
-    ];
-
     /// Every kind, in the order in which conflicts name them and relaxations try them.
     pub const IN_CONFLICTS: [RequirementKind; 13] = [
-        Transmission,
-        PivotsIn,
-        FootprintIn,
-        ExtentMax,
-        LongestMax,
-        LinkRatio,
-        Tolerance,
-        Type,
-        Order,
-        Direction,
-        Circuit,
-        Branch,
-        Closing,
+        Self::Transmission,
+        Self::PivotsIn,
+        Self::FootprintIn,
+        Self::ExtentMax,
+        Self::LongestMax,
+        Self::LinkRatio,
+        Self::Tolerance,
+        Self::Type,
+        Self::Order,
+        Self::Direction,
+        Self::Circuit,
+        Self::Branch,
+        Self::Closing,
     ];
 
+    /// Returns every kind, in the order of a record.
+    pub fn all() -> [RequirementKind; 13] {
+        let mut kinds = Self::IN_CONFLICTS;
+        kinds.sort_unstable();
+        kinds
+    }
+
     /// Returns the requirement of this kind.
-    pub fn definition(self) -> &'static dyn Definition {
+    pub fn definition(self) -> &'static Definition {
         match self {
-            Type => &linkage_type::Type,
-            Transmission => &transmission::Transmission,
-            LinkRatio => &link_ratio::LinkRatio,
-            PivotsIn => &pivots_in::PivotsIn,
-            FootprintIn => &footprint_in::FootprintIn,
-            ExtentMax => &extent_max::ExtentMax,
-            LongestMax => &longest_max::LongestMax,
-            Direction => &direction::Direction,
-            Order => &order::Order,
-            Branch => &branch::Branch,
-            Circuit => &circuit::Circuit,
-            Closing => &closing::Closing,
-            Tolerance => &tolerance::Tolerance,
+            Self::Type => &linkage_type::TYPE,
+            Self::Transmission => &transmission::TRANSMISSION,
+            Self::LinkRatio => &link_ratio::LINK_RATIO,
+            Self::PivotsIn => &pivots_in::PIVOTS_IN,
+            Self::FootprintIn => &footprint_in::FOOTPRINT_IN,
+            Self::ExtentMax => &extent_max::EXTENT_MAX,
+            Self::LongestMax => &longest_max::LONGEST_MAX,
+            Self::Direction => &direction::DIRECTION,
+            Self::Order => &order::ORDER,
+            Self::Branch => &branch::BRANCH,
+            Self::Circuit => &circuit::CIRCUIT,
+            Self::Closing => &closing::CLOSING,
+            Self::Tolerance => &tolerance::TOLERANCE,
         }
     }
 
     /// Returns the kind of a requirement with this name in a record.
     pub fn named(name: &str) -> Option<RequirementKind> {
-        RequirementKind::ALL.into_iter().find(|kind| kind.name() == name)
+        Self::IN_CONFLICTS.into_iter().find(|kind| kind.name() == name)
     }
 
     /// Returns the kind with this key in a problem file.
     pub fn with_key(key: &str) -> Option<RequirementKind> {
-        RequirementKind::ALL.into_iter().find(|kind| kind.definition().key() == key)
+        Self::IN_CONFLICTS.into_iter().find(|kind| kind.definition().key == key)
     }
 
     /// Returns its name in a record: the key in its table.
     pub fn name(self) -> &'static str {
-        let key = self.definition().key();
+        let key = self.definition().key;
         key.rsplit_once('.').map_or(key, |(_, name)| name)
     }
 
     /// Returns its only limit in a problem; `None` if it has none or several.
     pub fn only_limit(self, spec: &ProblemSpec) -> Option<f64> {
-        match self.definition().limits(spec)?.as_slice() {
+        match (self.definition().limits)(spec)?.as_slice() {
             [only] => Some(only.value),
             _ => None,
         }
@@ -147,66 +133,60 @@ impl RequirementKind {
 }
 
 /// A requirement: its key with everything that a table, a message or a search without it has to know of it.
-pub trait Definition: Sync {
-    /// Returns the key in the problem file, with its table.
-    fn key(&self) -> &'static str;
-
+pub struct Definition {
+    /// The key in the problem file, with its table.
+    pub key: &'static str,
+    /// A word for a narrow column.
+    pub short: &'static str,
+    /// The head of its row in the page's table.
+    pub label: &'static str,
+    /// The relation of the value to the limit, with a blank: `at most `.
+    pub relation: &'static str,
+    /// A noun phrase for the studio.
+    pub plain: &'static str,
+    /// The lines about it in a problem file to start from.
+    pub template: &'static str,
+    /// Whether a search that finds nothing acceptable looks for starts without it.
+    pub is_left_out_in_turn: bool,
+    /// The unit of its limits.
+    pub unit: LimitUnit,
     /// Returns whether a problem asks for it.
-    fn is_asked(&self, problem: &Problem) -> bool;
-
-    /// Checks its value in a problem file.
-    ///
-    /// # Errors
-    /// The reason why the value is refused.
-    fn check(&self, _require: &RequireSpec, _timing: Option<&TimingSpec>) -> Result<(), Refusal> {
-        Ok(())
-    }
-
+    pub is_asked: fn(&Problem) -> bool,
+    /// Checks its value in a problem file; the error is the reason why the value is refused.
+    pub check: fn(&RequireSpec, Option<&TimingSpec>) -> Result<(), Refusal>,
     /// Returns its limits as numbers; `None` if the problem has none (a choice among words, a tolerance that differs
     /// from point to point).
-    fn limits(&self, _spec: &ProblemSpec) -> Option<Vec<Limit>> {
-        None
-    }
-
-    /// Puts other limits in place of its own, as many as [`Definition::limits`] gives.
-    fn set_limits(&self, _spec: &mut ProblemSpec, _limits: &[f64]) {}
-
-    /// Drops it from a problem, or loosens it as far as it goes.
-    fn drop_from(&self, spec: &mut ProblemSpec);
-
+    pub limits: fn(&ProblemSpec) -> Option<Vec<Limit>>,
+    /// Puts other limits in place of its own, as many as `limits` gives; with none, drops it from the problem or
+    /// loosens it as far as it goes.
+    pub set_limits: fn(&mut ProblemSpec, &[f64]),
     /// Returns the choice made, if it is a choice among words, with no measure of how far it is loosened.
-    fn choice(&self, _require: &RequireSpec) -> Option<Choice> {
-        None
-    }
-
-    /// Returns whether a search that finds nothing acceptable looks for starts without it.
-    fn is_left_out_in_turn(&self) -> bool {
-        false
-    }
-
-    /// Returns the unit of its limits.
-    fn unit(&self) -> LimitUnit {
-        LimitUnit::Length
-    }
-
+    pub choice: fn(&RequireSpec) -> Option<Choice>,
     /// Returns the scale of the rounding of its value (`None`: several numbers or a word) for a target of this size.
-    fn rounding(&self, _value: Option<f64>, size: f64) -> f64 {
-        size
-    }
+    pub rounding: fn(Option<f64>, f64) -> f64,
+    /// Returns the reason why a candidate with this value misses this limit; `None` if there is no sentence for it.
+    pub objection: fn(&str, &str) -> Option<String>,
+}
 
-    /// Returns the lines about it in a problem file to start from.
-    fn template(&self) -> &'static str {
-        ""
-    }
-
-    /// Returns its words in tables.
-    fn words(&self) -> Words;
-
-    /// Returns the reason why a candidate with this value misses this limit; `None` if the words of
-    /// [`Definition::words`] say it.
-    fn objection(&self, _value: &str, _limit: &str) -> Option<String> {
-        None
-    }
+impl Definition {
+    /// A requirement that no problem asks for: each definition states how it differs.
+    const DEFAULT: Definition = Definition {
+        key: "",
+        short: "",
+        label: "",
+        relation: "",
+        plain: "",
+        template: "",
+        is_left_out_in_turn: false,
+        unit: LimitUnit::Length,
+        is_asked: |_| false,
+        check: |_, _| Ok(()),
+        limits: |_| None,
+        set_limits: |_, _| {},
+        choice: |_| None,
+        rounding: |_, size| size,
+        objection: |_, _| None,
+    };
 }
 
 /// A choice among words.
@@ -216,19 +196,6 @@ pub enum Choice {
     Word(&'static str),
     /// Several words.
     Words(Vec<&'static str>),
-}
-
-/// The words of a requirement in tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Words {
-    /// A word for a narrow column.
-    pub short: &'static str,
-    /// The head of its row in the page's table.
-    pub label: &'static str,
-    /// The relation of the value to the limit, with a blank: `at most `.
-    pub relation: &'static str,
-    /// A noun phrase for the studio.
-    pub plain: &'static str,
 }
 
 /// The reason why a value of a requirement is refused, with the remedy.
@@ -369,7 +336,7 @@ impl Default for RequireSpec {
 impl From<RawRequire> for RequireSpec {
     fn from(raw: RawRequire) -> RequireSpec {
         let number = |given: Option<Number>| given.map(|number| number.0);
-        let corners = |given: Option<Corners>| given.map(|corners| corners.0.map(|number| number.0));
+        let corners = |given: Option<Corners>| given.map(|corners| corners.0);
         let mut types = raw.types.map_or(Vec::new(), |types| types.0);
         types.sort_unstable();
         types.dedup();

@@ -1,31 +1,16 @@
-//! Whether the points must be passed in their order.
+//! Requirement that the points are passed in their order.
 
-use super::{Choice, Definition, RequireSpec, Words};
+use super::{Choice, Definition};
 use crate::task::Problem;
-use crate::task::spec::{OrderPolicy, ProblemSpec};
+use crate::task::spec::OrderPolicy;
 
-pub(super) struct Order;
-
-impl Definition for Order {
-    fn key(&self) -> &'static str {
-        "require.order"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        let spec = problem.spec();
-        spec.require.order == OrderPolicy::Required && spec.task.path.timing.is_none()
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.require.order = OrderPolicy::Any;
-    }
-
-    fn choice(&self, require: &RequireSpec) -> Option<Choice> {
-        let is_any = require.order == OrderPolicy::Any;
-        Some(Choice::Word(if is_any { "any" } else { "required" }))
-    }
-
-    fn words(&self) -> Words {
-        Words { short: "order", label: "order of the points", relation: "", plain: "the order of the points" }
-    }
-}
+pub(super) const ORDER: Definition = Definition {
+    key: "require.order",
+    short: "order",
+    label: "order of the points",
+    plain: "the order of the points",
+    is_asked: |problem: &Problem| problem.order_required() && problem.spec().task.path.timing.is_none(),
+    set_limits: |spec, _| spec.require.order = OrderPolicy::Any,
+    choice: |require| Some(Choice::Word(if require.order == OrderPolicy::Any { "any" } else { "required" })),
+    ..Definition::DEFAULT
+};

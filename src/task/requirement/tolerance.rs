@@ -1,45 +1,27 @@
-//! The largest error accepted at a point, `task.path.tolerance`.
+//! Requirement on the largest error at a point, `task.path.tolerance`.
 
-use super::{Definition, Limit, Words};
-use crate::task::Problem;
+use super::{Definition, Limit};
 use crate::task::spec::ProblemSpec;
 
-pub(super) struct Tolerance;
+pub(super) const TOLERANCE: Definition = Definition {
+    key: "task.path.tolerance",
+    short: "tolerance",
+    label: "error at the worst point",
+    relation: "at most ",
+    plain: "the largest error",
+    is_asked: |problem| problem.spec().task.path.tolerance.is_some(),
+    limits,
+    set_limits: |spec, limits| {
+        let path = &mut spec.task.path;
+        path.tolerance = limits.first().map(|limit| vec![*limit; path.points.len()]);
+    },
+    objection: |value, limit| Some(format!("error {value}, tolerance {limit}")),
+    ..Definition::DEFAULT
+};
 
-impl Definition for Tolerance {
-    fn key(&self) -> &'static str {
-        "task.path.tolerance"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        problem.spec().task.path.tolerance.is_some()
-    }
-
-    fn limits(&self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
-        let each = spec.task.path.tolerance.as_ref()?;
-        let first = *each.first()?;
-        each.iter().all(|one| *one == first).then_some(first).and_then(|limit| Limit::most(Some(limit)))
-    }
-
-    fn set_limits(&self, spec: &mut ProblemSpec, limits: &[f64]) {
-        let points = spec.task.path.points.len();
-        spec.task.path.tolerance = limits.first().map(|limit| vec![*limit; points]);
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.task.path.tolerance = None;
-    }
-
-    fn words(&self) -> Words {
-        Words {
-            short: "tolerance",
-            label: "error at the worst point",
-            relation: "at most ",
-            plain: "the largest error",
-        }
-    }
-
-    fn objection(&self, value: &str, limit: &str) -> Option<String> {
-        Some(format!("error {value}, tolerance {limit}"))
-    }
+/// Returns the tolerance that every point has.
+fn limits(spec: &ProblemSpec) -> Option<Vec<Limit>> {
+    let each = spec.task.path.tolerance.as_ref()?;
+    let first = *each.first()?;
+    Limit::most(each.iter().all(|one| *one == first).then_some(first))
 }

@@ -1,8 +1,7 @@
-//! The least transmission angle min(mu, 180 - mu) over the motion.
+//! Requirement on the transmission angle: the least min(mu, 180 - mu) over the motion.
 
-use super::{Definition, Limit, LimitUnit, Refusal, RequireSpec, Words};
-use crate::task::Problem;
-use crate::task::spec::{ProblemSpec, TimingSpec};
+use super::{Definition, Limit, LimitUnit, Refusal, RequireSpec};
+use crate::task::spec::TimingSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,65 +15,32 @@ pub enum TransmissionOver {
     Used,
 }
 
-pub(super) struct Transmission;
-
-impl Definition for Transmission {
-    fn key(&self) -> &'static str {
-        "require.transmission_deg_min"
-    }
-
-    fn is_asked(&self, problem: &Problem) -> bool {
-        problem.spec().require.transmission_deg_min.is_some()
-    }
-
-    fn check(&self, require: &RequireSpec, _: Option<&TimingSpec>) -> Result<(), Refusal> {
-        match require.transmission_deg_min {
-            Some(least) if !(0.0..=90.0).contains(&least) => Refusal::because(
-                format!("transmission_deg_min = {least} is not between 0 and 90 degrees"),
-                "the angle meant is min(mu, 180 - mu): 90 is best, 30 to 40 is usual",
-            ),
-            _ => Ok(()),
-        }
-    }
-
-    fn limits(&self, spec: &ProblemSpec) -> Option<Vec<Limit>> {
-        Limit::least(spec.require.transmission_deg_min)
-    }
-
-    fn set_limits(&self, spec: &mut ProblemSpec, limits: &[f64]) {
-        spec.require.transmission_deg_min = limits.first().copied();
-    }
-
-    fn drop_from(&self, spec: &mut ProblemSpec) {
-        spec.require.transmission_deg_min = None;
-    }
-
-    fn is_left_out_in_turn(&self) -> bool {
-        true
-    }
-
-    fn unit(&self) -> LimitUnit {
-        LimitUnit::Degree
-    }
-
-    fn rounding(&self, value: Option<f64>, size: f64) -> f64 {
+pub(super) const TRANSMISSION: Definition = Definition {
+    key: "require.transmission_deg_min",
+    short: "transmission",
+    label: "worst transmission angle, °",
+    relation: "at least ",
+    plain: "the least transmission angle",
+    template: "transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam\n",
+    is_left_out_in_turn: true,
+    unit: LimitUnit::Degree,
+    is_asked: |problem| problem.spec().require.transmission_deg_min.is_some(),
+    check,
+    limits: |spec| Limit::least(spec.require.transmission_deg_min),
+    set_limits: |spec, limits| spec.require.transmission_deg_min = limits.first().copied(),
+    rounding: |value, size| {
         value.map_or(size, |value| 180.0 / value.min(180.0 - value).max(1e-5).to_radians().sin())
-    }
+    },
+    objection: |value, limit| Some(format!("worst transmission angle {value}°, at least {limit}° asked")),
+    ..Definition::DEFAULT
+};
 
-    fn template(&self) -> &'static str {
-        "transmission_deg_min = 30       # how well the coupler pushes the follower: 90 is best, below 30 it may jam\n"
-    }
-
-    fn words(&self) -> Words {
-        Words {
-            short: "transmission",
-            label: "worst transmission angle, °",
-            relation: "at least ",
-            plain: "the least transmission angle",
-        }
-    }
-
-    fn objection(&self, value: &str, limit: &str) -> Option<String> {
-        Some(format!("worst transmission angle {value}°, at least {limit}° asked"))
+fn check(require: &RequireSpec, _: Option<&TimingSpec>) -> Result<(), Refusal> {
+    match require.transmission_deg_min {
+        Some(least) if !(0.0..=90.0).contains(&least) => Refusal::because(
+            format!("transmission_deg_min = {least} is not between 0 and 90 degrees"),
+            "the angle meant is min(mu, 180 - mu): 90 is best, 30 to 40 is usual",
+        ),
+        _ => Ok(()),
     }
 }
