@@ -1,8 +1,12 @@
 //! The position kernel beside the machine's bound (one square root and one division a position) and beside a
 //! textbook solver by angles, in one run. Each is asserted to give the answer before it is timed.
 
+#[path = "../tests/common/coupler_points.rs"]
+mod coupler_points;
+
+use coupler_points::CouplerPoints;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use linkwright::internals::mechanism::four_bar::position::Kernel;
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use linkwright::internals::numbers::arithmetic::dispatch::{instruction_set, vectorised};
 use linkwright::internals::numbers::arithmetic::lane::{F64x8, Lane};

@@ -1,9 +1,12 @@
 //! The hot loops allocate nothing: counted by an allocator of this test's own.
 
 mod common;
+#[path = "common/coupler_points.rs"]
+mod coupler_points;
 
 use common::{literature, load, root};
-use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use coupler_points::CouplerPoints;
+use linkwright::internals::mechanism::four_bar::position::Kernel;
 use linkwright::internals::numbers::arithmetic::streams::stream;
 use linkwright::internals::numbers::optimise::population::{
     Individual, PopulationProblem, draw_uniform, evaluate_generation,

@@ -6,7 +6,7 @@
 use crate::judge::error::{distances_to_curve, rms};
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
-use crate::mechanism::{AssemblyMode, Complex, FourBar};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
 use crate::record::{Candidate, CurveErrorRecord, ErrorRecord, Figure, Requirement, TransmissionRecord};
 use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
@@ -50,13 +50,9 @@ pub fn assess_on_curve(
         return None;
     }
     let error = task.errors(linkage, &crank_angles, assemblies)?;
-    let n = task.len();
     let to_curve = match to_curve {
         Some(known) => known,
-        None => {
-            let found = task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?;
-            CurveErrorRecord { sum_sq: found.sum_sq, rms: rms(found.sum_sq, n), max: found.max }
-        }
+        None => task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?,
     };
     let verdict = judge(task, linkage, &crank_angles, assemblies);
     let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {
@@ -68,6 +64,7 @@ pub fn assess_on_curve(
         TransmissionOver::Cycle => linkage.transmission_over_cycle(),
         TransmissionOver::Used => verdict.motion.transmission(),
     };
+    let rms = rms(error.sum_sq, task.len());
     let mut candidate = Candidate {
         rank: 0,
         linkage: *linkage,
@@ -79,10 +76,10 @@ pub fn assess_on_curve(
                 Objective::MaxDeviation => error.deviation(task.tolerances()),
             },
             sum_sq: error.sum_sq,
-            rms: rms(error.sum_sq, n),
+            rms,
             max: error.max,
             max_at: error.max_at,
-            rms_over_size: rms(error.sum_sq, n) / task.size(),
+            rms_over_size: rms / task.size(),
             to_curve,
             to_raw: None,
         },
@@ -115,10 +112,9 @@ pub fn assess_on_curve(
 /// candidate; `None` if the target is those points themselves.
 pub fn to_raw(problem: &Problem, candidate: &Candidate) -> Option<CurveErrorRecord> {
     let raw = &problem.spec().task.path.raw.as_ref()?.points;
-    let points: Vec<Complex> = raw.iter().map(|[x, y]| Complex::new(*x, *y)).collect();
+    let points: Vec<Complex> = raw.iter().copied().map(point).collect();
     let (first, assembly) = (candidate.crank_deg.first()?, candidate.t1_at.first()?);
-    let found = distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)?;
-    Some(CurveErrorRecord { sum_sq: found.sum_sq, rms: rms(found.sum_sq, points.len()), max: found.max })
+    distances_to_curve(&points, &candidate.linkage, first.to_radians(), *assembly)
 }
 
 /// Returns the rows of the requirements and of the design's bounds, in the order of a record.

@@ -3,6 +3,7 @@
 use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
+use crate::record::CurveErrorRecord;
 use crate::task::PathTask;
 use rayon::prelude::*;
 
@@ -19,17 +20,6 @@ pub struct PathError {
     pub max: f64,
     /// The index of the first point with the largest error.
     pub max_at: usize,
-}
-
-/// Distances from the target points to the coupler curve of a circuit.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CurveError {
-    /// One distance per point.
-    pub distances: Vec<f64>,
-    /// The sum of the squared distances.
-    pub sum_sq: f64,
-    /// The largest distance.
-    pub max: f64,
 }
 
 /// Returns sqrt(sum_sq / n), the root of the mean square.
@@ -84,7 +74,7 @@ impl PathTask {
         linkage: &FourBar,
         crank_angle: f64,
         assembly: AssemblyMode,
-    ) -> Option<CurveError> {
+    ) -> Option<CurveErrorRecord> {
         distances_to_curve(self.points(), linkage, crank_angle, assembly)
     }
 }
@@ -100,7 +90,7 @@ pub fn distances_to_curve(
     linkage: &FourBar,
     crank_angle: f64,
     assembly: AssemblyMode,
-) -> Option<CurveError> {
+) -> Option<CurveErrorRecord> {
     let curve = CouplerCurve::through(linkage, crank_angle, assembly, DEFAULT_SAMPLES);
     computed(NEAREST * points.len());
     // In parallel, and summed in the order of the points: the number of threads changes no digit.
@@ -109,10 +99,8 @@ pub fn distances_to_curve(
         .with_min_len(POINTS_AT_ONCE)
         .map(|&point| Some(curve.nearest(point)?.distance))
         .collect();
-    let mut error = CurveError { distances: distances?, sum_sq: 0.0, max: 0.0 };
-    for distance in &error.distances {
-        error.sum_sq += distance * distance;
-        error.max = error.max.max(*distance);
-    }
-    Some(error)
+    let distances = distances?;
+    let sum_sq = distances.iter().map(|distance| distance * distance).sum();
+    let max = distances.into_iter().fold(0.0, f64::max);
+    Some(CurveErrorRecord { sum_sq, rms: rms(sum_sq, points.len()), max })
 }

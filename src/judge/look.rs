@@ -6,6 +6,8 @@ use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 
+/// Distance of the joints of linkages, in parts of their span, below which they are one answer.
+pub const NEAR: f64 = 0.05;
 /// The most target points at which two candidates are compared.
 const COMPARED: usize = 64;
 /// Samples of a coupler curve; one in `PROBE_EVERY` of them is compared with the other curve.

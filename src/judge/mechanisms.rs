@@ -11,7 +11,6 @@
 //! another mechanism may turn on. A class is on one circuit, in order or free of defects if one of its six is.
 
 use crate::judge::referee::judge;
-use crate::mechanism::four_bar::transmission::angle_opposite;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, cross};
 use crate::numbers::nine_point::target::{STEPS, Solution, Target};
 use crate::task::{Defect, PathTask};
@@ -144,8 +143,7 @@ impl Real {
                 break;
             };
             let apart = (joints.coupler_point - target.points[j]).norm();
-            let diagonal = linkage.diagonal(crank_angles[j]);
-            let closure = angle_opposite(diagonal, linkage.coupler(), linkage.follower()).sin();
+            let closure = linkage.angle_at_follower_pin(crank_angles[j]).sin();
             miss = miss.max(apart);
             least_sine = least_sine.min(closure);
             let limit = (PASSES * span + ROUNDED * far) / closure.max(f64::EPSILON.sqrt());

@@ -17,6 +17,7 @@
 //! on down to [`NEAR`].
 
 use super::look::Look;
+pub use super::look::NEAR;
 use super::symmetry::Symmetries;
 use crate::record::{Candidate, Figure};
 use crate::task::Defect;
@@ -24,12 +25,10 @@ use crate::task::Problem;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
 use std::borrow::Cow;
-use std::cmp::Ordering;
+use std::cmp::{Ordering, Reverse};
 
 /// Distance of curves, in parts of the target's size, below which they are one answer.
 pub const SAME_CURVE: f64 = 1e-2;
-/// Distance of the joints of linkages, in parts of their span, below which they are one answer.
-pub const NEAR: f64 = 0.05;
 /// Distances between members of a family of exact answers, in spans: the largest that gives enough of them is used.
 const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
 pub use crate::record::EXACT_MEAN_SQ as EXACT;
@@ -73,32 +72,40 @@ pub fn searched(problem: &Problem, candidate: &Candidate) -> f64 {
     error.map_or(f64::INFINITY, |error| error.objective)
 }
 
-/// The ranking key of a candidate; less is better.
-#[derive(Clone, Copy, Debug)]
+/// The ranking key of a candidate; less is better, in the order of the fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
     refused: bool,
     /// Whether requirements other than the tolerances are missed, and the largest error in parts of the tolerance.
-    missed: (bool, f64),
-    error: f64,
+    missed: (bool, i64),
+    error: i64,
     severity: usize,
     unmet: usize,
-    worst: f64,
-    size: f64,
+    worst: Reverse<i64>,
+    size: i64,
 }
 
 impl Key {
     fn of(candidate: &Candidate, floor: f64) -> Key {
         let unmet = |c: &Candidate| 1 + c.requirements.iter().filter(|r| !r.met).count();
+        let (others, part) = missed(candidate);
         Key {
             refused: !candidate.accepted,
-            missed: missed(candidate),
-            error: candidate.error.objective.max(floor),
+            missed: (others, in_order(part)),
+            error: in_order(candidate.error.objective.max(floor)),
             severity: severity(candidate),
             unmet: if candidate.accepted { 0 } else { unmet(candidate) },
-            worst: candidate.transmission_deg.worst,
-            size: size(candidate),
+            worst: Reverse(in_order(candidate.transmission_deg.worst)),
+            size: in_order(size(candidate)),
         }
     }
+}
+
+/// Returns an integer for a number: integers of this kind are in the order that [`f64::total_cmp`] gives the numbers.
+fn in_order(x: f64) -> i64 {
+    let bits = x.to_bits().cast_signed();
+    // The magnitudes of negative numbers count down.
+    if bits < 0 { bits ^ i64::MAX } else { bits }
 }
 
 /// Returns the severity of a refused candidate's defects: a toggle can be pushed through, an order be put up with;
@@ -128,34 +135,6 @@ fn missed(candidate: &Candidate) -> (bool, f64) {
         (!otherwise, part)
     })
 }
-
-impl Ord for Key {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.refused
-            .cmp(&other.refused)
-            .then_with(|| self.missed.0.cmp(&other.missed.0))
-            .then_with(|| self.missed.1.total_cmp(&other.missed.1))
-            .then_with(|| self.error.total_cmp(&other.error))
-            .then_with(|| self.severity.cmp(&other.severity))
-            .then_with(|| self.unmet.cmp(&other.unmet))
-            .then_with(|| other.worst.total_cmp(&self.worst))
-            .then_with(|| self.size.total_cmp(&other.size))
-    }
-}
-
-impl PartialOrd for Key {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl PartialEq for Key {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Key {}
 
 /// Returns the longest of the links and the coupler's side.
 pub(super) fn size(candidate: &Candidate) -> f64 {
@@ -192,17 +171,10 @@ fn chosen_but_for(
     let floor = exact_objective(problem);
     let keys: Vec<Key> = found.iter().map(|candidate| Key::of(candidate, floor)).collect();
     // Equals that differ in their last digits are ordered by these, not by the order in which they were found.
-    let numbers = |i: usize| {
-        let n = found[i].linkage.natural_coordinates();
-        let ([ax, ay], [bx, by]) = (n.crank_pivot, n.follower_pivot);
-        [ax, ay, bx, by, n.crank, n.coupler, n.follower, n.crank_side, n.follower_side]
+    let numbers = |i: usize| found[i].linkage.natural_coordinates().numbers().map(in_order);
+    let by_key = |&i: &usize, &j: &usize| {
+        keys[i].cmp(&keys[j]).then_with(|| numbers(i).cmp(&numbers(j))).then(i.cmp(&j))
     };
-    let by_numbers = |i: usize, j: usize| {
-        let pairs = numbers(i).into_iter().zip(numbers(j));
-        pairs.map(|(x, y)| x.total_cmp(&y)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
-    };
-    let by_key =
-        |i: &usize, j: &usize| keys[*i].cmp(&keys[*j]).then_with(|| by_numbers(*i, *j)).then(i.cmp(j));
     if wanted <= 1 {
         return (0..found.len()).min_by(by_key).into_iter().take(wanted).collect();
     }
@@ -239,7 +211,7 @@ fn chosen_but_for(
             }
         }
     };
-    let exact = order.iter().take_while(|&&i| !keys[i].refused && keys[i].error <= floor).count();
+    let exact = order.iter().take_while(|&&i| !keys[i].refused && keys[i].error <= in_order(floor)).count();
     if exact > 1 {
         for apart in APART {
             take(&order[..exact], apart);

@@ -16,8 +16,8 @@
 
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{step_along, wrapped};
-use crate::mechanism::four_bar::transmission::{TransmissionExtremes, angle_opposite};
-use crate::mechanism::{AssemblyMode, Circuit, Complex, FourBar, InputArc, InputRange, Joints, Mobility};
+use crate::mechanism::four_bar::transmission::TransmissionExtremes;
+use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Joints, OnCircuit, least_and_greatest};
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::{PathTask, Return, Timing};
@@ -31,13 +31,10 @@ const MOST_CLOSURE_SAMPLES: usize = 20_000;
 /// The part of the motion between the first and the last target point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UsedMotion {
-    linkage: FourBar,
-    mobility: Mobility,
-    circuit: Circuit,
-    /// Whether the parameter is psi of the circuit's arc (else the crank angle).
-    rocks: bool,
-    /// The parameter's range, low to high.
-    range: [f64; 2],
+    /// The linkage on the circuit of the first point.
+    pub on: OnCircuit,
+    /// The range of the circuit's parameter, low to high, at most a whole turn.
+    pub range: [f64; 2],
 }
 
 /// The referee's verdict on a motion.
@@ -68,12 +65,12 @@ pub fn judge(
     let n = task.len();
     let samples = (CLOSURE_SAMPLES * n).min(MOST_CLOSURE_SAMPLES);
     computed(n + samples);
+    let (crank_angles, assemblies) = (&crank_angles[..n], &assemblies[..n]);
     let mobility = linkage.mobility();
-    let linkage = linkage.with_assembly(assemblies[0]);
     let first = mobility.branch(crank_angles[0], assemblies[0]);
+    let on = OnCircuit { linkage: linkage.with_assembly(assemblies[0]), arc: mobility.arc(first.circuit) };
     let prescribed = matches!(task.timing(), Timing::Prescribed { .. });
-    let arc = mobility.arc(first.circuit);
-    let mut defects = Vec::new();
+    let rocks = on.arc.is_some();
 
     let mut off_circuit = Vec::new();
     let mut off_branch = Vec::new();
@@ -82,7 +79,7 @@ pub fn judge(
         let open = !linkage.position_with(crank_angles[j], assemblies[j]).is_closed();
         // A rocking crank cannot get from one turn to the next, even if the angles agree modulo a turn.
         let other_turn = prescribed
-            && arc.is_some_and(|arc| {
+            && on.arc.is_some_and(|arc| {
                 let turns = |angle: f64| ((angle - arc.offset(angle) - arc.middle) / TAU).round();
                 turns(crank_angles[j]) != turns(crank_angles[0])
             });
@@ -93,40 +90,27 @@ pub fn judge(
         }
     }
 
-    let rocks = arc.is_some();
-    let mut parameter: Vec<f64> = (0..n)
-        .map(|j| match arc {
-            None => crank_angles[j],
-            Some(arc) => arc.parameter(crank_angles[j], assemblies[j]),
-        })
-        .collect();
-    if rocks {
-        // psi is periodic: each point is reached the nearer way round from the one before it.
-        for j in 1..n {
-            parameter[j] = parameter[j - 1] + wrapped(parameter[j] - parameter[j - 1]);
-        }
-    }
+    let parameter = parameters(on.arc, crank_angles, assemblies);
     // The closing point is the first one again and does not count for the order.
     let ordered = if task.repeats_first() { n - 1 } else { n };
     let one_branch = rocks && off_branch.is_empty();
     let comes_back = task.comes_back();
     let mut to_and_fro = false;
     let course = if prescribed && !rocks {
-        let direction = if parameter[n - 1] < parameter[0] { -1.0 } else { 1.0 };
-        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        // A closed target is closed by turning on to its first point.
-        let high = if task.closed() { high.max(low + TAU) } else { high };
-        let one_way = task.closed() && comes_back != Return::Any;
-        let jumps = if one_way { Course::within_a_branch(&parameter).jumps } else { Vec::new() };
-        Course { direction, range: [low, high], jumps }
+        let mut course = Course::within_a_branch(&parameter);
+        if task.closed() {
+            // A closed target is closed by turning on to its first point.
+            course.range[1] = course.range[1].max(course.range[0] + TAU);
+        }
+        if !task.closed() || comes_back == Return::Any {
+            course.jumps.clear();
+        }
+        course
     } else if prescribed || !off_circuit.is_empty() {
-        // The hull of the parameters used; within a branch psi is monotone in the crank angle.
-        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
         to_and_fro = task.returns() && rocks && (one_branch || !off_circuit.is_empty());
-        Course { direction, range: [low, high], jumps: Vec::new() }
+        // The hull of the parameters used; within a branch psi is monotone in the crank angle.
+        let direction = if crank_angles[n - 1] < crank_angles[0] { -1.0 } else { 1.0 };
+        Course { direction, jumps: Vec::new(), ..Course::within_a_branch(&parameter) }
     } else {
         let within = one_branch.then(|| Course::within_a_branch(&parameter[..ordered]));
         match within {
@@ -157,14 +141,15 @@ pub fn judge(
     // Any part beyond a whole turn has been passed already.
     let [low, high] = course.range;
     let range = [low, high.min(low + TAU)];
-    let motion = UsedMotion { linkage, mobility, circuit: first.circuit, rocks, range };
+    let motion = UsedMotion { on, range };
 
     if off_circuit.is_empty() && off_branch.is_empty() {
-        let open = (0..=samples).any(|i| motion.joints_at(motion.blend(i, samples)).is_none());
+        let open = (0..=samples).any(|i| motion.on.joints_at(motion.blend(i, samples)).is_none());
         if open {
             off_circuit.extend(1..n);
         }
     }
+    let mut defects = Vec::new();
     if !off_circuit.is_empty() {
         defects.push(Defect::Circuit { at: off_circuit });
     }
@@ -177,6 +162,18 @@ pub fn judge(
         defects.push(Defect::to_and_fro());
     }
     Verdict { defects, direction: course.direction, to_and_fro, motion }
+}
+
+/// Returns the parameter of the circuit at each point: the crank angle, or psi of the arc on which the input rocks.
+fn parameters(arc: Option<InputArc>, crank_angles: &[f64], assemblies: &[AssemblyMode]) -> Vec<f64> {
+    let Some(arc) = arc else { return crank_angles.to_vec() };
+    let at = crank_angles.iter().zip(assemblies);
+    let mut parameter: Vec<f64> = at.map(|(angle, assembly)| arc.parameter(*angle, *assembly)).collect();
+    // psi is periodic: each point is reached the nearer way round from the one before it.
+    for j in 1..parameter.len() {
+        parameter[j] = parameter[j - 1] + wrapped(parameter[j] - parameter[j - 1]);
+    }
+    parameter
 }
 
 /// The course of a cyclic parameter through the points: its direction, range and steps back.
@@ -194,8 +191,7 @@ impl Course {
         let direction = if last < parameter[0] { -1.0 } else { 1.0 };
         let steps = parameter.windows(2).zip(1..);
         let back = steps.filter(|(w, _)| direction * (w[1] - w[0]) < -ORDER_TOLERANCE);
-        let low = parameter.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = parameter.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = least_and_greatest(parameter.iter().copied());
         Course { direction, range: [low, high], jumps: back.map(|(_, j)| j).collect() }
     }
 
@@ -227,39 +223,18 @@ impl UsedMotion {
         self.range[0] + (self.range[1] - self.range[0]) * i as f64 / of as f64
     }
 
-    /// Returns the crank angle and assembly at a parameter.
-    fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
-        match self.mobility.arc(self.circuit) {
-            Some(arc) if self.rocks => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
-            _ => (parameter, self.linkage.assembly()),
-        }
-    }
-
-    fn joints_at(&self, parameter: f64) -> Option<Joints> {
-        let (crank_angle, assembly) = self.position_at(parameter);
-        self.linkage.position_with(crank_angle, assembly).joints()
-    }
-
-    /// Returns the joints at `n` + 1 evenly spaced positions of the motion, without open ones.
-    pub fn joints(&self, n: usize) -> Vec<Joints> {
-        (0..=n).filter_map(|i| self.joints_at(self.blend(i, n))).collect()
-    }
-
     /// Returns the extremes of the transmission angle over the motion, in closed form: they lie at its ends, where the
     /// crank lies along the ground, or at a toggle.
     pub fn transmission(&self) -> TransmissionExtremes {
         let [low, high] = self.range;
-        let ground = self.linkage.ground_angle();
-        let extreme: Vec<f64> =
-            if self.rocks { vec![0.0, FRAC_PI_2, PI, -FRAC_PI_2] } else { vec![ground, ground + PI] };
-        let inside = extreme.into_iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
-        let (mut least, mut greatest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for t in [low, high].into_iter().chain(inside) {
-            let s = self.linkage.diagonal(self.position_at(t).0);
-            (least, greatest) = (least.min(s), greatest.max(s));
+        let linkage = &self.on.linkage;
+        if self.on.arc.is_none() {
+            return linkage.transmission_over(low, high);
         }
-        let (b, c) = (self.linkage.coupler(), self.linkage.follower());
-        TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
+        let extreme = [0.0, FRAC_PI_2, PI, -FRAC_PI_2].into_iter();
+        let inside = extreme.map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
+        let all = [low, high].into_iter().chain(inside);
+        linkage.transmission_among(all.map(|t| self.on.position_at(t).0))
     }
 
     /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by
@@ -271,13 +246,13 @@ impl UsedMotion {
         let mut hold = |p: Complex| {
             bounds = [bounds[0].min(p.re), bounds[1].min(p.im), bounds[2].max(p.re), bounds[3].max(p.im)];
         };
-        hold(self.linkage.crank_pivot());
-        hold(self.linkage.follower_pivot());
+        hold(self.on.linkage.crank_pivot());
+        hold(self.on.linkage.follower_pivot());
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
         // Each sample once, for all joints and directions.
         let [low, high] = self.range;
         let sampled: Vec<Option<Joints>> =
-            (0..=SAMPLES).map(|i| self.joints_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
+            (0..=SAMPLES).map(|i| self.on.joints_at(self.blend(i, SAMPLES).clamp(low, high))).collect();
         for joint in 0..3 {
             for direction in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
                 let toward = |joints: &Joints| {
@@ -285,7 +260,7 @@ impl UsedMotion {
                     direction.0 * p.re + direction.1 * p.im
                 };
                 let reach = |t: f64| {
-                    let joints = self.joints_at(t.clamp(self.range[0], self.range[1]));
+                    let joints = self.on.joints_at(t.clamp(self.range[0], self.range[1]));
                     joints.as_ref().map_or(f64::NEG_INFINITY, toward)
                 };
                 // Of equal ones the last is taken.
@@ -304,33 +279,12 @@ impl UsedMotion {
                     }
                 }
                 for t in [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])] {
-                    if let Some(j) = self.joints_at(t) {
+                    if let Some(j) = self.on.joints_at(t) {
                         hold(joints_of(&j)[joint]);
                     }
                 }
             }
         }
         bounds
-    }
-
-    /// Returns whether the input turns fully.
-    pub fn input_turns_fully(&self) -> bool {
-        self.mobility.input == InputRange::Full
-    }
-
-    /// Returns the linkage, in the assembly of the first point.
-    pub fn linkage(&self) -> &FourBar {
-        &self.linkage
-    }
-
-    /// Returns the arc on which the crank rocks, whose psi is then the parameter; `None` if the parameter is the crank
-    /// angle.
-    pub fn arc(&self) -> Option<InputArc> {
-        self.mobility.arc(self.circuit).filter(|_| self.rocks)
-    }
-
-    /// Returns the parameter's range, low to high, at most a whole turn.
-    pub fn range(&self) -> [f64; 2] {
-        self.range
     }
 }

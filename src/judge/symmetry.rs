@@ -11,8 +11,7 @@
 //!
 //! with z_j = T_j - T, y_j = T_pi(j) - T.
 
-use super::look::Look;
-use super::rank::NEAR;
+use super::look::{Look, NEAR};
 use super::unwrapped::unwrapped;
 use crate::judge::assess::assess;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, NaturalCoordinates};

@@ -3,8 +3,8 @@
 //! The figures and limits are the candidate's own, as the referee judged them: the same record always has the
 //! same warnings.
 
-use crate::mechanism::LinkageType;
 use crate::mechanism::four_bar::transmission::{ForceTransmission, JAM_UNDER_LOAD_DEG};
+use crate::mechanism::{LinkageType, least_and_greatest};
 use crate::record::{Candidate, Figure, ON_BOUND_TEXT, Requirement, Warning, WarningKind};
 use crate::task::Problem;
 use crate::task::requirement::{LimitUnit, RequirementKind};
@@ -47,8 +47,7 @@ pub fn warnings(problem: &Problem, candidate: &Candidate) -> Vec<Warning> {
         push(WarningKind::ChangePoint, "grashof_margin", margin, least, text);
     }
     if candidate.goes_to_and_fro() {
-        let least = candidate.crank_deg.iter().copied().fold(f64::INFINITY, f64::min);
-        let greatest = candidate.crank_deg.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let [least, greatest] = least_and_greatest(candidate.crank_deg.iter().copied());
         let swept = greatest - least;
         let text = format!(
             "the crank goes to and fro over {} deg: the motion returns to its first point back through all others",

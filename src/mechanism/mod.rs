@@ -18,12 +18,12 @@ pub mod four_bar;
 pub mod plates;
 mod unit;
 
-pub use crate::numbers::arithmetic::{Complex, cross, dot, length, point, turned, xy};
+pub use crate::numbers::arithmetic::{Complex, cross, dot, least_and_greatest, length, point, turned, xy};
 pub use any::Linkage;
 pub use chain::{Chain, ChainBuilder};
 pub use four_bar::{
     AssemblyMode, Branch, Circuit, CouplerCurve, CouplerSide, FLAT_TOLERANCE, FourBar, InputArc, InputRange,
-    Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, Position, Toggle,
-    VectorLoop,
+    Joints, LinkageError, LinkageType, MAX_MAGNITUDE, Mobility, NaturalCoordinates, OnCircuit, Position,
+    Toggle, VectorLoop,
 };
 pub use unit::Unit;

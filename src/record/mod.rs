@@ -352,6 +352,17 @@ pub enum Figure {
     Words(Vec<String>),
 }
 
+impl Figure {
+    /// Returns the number or numbers; none for words.
+    pub fn numbers(&self) -> &[f64] {
+        match self {
+            Figure::Number(number) => std::slice::from_ref(number),
+            Figure::Numbers(numbers) => numbers,
+            Figure::Word(_) | Figure::Words(_) => &[],
+        }
+    }
+}
+
 impl std::fmt::Display for Figure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let list = |items: Vec<String>| format!("[{}]", items.join(", "));

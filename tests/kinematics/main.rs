@@ -2,6 +2,8 @@
 
 mod chain;
 mod cognates;
+#[path = "../common/coupler_points.rs"]
+mod coupler_points;
 mod gradients;
 mod literature;
 mod loop_closure;

@@ -1,9 +1,10 @@
 //! Positions: what holds for every four-bar, and what happens at the edges.
 
+use crate::coupler_points::CouplerPoints;
 use crate::reference::{
     any_linkage, cases, closed_position, joints_by_angles, linkage, nine, rounding, scale,
 };
-use linkwright::internals::mechanism::four_bar::position::{CouplerPoints, Kernel};
+use linkwright::internals::mechanism::four_bar::position::Kernel;
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, Position,
     VectorLoop, cross,

@@ -7,6 +7,7 @@ use linkwright::internals::judge::practicality::layers::{FREE_PAIRS, clear, laye
 use linkwright::internals::judge::practicality::sensitivity::{
     At, Crank, Sensitivity, along, is_flat, sensitivity,
 };
+use linkwright::internals::judge::practicality::sweep::Stretch;
 use linkwright::internals::judge::practicality::{Build, Pin, Sweep};
 use linkwright::internals::mechanism::plates::{Edge, Link, Plate};
 use linkwright::internals::mechanism::{
@@ -66,6 +67,18 @@ fn outline(plate: &Plate, step: f64) -> Vec<Complex> {
     points
 }
 
+/// `n` + 1 positions of each stretch, evenly spaced in the crank angle: crank angle, assembly mode, joints.
+fn positions(sweep: &Sweep, n: usize) -> Vec<(f64, AssemblyMode, Joints)> {
+    let of = |stretch: &Stretch| {
+        let Stretch { from, to, assembly } = *stretch;
+        (0..=n).filter_map(move |i| {
+            let angle = from + (to - from) * i as f64 / n as f64;
+            Some((angle, assembly, sweep.linkage.position_with(angle, assembly).joints()?))
+        })
+    };
+    sweep.stretches.iter().flat_map(of).collect()
+}
+
 /// How far the outline of one plate stays from another plate at a position; 0 or less where it enters it.
 fn entered(l: &FourBar, points: &[Complex], plate: &Plate, other: &Plate, j: &Joints) -> f64 {
     let at = plate.placement(l, j);
@@ -89,7 +102,7 @@ fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_forc
     for (i, (l, sweep, build)) in swept(41, 250).enumerate() {
         let pieces = Workpieces::new(&sweep, build);
         let plates = Plate::all(&l, build.plate_radius);
-        let positions = sweep.positions(600);
+        let positions = positions(&sweep, 600);
         let step = 0.5 * build.plate_radius;
         for [one, other] in FREE_PAIRS {
             let closest = pieces.between_plates(one, other).expect("it closes");
@@ -128,7 +141,7 @@ fn plates_that_share_a_plane_are_those_whose_outlines_never_meet_in_a_brute_forc
 fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
     for (i, (l, sweep, build)) in swept(42, 100).enumerate() {
         let found = layering(&sweep, build).expect("it closes");
-        let positions = sweep.positions(2000);
+        let positions = positions(&sweep, 2000);
         let size = l.longest_link();
         let pieces = Workpieces::new(&sweep, build);
         let least = |of: &dyn Fn(&Joints) -> f64| {
@@ -192,7 +205,7 @@ fn pivots_are_as_near_as_the_closed_forms_say() {
 
 /// The layers of a stacking by the brute-force distances; [ground, crank, coupler, follower].
 fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usize> {
-    let positions = sweep.positions(2000);
+    let positions = positions(sweep, 2000);
     let least =
         |of: &dyn Fn(&Joints) -> f64| positions.iter().map(|(_, _, j)| of(j)).fold(f64::INFINITY, f64::min);
     let pieces = Workpieces::new(sweep, build);
@@ -472,10 +485,7 @@ fn a_motion_past_a_toggle_is_split_there() {
         let sweep = Sweep::of_linkage(&l).expect("joined");
         let both = Sweep {
             stretches: [AssemblyMode::Plus, AssemblyMode::Minus]
-                .map(|assembly| linkwright::internals::judge::practicality::sweep::Stretch {
-                    assembly,
-                    ..sweep.stretches[0]
-                })
+                .map(|assembly| Stretch { assembly, ..sweep.stretches[0] })
                 .to_vec(),
             ..sweep.clone()
         };

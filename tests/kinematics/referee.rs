@@ -6,10 +6,9 @@
 mod closed_paths;
 
 use crate::reference::{Draws, Flooded, linkage, position, transmission};
-use linkwright::internals::judge::referee::Verdict;
-use linkwright::internals::judge::referee::judge;
+use linkwright::internals::judge::referee::{UsedMotion, Verdict, judge};
 use linkwright::internals::mechanism::{
-    AssemblyMode, Complex, CouplerSide, FourBar, InputRange, LinkageType, NaturalCoordinates,
+    AssemblyMode, Complex, CouplerSide, FourBar, InputRange, Joints, LinkageType, NaturalCoordinates,
 };
 use linkwright::internals::task::{AngleOffset, Defect, PathOptions, PathTask, Timing};
 use std::f64::consts::{PI, TAU};
@@ -434,6 +433,12 @@ fn a_target_that_ends_where_it_began_uses_the_whole_turn() {
     );
 }
 
+/// The joints at `n` + 1 evenly spaced positions of a motion, without open ones.
+fn joints(motion: &UsedMotion, n: usize) -> Vec<Joints> {
+    let [low, high] = motion.range;
+    (0..=n).filter_map(|i| motion.on.joints_at(low + (high - low) * i as f64 / n as f64)).collect()
+}
+
 #[test]
 fn the_footprint_holds_every_joint_of_the_motion_and_no_more() {
     let mut draws = Draws(23);
@@ -449,7 +454,7 @@ fn the_footprint_holds_every_joint_of_the_motion_and_no_more() {
             };
             hold(l.crank_pivot());
             hold(l.follower_pivot());
-            let joints = v.motion.joints(5000);
+            let joints = joints(&v.motion, 5000);
             assert!(joints.len() > 4990, "{l}: closed all along");
             for j in joints {
                 [j.crank_pin, j.follower_pin, j.coupler_point].into_iter().for_each(&mut hold);
@@ -474,8 +479,8 @@ fn the_motion_passes_the_points_and_stays_between_them() {
         let chosen = places(&mut draws, &flooded, 1);
         let v = verdict(&free(chosen.len()), &l, &chosen);
         assert!(!names(&v).contains(&"order"), "{l}");
-        assert_eq!(v.motion.input_turns_fully(), l.mobility().input_turns_fully());
-        let joints = v.motion.joints(20_000);
+        assert_eq!(v.motion.on.arc.is_none(), l.mobility().input_turns_fully());
+        let joints = joints(&v.motion, 20_000);
         // 20,000 steps of at most a turn, with P at most three times as fast as the longest reach suggests,
         // and near a toggle as the root of the step.
         for &(phi, t1) in &chosen {

@@ -77,7 +77,7 @@ impl Sweep {
             InputRange::Full => return Some(Sweep::turn(linkage, linkage.ground_angle())),
             InputRange::One(arc) | InputRange::Two([arc, _]) => arc,
         };
-        let [from, to] = [arc.middle - arc.half_width, arc.middle + arc.half_width];
+        let [from, to] = arc.ends();
         let assembly = linkage.assembly();
         Some(Sweep { linkage: *linkage, stretches: vec![Stretch { from, to, assembly }], full_turn: false })
     }
@@ -85,10 +85,10 @@ impl Sweep {
     /// Returns the motion through the points of a task. With `cycle` it is all of the circuit: the full turn, or both
     /// branches of a rocking crank.
     pub fn of_motion(motion: &UsedMotion, cycle: bool) -> Self {
-        let linkage = *motion.linkage();
-        let [low, high] = motion.range();
+        let linkage = motion.on.linkage;
+        let [low, high] = motion.range;
         let high = if cycle { low + TAU } else { high };
-        match motion.arc() {
+        match motion.on.arc {
             None if high - low >= TAU => Sweep::turn(&linkage, low),
             None => {
                 let stretch = Stretch { from: low, to: high, assembly: linkage.assembly() };
@@ -139,19 +139,6 @@ impl Sweep {
             change = change.max((delta(extreme) - here).abs());
         }
         change
-    }
-
-    /// Computes `n` + 1 positions of each stretch, evenly spaced in the crank angle: crank angle, assembly mode,
-    /// joints.
-    pub fn positions(&self, n: usize) -> Vec<(f64, AssemblyMode, Joints)> {
-        let of = |stretch: &Stretch| {
-            let Stretch { from, to, assembly } = *stretch;
-            (0..=n).filter_map(move |i| {
-                let angle = from + (to - from) * i as f64 / n.max(1) as f64;
-                Some((angle, assembly, self.linkage.position_with(angle, assembly).joints()?))
-            })
-        };
-        self.stretches.iter().flat_map(of).collect()
     }
 }
 

@@ -3,25 +3,27 @@
 //! | module | holds |
 //! |---|---|
 //! | [`certificate`] | verification of a recorded certificate: the statements that follow from its bounds, and the bounds recomputed box by box |
+//! | [`comparison`] | comparison of recorded values with recomputed ones |
 //! | [`coverage`] | coverage of the verification of a record: each key is recomputed, held to limits, or not checked |
 //! | [`exact`] | verification of exact linkages: the census adds up, and each linkage passes the points, has the stated abilities, and is proved again |
 //! | [`extras`] | verification of the other parts of a record: warnings, alternatives, the family, the buildable candidate |
 //! | [`searched`] | verification of a record's statements about its search |
 //! | [`mod@verdict`] | verdicts on requirements, compared exactly except for those whose figure lies within rounding of the limit |
 
-use crate::judge::assess::{assess, to_raw};
+use crate::judge::assess::to_raw;
 use crate::judge::costs::{marginal, weighted_rms};
 use crate::judge::loosen::Demand;
 use crate::judge::rank::{compare, exact_objective};
+use crate::mechanism::FourBar;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::digest::{ProblemError, digest};
-use crate::record::{Candidate, Cost, FORMAT, Figure, Record};
+use crate::record::{Candidate, Cost, CurveErrorRecord, FORMAT, Record};
 use crate::task::Problem;
 use crate::task::spec::Objective;
 use crate::task::{AngleOffset, Timing};
 
 mod certificate;
+mod comparison;
 mod coverage;
 mod exact;
 mod extras;
@@ -29,13 +31,11 @@ mod searched;
 mod verdict;
 
 pub use certificate::verify_certificate;
+use comparison::Comparison;
+pub use comparison::{ABSOLUTE, RELATIVE};
 pub use coverage::{Checked, UNCHECKED, checked, unchecked};
-use verdict::{is_doubtful, scale, verdict};
+use verdict::{is_doubtful, scale};
 
-/// The relative part of the tolerance of figures ..
-pub const RELATIVE: f64 = 1e-9;
-/// .. and its absolute part, as a share of the target's size (for sums of squares, of its square).
-pub const ABSOLUTE: f64 = 1e-12;
 /// The tolerance of crank angles of prescribed timing, in degrees.
 const TIMING_DEG: f64 = 1e-9;
 /// The relative tolerance of the rates of costs: they are solutions of small systems of equations.
@@ -73,331 +73,272 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, ProblemError> {
     let spec = &record.problem.resolved;
     let problem = Problem::new(spec.clone())?;
     let mut mismatches = Vec::new();
-    let mut whole = |what: &str, recorded: String, found: String| {
-        if recorded != found {
-            mismatches.push(Mismatch { rank: None, what: what.into(), recorded, found });
-        }
-    };
-    whole("format", record.format.to_string(), FORMAT.to_string());
-    whole("problem.digest", record.problem.digest.clone(), digest(spec)?);
-    whole("seed", record.seed.to_string(), spec.solve.seed.to_string());
-    whole("tool.name", record.tool.name.clone(), env!("CARGO_PKG_NAME").to_string());
-    whole("method.asked", record.method.asked.name().into(), spec.solve.method.name().into());
+    let mut whole = Comparison::new(&problem, &mut mismatches);
+    whole.same("format", record.format, FORMAT);
+    whole.same("problem.digest", &record.problem.digest, &digest(spec)?);
+    whole.same("seed", record.seed, spec.solve.seed);
+    whole.same("tool.name", record.tool.name.as_str(), env!("CARGO_PKG_NAME"));
+    whole.same("method.asked", record.method.asked.name(), spec.solve.method.name());
     for (i, candidate) in record.candidates.iter().enumerate() {
-        whole("rank", candidate.rank.to_string(), (i + 1).to_string());
+        whole.same("rank", candidate.rank, i + 1);
     }
     for pair in record.candidates.windows(2) {
         if compare(&problem, &pair[0], &pair[1]).is_gt() {
+            let [first, second] = [pair[0].rank, pair[1].rank];
             let names = |a: usize, b: usize| format!("{a} before {b}");
-            whole("the order of ranks", names(pair[0].rank, pair[1].rank), names(pair[1].rank, pair[0].rank));
+            whole.same("the order of ranks", names(first, second), names(second, first));
         }
     }
-    searched::searched(&problem, record, &mut whole);
-    explanation(record, &problem, &mut whole);
-    digitised(&problem, &mut whole);
+    whole.search(record);
+    whole.explanation(record);
+    whole.digitised();
     for candidate in &record.candidates {
-        let mut against = Against { rank: candidate.rank, mismatches: &mut mismatches };
-        against.candidate(&problem, candidate);
+        whole.of_candidate(candidate.rank).candidate(candidate);
     }
-    extras::extras(&problem, record, &mut mismatches);
-    exact::exact(&problem, record, &mut mismatches);
-    certificate::stated(record, &mut mismatches);
+    whole.extras(record);
+    whole.exact(record);
+    whole.certificate(record);
     Ok(mismatches)
 }
 
 /// Recomputes the figures and verdicts of one candidate of a problem; an empty list if they are true.
 pub fn verify_candidate(problem: &Problem, candidate: &Candidate) -> Vec<Mismatch> {
     let mut mismatches = Vec::new();
-    Against { rank: candidate.rank, mismatches: &mut mismatches }.candidate(problem, candidate);
+    Comparison::new(problem, &mut mismatches).of_candidate(candidate.rank).candidate(candidate);
     mismatches
 }
 
-/// Checks that the target's points are the raw points after smoothing and resampling.
-fn digitised(problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
-    let path = &problem.spec().task.path;
-    let Some(raw) = &path.raw else { return };
-    let found = raw.target(path.closed);
-    let count = |points: &[[f64; 2]]| format!("{} points", points.len());
-    if found.len() != path.points.len() {
-        return differ("problem.resolved.task.path.points", count(&path.points), count(&found));
+impl Comparison<'_> {
+    /// Checks that the target's points are the raw points after smoothing and resampling.
+    fn digitised(&mut self) {
+        const POINTS: &str = "problem.resolved.task.path.points";
+        let path = &self.problem.spec().task.path;
+        let Some(raw) = &path.raw else { return };
+        let found = raw.target(path.closed);
+        let count = |points: &[[f64; 2]]| format!("{} points", points.len());
+        if found.len() != path.points.len() {
+            return self.differ(POINTS, count(&path.points), count(&found));
+        }
+        let size = self.problem.task().size();
+        let reach = path.points.iter().flatten().fold(size, |reach, v| reach.max(v.abs()));
+        let apart = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]);
+        let worst = path.points.iter().zip(&found).map(apart).fold(0.0, f64::max);
+        if worst > RELATIVE * reach {
+            let found = format!("up to {worst:e} away from them");
+            self.differ(POINTS, "the raw points, smoothed and resampled", found);
+        }
     }
-    let reach = path.points.iter().flatten().fold(problem.task().size(), |reach, v| reach.max(v.abs()));
-    let apart = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).hypot(p[1] - q[1]);
-    let worst = path.points.iter().zip(&found).map(apart).fold(0.0, f64::max);
-    if worst > RELATIVE * reach {
-        let recorded = "the raw points, smoothed and resampled".into();
-        differ("problem.resolved.task.path.points", recorded, format!("up to {worst:e} away from them"));
-    }
-}
 
-/// Checks that a conflict and its relaxations are recorded only if no candidate is acceptable, and that they describe
-/// the problem as it is. (Whether each relaxation helps takes a search of its own: run the problem with it.)
-fn explanation(record: &Record, problem: &Problem, differ: &mut dyn FnMut(&str, String, String)) {
-    let explains = record.conflict.is_some() || !record.relaxations.is_empty();
-    if explains && record.candidates.iter().any(|c| c.accepted) {
-        let recorded = "something that conflicts".into();
-        differ("conflict", recorded, "nothing: there is an accepted candidate".into());
-    }
-    let of = |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key() == key);
-    if let Some(conflict) = &record.conflict {
-        for (i, key) in conflict.among.iter().enumerate() {
-            if of(key).is_none() {
-                differ("conflict.among", key.clone(), "no demand of the problem".into());
-            } else if conflict.among[..i].contains(key) {
-                differ("conflict.among", format!("{key} twice"), "each demand once".into());
+    /// Checks that a conflict and its relaxations are recorded only if no candidate is acceptable, and that they
+    /// describe the problem as it is. (Whether each relaxation helps takes a search of its own: run the problem with
+    /// it.)
+    fn explanation(&mut self, record: &Record) {
+        let explains = record.conflict.is_some() || !record.relaxations.is_empty();
+        if explains && record.candidates.iter().any(|c| c.accepted) {
+            self.differ("conflict", "something that conflicts", "nothing: there is an accepted candidate");
+        }
+        let problem = self.problem;
+        let of = |key: &str| Demand::of(problem).into_iter().find(|demand| demand.key() == key);
+        if let Some(conflict) = &record.conflict {
+            for (i, key) in conflict.among.iter().enumerate() {
+                if of(key).is_none() {
+                    self.differ("conflict.among", key, "no demand of the problem");
+                } else if conflict.among[..i].contains(key) {
+                    self.differ("conflict.among", format!("{key} twice"), "each demand once");
+                }
+            }
+            if conflict.among.is_empty() {
+                self.differ("conflict.among", "nothing", "one demand at least");
             }
         }
-        if conflict.among.is_empty() {
-            differ("conflict.among", "nothing".into(), "one demand at least".into());
-        }
-    }
-    for relaxation in &record.relaxations {
-        let found = (relaxation.sum_sq / problem.task().len() as f64).sqrt();
-        if (relaxation.rms - found).abs() > RELATIVE * found {
-            differ("relaxations.rms", format!("{:e}", relaxation.rms), format!("{found:e}"));
-        }
-        if relaxation.set.is_empty() {
-            differ("relaxations.set", "nothing".into(), "one change at least".into());
-        }
-        for change in &relaxation.set {
-            let from = of(&change.key).and_then(|demand| demand.typed(problem.spec()));
-            if from.as_ref() != Some(&change.from) {
-                let found = from.map_or("no demand of the problem".into(), |from| from.to_string());
-                differ(&format!("relaxations.{}.from", change.key), change.from.to_string(), found);
-            } else if let Some(demand) = of(&change.key)
-                && !demand.is_no_tighter(problem.spec(), &change.to)
-            {
-                let found = format!("not a value that leaves more room than {}", change.from);
-                differ(&format!("relaxations.{}.to", change.key), change.to.to_string(), found);
+        for relaxation in &record.relaxations {
+            let found = (relaxation.sum_sq / problem.task().len() as f64).sqrt();
+            if (relaxation.rms - found).abs() > RELATIVE * found {
+                self.differ("relaxations.rms", format!("{:e}", relaxation.rms), format!("{found:e}"));
+            }
+            if relaxation.set.is_empty() {
+                self.differ("relaxations.set", "nothing", "one change at least");
+            }
+            for change in &relaxation.set {
+                let mut set = self.under(&format!("relaxations.{}.", change.key));
+                let demand = of(&change.key);
+                let from = demand.and_then(|demand| demand.typed(problem.spec()));
+                if from.as_ref() != Some(&change.from) {
+                    let found = from.map_or("no demand of the problem".into(), |from| from.to_string());
+                    set.differ("from", &change.from, found);
+                } else if demand.is_some_and(|demand| !demand.is_no_tighter(problem.spec(), &change.to)) {
+                    let found = format!("not a value that leaves more room than {}", change.from);
+                    set.differ("to", &change.to, found);
+                }
             }
         }
     }
-}
 
-struct Against<'a> {
-    rank: usize,
-    mismatches: &'a mut Vec<Mismatch>,
-}
-
-impl Against<'_> {
-    fn differ(&mut self, what: &str, recorded: String, found: String) {
-        self.mismatches.push(Mismatch { rank: Some(self.rank), what: what.into(), recorded, found });
-    }
-
-    fn number(&mut self, what: &str, recorded: f64, found: f64, scale: f64) {
-        let near = (recorded - found).abs() <= RELATIVE * found.abs() + ABSOLUTE * scale;
-        if !(near || recorded == found) {
-            self.differ(what, format!("{recorded:e}"), format!("{found:e}"));
-        }
-    }
-
-    fn candidate(&mut self, problem: &Problem, recorded: &Candidate) {
-        let n = problem.task().len();
-        if recorded.crank_deg.len() != n || recorded.t1_at.len() != n {
-            let has = format!("{} and {}", recorded.crank_deg.len(), recorded.t1_at.len());
-            self.differ("the number of crank_deg and t1_at", has, format!("{n} points"));
-            return;
-        }
-        let found = assess(problem, &recorded.linkage, &recorded.crank_deg, &recorded.t1_at);
-        let Some(found) = found else {
-            self.differ("the linkage", "closed at every point".into(), "open at one of them".into());
-            return;
+    /// Checks every figure and verdict of a candidate.
+    fn candidate(&mut self, recorded: &Candidate) {
+        let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
+        let Some(found) = self.judged(at, "open at one of them") else { return };
+        self.errors(recorded, &found);
+        self.number(
+            "grashof_margin",
+            recorded.grashof_margin,
+            found.grashof_margin,
+            self.problem.task().size(),
+        );
+        self.number("link_ratio", recorded.link_ratio, found.link_ratio, 1.0);
+        let (r, f) = (&recorded.transmission_deg, &found.transmission_deg);
+        self.transmission("transmission_deg.min", r.min, f.min);
+        self.transmission("transmission_deg.max", r.max, f.max);
+        self.transmission("transmission_deg.worst", r.worst, f.worst);
+        self.alike("transmission_deg.over", &r.over, &f.over);
+        self.same("type", recorded.linkage_type, found.linkage_type);
+        let defects = |c: &Candidate| {
+            let list: Vec<String> =
+                c.defects.iter().map(|d| format!("{} at {:?}", d.name(), d.at())).collect();
+            if list.is_empty() { "none".to_string() } else { list.join(", ") }
         };
-        let size = problem.task().size();
-        // A sum of squares of errors near e changes by 2 e times the change of e.
-        let sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (n as f64).sqrt();
-        let raws = problem.spec().task.path.raw.as_ref().map_or(0, |raw| raw.points.len());
-        let raw_sq = |sum: f64| size * size * ABSOLUTE + 2.0 * size * sum.sqrt() * (raws as f64).sqrt();
+        self.same("defects", defects(recorded), defects(&found));
+        self.assembly(&recorded.linkage, &recorded.t1_at);
+        self.costs(recorded, &found);
+        self.timing(&recorded.linkage, &recorded.crank_deg);
+        self.requirements(recorded, &found);
+    }
+
+    fn errors(&mut self, recorded: &Candidate, found: &Candidate) {
+        let problem = self.problem;
+        let (n, size) = (problem.task().len(), problem.task().size());
         let (r, f) = (&recorded.error, &found.error);
-        let objective_scale = match problem.spec().solve.objective {
-            Objective::SumOfSquares => sq(f.objective),
-            Objective::MaxDeviation => exact_objective(problem) / ABSOLUTE,
-        };
-        self.number("error.objective", r.objective, f.objective, objective_scale);
-        self.number("error.sum_sq", r.sum_sq, f.sum_sq, sq(f.sum_sq));
+        match problem.spec().solve.objective {
+            Objective::SumOfSquares => self.sum_sq("error.objective", r.objective, f.objective, n),
+            Objective::MaxDeviation => {
+                let scale = exact_objective(problem) / ABSOLUTE;
+                self.number("error.objective", r.objective, f.objective, scale);
+            }
+        }
+        self.sum_sq("error.sum_sq", r.sum_sq, f.sum_sq, n);
         self.number("error.rms", r.rms, f.rms, size);
         self.number("error.max", r.max, f.max, size);
         self.number("error.rms_over_size", r.rms_over_size, f.rms_over_size, 1.0);
-        self.number("error.to_curve.sum_sq", r.to_curve.sum_sq, f.to_curve.sum_sq, sq(f.to_curve.sum_sq));
-        self.number("error.to_curve.rms", r.to_curve.rms, f.to_curve.rms, size);
-        self.number("error.to_curve.max", r.to_curve.max, f.to_curve.max, size);
+        self.under("error.to_curve.").curve(&r.to_curve, &f.to_curve, n);
         match (&r.to_raw, to_raw(problem, recorded)) {
             (Some(r), Some(f)) => {
-                self.number("error.to_raw.sum_sq", r.sum_sq, f.sum_sq, raw_sq(f.sum_sq));
-                self.number("error.to_raw.rms", r.rms, f.rms, size);
-                self.number("error.to_raw.max", r.max, f.max, size);
+                let raw = problem.spec().task.path.raw.as_ref().map_or(0, |raw| raw.points.len());
+                self.under("error.to_raw.").curve(r, &f, raw);
             }
-            (None, None) => {}
             (r, f) => {
                 let word = |there: bool| if there { "there" } else { "absent" };
-                self.differ("error.to_raw", word(r.is_some()).into(), word(f.is_some()).into());
+                self.same("error.to_raw", word(r.is_some()), word(f.is_some()));
             }
         }
         if r.max_at != f.max_at {
             // The largest error may be at another point with an equal error.
-            let angles = (&recorded.crank_deg, &recorded.t1_at);
-            let radians: Vec<f64> = angles.0.iter().map(|d| d.to_radians()).collect();
+            let radians: Vec<f64> = recorded.crank_deg.iter().map(|d| d.to_radians()).collect();
             let equal = problem
                 .task()
-                .errors(&recorded.linkage, &radians, angles.1)
+                .errors(&recorded.linkage, &radians, &recorded.t1_at)
                 .and_then(|e| e.structural.get(r.max_at).map(|s| s.norm()))
                 .is_some_and(|there| f.max - there <= RELATIVE * f.max + ABSOLUTE * size);
             if !equal {
-                self.differ("error.max_at", r.max_at.to_string(), f.max_at.to_string());
+                self.differ("error.max_at", r.max_at, f.max_at);
             }
         }
-        self.number("grashof_margin", recorded.grashof_margin, found.grashof_margin, size);
-        self.number("link_ratio", recorded.link_ratio, found.link_ratio, 1.0);
-        let (r, f) = (&recorded.transmission_deg, &found.transmission_deg);
-        // Near 0 and 180 degrees an angle moves as the root of the lengths' rounding.
-        for (what, r, f) in [
-            ("transmission_deg.min", r.min, f.min),
-            ("transmission_deg.max", r.max, f.max),
-            ("transmission_deg.worst", r.worst, f.worst),
-        ] {
-            let from_flat = f.min(180.0 - f).max(1e-5).to_radians().sin();
-            self.number(what, r, f, 180.0 / from_flat);
-        }
-        if r.over != f.over {
-            self.differ("transmission_deg.over", format!("{:?}", r.over), format!("{:?}", f.over));
-        }
-        if recorded.linkage_type != found.linkage_type {
-            self.differ("type", recorded.linkage_type.to_string(), found.linkage_type.to_string());
-        }
-        if recorded.defects != found.defects {
-            let names = |c: &Candidate| {
-                let list: Vec<String> =
-                    c.defects.iter().map(|d| format!("{} at {:?}", d.name(), d.at())).collect();
-                if list.is_empty() { "none".to_string() } else { list.join(", ") }
-            };
-            self.differ("defects", names(recorded), names(&found));
-        }
-        self.assembly("linkage.t1", &recorded.linkage, &recorded.t1_at);
-        self.costs(problem, recorded, &found);
-        self.timing(problem, recorded);
-        self.requirements(problem, recorded, &found);
     }
 
-    /// Checks that a linkage is recorded as it is assembled at the first point.
-    fn assembly(&mut self, what: &str, linkage: &FourBar, t1_at: &[AssemblyMode]) {
-        let sign = |t: AssemblyMode| format!("{:+}", t.sign());
-        if let Some(&first) = t1_at.first().filter(|first| **first != linkage.assembly()) {
-            self.differ(what, sign(linkage.assembly()), sign(first));
-        }
+    fn curve(&mut self, r: &CurveErrorRecord, f: &CurveErrorRecord, n: usize) {
+        let size = self.problem.task().size();
+        self.sum_sq("sum_sq", r.sum_sq, f.sum_sq, n);
+        self.number("rms", r.rms, f.rms, size);
+        self.number("max", r.max, f.max, size);
     }
 
-    fn requirements(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {
-        let size = problem.task().size();
+    fn requirements(&mut self, recorded: &Candidate, found: &Candidate) {
+        let size = self.problem.task().size();
         let names = |c: &Candidate| c.requirements.iter().map(|r| r.name.clone()).collect::<Vec<_>>();
         if names(recorded) != names(found) {
-            self.differ("the list of requirements", names(recorded).join(", "), names(found).join(", "));
-            return;
+            return self.differ(
+                "the list of requirements",
+                names(recorded).join(", "),
+                names(found).join(", "),
+            );
         }
         for (r, f) in recorded.requirements.iter().zip(&found.requirements) {
-            if r.limit != f.limit {
-                self.differ(&format!("{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
-            }
-            match (&r.value, &f.value) {
-                (Figure::Number(r_value), Figure::Number(f_value)) => {
-                    self.number(&format!("{}.value", r.name), *r_value, *f_value, scale(f, size));
+            let mut row = self.under(&r.name);
+            row.same(".limit", &r.limit, &f.limit);
+            let same_kind = std::mem::discriminant(&r.value) == std::mem::discriminant(&f.value);
+            let (r_values, f_values) = (r.value.numbers(), f.value.numbers());
+            if same_kind && !f_values.is_empty() && r_values.len() == f_values.len() {
+                for (r_value, f_value) in r_values.iter().zip(f_values) {
+                    row.number(".value", *r_value, *f_value, scale(f, size));
                 }
-                (Figure::Numbers(r_values), Figure::Numbers(f_values))
-                    if r_values.len() == f_values.len() =>
-                {
-                    for (r_value, f_value) in r_values.iter().zip(f_values) {
-                        self.number(&format!("{}.value", r.name), *r_value, *f_value, scale(f, size));
-                    }
-                }
-                (r_value, f_value) if r_value == f_value => {}
-                (r_value, f_value) => {
-                    self.differ(&format!("{}.value", r.name), r_value.to_string(), f_value.to_string());
-                }
+            } else {
+                row.same(".value", &r.value, &f.value);
             }
             if r.met != f.met && !is_doubtful(f, size) {
                 let word = |met| if met { "met" } else { "not met" };
-                self.differ(&r.name, word(r.met).into(), word(f.met).into());
+                row.differ("", word(r.met), word(f.met));
             }
         }
         // If a verdict depends on rounding, the record has to agree with itself.
         let not_met = |name: &str| recorded.requirements.iter().any(|r| r.name == name && !r.met);
-        let (_, accepted) = verdict(problem, found, &not_met);
-        if recorded.accepted != accepted {
-            self.differ("accepted", recorded.accepted.to_string(), accepted.to_string());
-        }
+        let (_, accepted) = verdict::verdict(self.problem, found, &not_met);
+        self.same("accepted", recorded.accepted, accepted);
     }
 
     /// Checks that the rates are those of the recorded linkage, and that the error without a requirement is below the
     /// error with it.
-    fn costs(&mut self, problem: &Problem, recorded: &Candidate, found: &Candidate) {
+    fn costs(&mut self, recorded: &Candidate, found: &Candidate) {
         // If a verdict depends on rounding, the recorded one decides whether there are costs to compute.
         let priced = Candidate { accepted: recorded.accepted, ..found.clone() };
-        let costs = marginal(problem, &priced);
+        let costs = marginal(self.problem, &priced);
         let names = |costs: &[Cost]| {
             let name = |c: &Cost| format!("{} {}", c.name, c.side.as_deref().unwrap_or_default());
             costs.iter().map(|c| name(c).trim().to_owned()).collect::<Vec<_>>().join(", ")
         };
         if names(&recorded.costs) != names(&costs) {
-            self.differ("the list of costs", names(&recorded.costs), names(&costs));
-            return;
+            return self.differ("the list of costs", names(&recorded.costs), names(&costs));
         }
-        let rms = weighted_rms(problem, found.error.objective);
+        let rms = weighted_rms(self.problem, found.error.objective);
         for (r, f) in recorded.costs.iter().zip(&costs) {
-            if r.limit != f.limit {
-                self.differ(&format!("costs.{}.limit", r.name), r.limit.to_string(), f.limit.to_string());
-            }
-            if r.unit_of_limit != f.unit_of_limit {
-                let words = [r, f].map(|cost| format!("{:?}", cost.unit_of_limit).to_lowercase());
-                let [r_unit, f_unit] = words;
-                self.differ(&format!("costs.{}.unit_of_limit", r.name), r_unit, f_unit);
-            }
-            let rates = (r.rms_per_unit, f.rms_per_unit);
-            let near = match rates {
+            let mut cost = self.under(&format!("costs.{}.", r.name));
+            cost.same("limit", r.limit, f.limit);
+            let unit = |cost: &Cost| format!("{:?}", cost.unit_of_limit).to_lowercase();
+            cost.same("unit_of_limit", unit(r), unit(f));
+            let near = match (r.rms_per_unit, f.rms_per_unit) {
                 (Some(r), Some(f)) => (r - f).abs() <= RATE * f.abs(),
                 (r, f) => r == f,
             };
             if !near {
                 let word = |rate: Option<f64>| rate.map_or("absent".into(), |rate| format!("{rate:e}"));
-                self.differ(&format!("costs.{}.rms_per_unit", r.name), word(rates.0), word(rates.1));
+                cost.differ("rms_per_unit", word(r.rms_per_unit), word(f.rms_per_unit));
             }
-            if r.rms_without.is_some_and(|least| !(least >= 0.0 && least <= rms * (1.0 + RATE))) {
-                let least = r.rms_without.unwrap_or_default();
-                self.differ(
-                    &format!("costs.{}.rms_without", r.name),
-                    format!("{least:e}"),
-                    format!("at most {rms:e}, the error with it"),
-                );
+            if let Some(least) = r.rms_without.filter(|least| !(0.0..=rms * (1.0 + RATE)).contains(least)) {
+                let most = format!("at most {rms:e}, the error with it");
+                cost.differ("rms_without", format!("{least:e}"), most);
             }
         }
     }
 
     /// Checks that the crank angles are the prescribed ones, in whichever direction the timing lets them run.
-    fn timing(&mut self, problem: &Problem, recorded: &Candidate) {
-        let Timing::Prescribed { offset, .. } = problem.task().timing() else { return };
-        let Some(written) = &problem.spec().task.path.timing else { return };
-        let Some((first, written_first)) = recorded.crank_deg.first().zip(written.crank_deg.first()) else {
-            return;
-        };
-        let base = match offset {
-            AngleOffset::Free => 0.0,
-            AngleOffset::Fixed => *written_first,
-            AngleOffset::Ground => written_first + recorded.linkage.ground_angle().to_degrees(),
-        };
+    fn timing(&mut self, linkage: &FourBar, crank_deg: &[f64]) {
+        let Timing::Prescribed { offset, .. } = self.problem.task().timing() else { return };
+        let Some(written) = &self.problem.spec().task.path.timing else { return };
+        let Some((first, written_first)) = crank_deg.first().zip(written.crank_deg.first()) else { return };
         let off = |direction: f64| {
-            let worst = recorded
-                .crank_deg
-                .iter()
-                .zip(&written.crank_deg)
-                .map(|(has, wants)| ((has - first) - direction * (wants - written_first)).abs());
-            worst.fold(0.0, f64::max)
+            let pairs = crank_deg.iter().zip(&written.crank_deg);
+            let off = pairs.map(|(has, wants)| ((has - first) - direction * (wants - written_first)).abs());
+            off.fold(0.0, f64::max)
         };
-        let either = *offset == AngleOffset::Free;
-        let mut worst = if either { off(1.0).min(off(-1.0)) } else { off(1.0) };
-        if *offset != AngleOffset::Free {
-            worst = worst.max(wrapped((first - base).to_radians()).to_degrees().abs());
-        }
+        let off_base = |ground: f64| {
+            off(1.0).max(wrapped((first - (written_first + ground)).to_radians()).to_degrees().abs())
+        };
+        let worst = match offset {
+            AngleOffset::Free => off(1.0).min(off(-1.0)),
+            AngleOffset::Fixed => off_base(0.0),
+            AngleOffset::Ground => off_base(linkage.ground_angle().to_degrees()),
+        };
         let slack = TIMING_DEG * (1.0 + first.abs() + written_first.abs());
         if worst > slack {
-            self.differ("crank_deg", "the prescribed angles".into(), format!("off by {worst:e} degrees"));
+            self.differ("crank_deg", "the prescribed angles", format!("off by {worst:e} degrees"));
         }
     }
 }

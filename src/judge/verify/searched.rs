@@ -1,9 +1,9 @@
 //! Verification of a record's statements about its search. Only the search itself could find them again, so they are
 //! held to limits.
 
+use super::Comparison;
 use crate::judge::rank::holds_an_exact;
-use crate::record::RELAXED;
-use crate::record::{Reason, Record};
+use crate::record::{RELAXED, Reason, Record};
 use crate::task::Problem;
 use crate::task::spec::Method;
 
@@ -14,40 +14,56 @@ const CONTINUATION: &str = "continuation";
 const REDUCED: &str = "variable-projection";
 const LEAST_SQUARES: &str = "least-squares";
 
-/// Checks the methods, evaluations, the reason of the end and the counts of repeated hits.
-pub(super) fn searched(problem: &Problem, record: &Record, whole: &mut dyn FnMut(&str, String, String)) {
-    termination(problem, record, whole);
-    let used: Vec<&str> = record.method.used.iter().map(String::as_str).collect();
-    if !can_have_run(problem, record, &used) {
-        let asked = record.method.asked.name();
-        whole("method.used", used.join(", "), format!("none of the lists that the method {asked} runs here"));
+impl Comparison<'_> {
+    /// Checks the methods, evaluations, the reason of the end and the counts of repeated hits.
+    pub(super) fn search(&mut self, record: &Record) {
+        self.termination(record);
+        let used: Vec<&str> = record.method.used.iter().map(String::as_str).collect();
+        if !can_have_run(self.problem, record, &used) {
+            let asked = record.method.asked.name();
+            let found = format!("none of the lists that the method {asked} runs here");
+            self.differ("method.used", used.join(", "), found);
+        }
+        // Snapping lists as many candidates, and spends as many evaluations, as its own request asks for.
+        let snapped = used.iter().any(|name| name.starts_with(SNAPPED));
+        if !snapped {
+            self.evaluations(record);
+        }
+        if let Some(repeats) = &record.repeats {
+            self.alike("repeats", repeats, &repeats.recomputed());
+            self.same("repeats: counts that can be", true, repeats.is_possible());
+        }
+        let (listed, asked) = (record.candidates.len(), self.problem.spec().solve.candidates);
+        if listed > asked && !snapped {
+            let found = format!("at most the {asked} that were asked for");
+            self.differ("candidates", format!("{listed} of them"), found);
+        }
     }
-    evaluations(record, &used, whole);
-    if let Some(repeats) = &record.repeats {
-        whole("repeats", format!("{repeats:?}"), format!("{:?}", repeats.recomputed()));
-        whole("repeats: counts that can be", "true".into(), repeats.is_possible().to_string());
-    }
-    let (listed, asked) = (record.candidates.len(), problem.spec().solve.candidates);
-    // Snapping lists as many candidates as its own request asks for.
-    let snapped = used.iter().any(|name| name.starts_with(SNAPPED));
-    if listed > asked && !snapped {
-        whole("candidates", format!("{listed} of them"), format!("at most the {asked} that were asked for"));
-    }
-}
 
-fn termination(problem: &Problem, record: &Record, whole: &mut dyn FnMut(&str, String, String)) {
-    let end = &record.termination;
-    let repeatable = end.reason.is_repeatable();
-    whole("termination.reproducible", end.reproducible.to_string(), repeatable.to_string());
-    if end.reason == Reason::TargetReached && !holds_an_exact(problem, &record.candidates) {
-        whole(
-            "termination.reason",
-            "target-reached".into(),
-            "not that: no accepted candidate is exact".into(),
-        );
+    fn termination(&mut self, record: &Record) {
+        let end = &record.termination;
+        self.same("termination.reproducible", end.reproducible, end.reason.is_repeatable());
+        if end.reason == Reason::TargetReached && !holds_an_exact(self.problem, &record.candidates) {
+            let found = "not that: no accepted candidate is exact";
+            self.differ("termination.reason", "target-reached", found);
+        }
+        if end.reason == Reason::TimeLimit && self.problem.spec().solve.time_limit_s.is_none() {
+            self.differ("termination.reason", "time-limit", "not that: the problem has none");
+        }
     }
-    if end.reason == Reason::TimeLimit && problem.spec().solve.time_limit_s.is_none() {
-        whole("termination.reason", "time-limit".into(), "not that: the problem has none".into());
+
+    /// Checks that the budget holds, and that each evaluation computes at least one position.
+    fn evaluations(&mut self, record: &Record) {
+        let spent = record.evaluations;
+        let budget = record.problem.resolved.solve.evaluations;
+        if spent.objective > budget {
+            let most = format!("at most {budget}, the budget");
+            self.differ("evaluations.objective", spent.objective, most);
+        }
+        if spent.positions < spent.objective {
+            let least = format!("at least {}, one for each evaluation", spent.objective);
+            self.differ("evaluations.positions", spent.positions, least);
+        }
     }
 }
 
@@ -87,22 +103,5 @@ fn can_have_run(problem: &Problem, record: &Record, used: &[&str]) -> bool {
             let timed = problem.spec().task.path.timing.is_some();
             local == [LEAST_SQUARES] || timed && (local == [REDUCED] || local == [REDUCED, LEAST_SQUARES])
         }
-    }
-}
-
-/// Checks that the budget holds, and that each evaluation computes at least one position.
-fn evaluations(record: &Record, used: &[&str], whole: &mut dyn FnMut(&str, String, String)) {
-    let spent = record.evaluations;
-    if used.iter().any(|name| name.starts_with(SNAPPED)) {
-        return;
-    }
-    let budget = record.problem.resolved.solve.evaluations;
-    if spent.objective > budget {
-        let most = format!("at most {budget}, the budget");
-        whole("evaluations.objective", spent.objective.to_string(), most);
-    }
-    if spent.positions < spent.objective {
-        let least = format!("at least {}, one for each evaluation", spent.objective);
-        whole("evaluations.positions", spent.positions.to_string(), least);
     }
 }

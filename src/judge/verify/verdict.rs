@@ -7,10 +7,7 @@ use crate::task::requirement::RequirementKind;
 
 /// Returns the scale of the rounding of a requirement's figure: the margin is [`super::ABSOLUTE`] of it.
 pub(super) fn scale(requirement: &Requirement, size: f64) -> f64 {
-    let value = match requirement.value {
-        Figure::Number(value) => Some(value),
-        Figure::Numbers(_) | Figure::Word(_) | Figure::Words(_) => None,
-    };
+    let value = if let Figure::Number(value) = requirement.value { Some(value) } else { None };
     match (RequirementKind::named(&requirement.name), requirement.name.as_str()) {
         (Some(kind), _) => (kind.definition().rounding)(value, size),
         (None, "design.ground_angle_deg") => 180.0,
@@ -29,14 +26,9 @@ pub(super) fn is_doubtful(requirement: &Requirement, size: f64) -> bool {
         let margin = super::RELATIVE * value.abs() + absolute;
         ((value - limit).abs() - turns).abs() <= margin
     };
-    match (&requirement.value, &requirement.limit) {
-        (Figure::Number(value), Figure::Number(limit)) => near(*value, *limit),
-        (Figure::Number(value), Figure::Numbers(limits)) => limits.iter().any(|l| near(*value, *l)),
-        (Figure::Numbers(values), Figure::Numbers(limits)) => {
-            values.iter().zip(limits).any(|(value, limit)| near(*value, *limit))
-        }
-        _ => false,
-    }
+    // One value is compared with every limit, several each with its own.
+    let values = requirement.value.numbers().iter().cycle();
+    values.zip(requirement.limit.numbers()).any(|(value, limit)| near(*value, *limit))
 }
 
 /// Returns the requirements that are not met, and whether the linkage is accepted. For a doubtful requirement the

@@ -4,7 +4,7 @@ use super::Status;
 use crate::mechanism::Unit;
 use crate::mechanism::chain::{ChainInput, Outcome};
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::{Chain, Complex, xy};
+use crate::mechanism::{Chain, Complex, least_and_greatest, xy};
 use serde::Serialize;
 
 /// Number of crank angles from which the input range and the traced path are found.
@@ -99,13 +99,9 @@ pub fn analyze_chain(request: &ChainRequest) -> ChainAnalysis {
     let input = chain.input(CYCLE_SAMPLES);
     let path: Vec<Complex> = chain.path(chain.trace(), CYCLE_SAMPLES).into_iter().flatten().collect();
     let stroke = (!path.is_empty()).then(|| {
-        let by = |of: fn(&Complex) -> f64, pick: fn(f64, f64) -> f64, from: f64| {
-            path.iter().map(of).fold(from, pick)
-        };
-        Stroke {
-            low: [by(|p| p.re, f64::min, f64::INFINITY), by(|p| p.im, f64::min, f64::INFINITY)],
-            high: [by(|p| p.re, f64::max, f64::NEG_INFINITY), by(|p| p.im, f64::max, f64::NEG_INFINITY)],
-        }
+        let [[x0, x1], [y0, y1]] =
+            [|p: &Complex| p.re, |p: &Complex| p.im].map(|of| least_and_greatest(path.iter().map(of)));
+        Stroke { low: [x0, y0], high: [x1, y1] }
     });
     let mut motion = chain.motion();
     let rows = request.crank_deg.iter().map(|deg| row(chain, *deg, request.input, &mut motion)).collect();

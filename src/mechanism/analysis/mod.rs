@@ -12,9 +12,7 @@ use crate::mechanism::four_bar::loop_closure::{
     Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity,
 };
 use crate::mechanism::four_bar::motion::{CrankMotion, Motion};
-use crate::mechanism::{
-    AssemblyMode, Complex, CouplerSide, FourBar, InputRange, LinkageType, NaturalCoordinates, xy,
-};
+use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, xy};
 use serde::Serialize;
 
 /// A method of position analysis.
@@ -328,12 +326,7 @@ fn row(linkage: &FourBar, crank_deg: f64, request: &Request) -> Row {
         coupler_point: xy(posture.joints.coupler_point),
         coupler_deg: posture.coupler_angle.to_degrees(),
         follower_deg: posture.follower_angle.to_degrees(),
-        transmission_deg: crate::mechanism::four_bar::transmission::angle_opposite(
-            linkage.diagonal(angle),
-            linkage.coupler(),
-            linkage.follower(),
-        )
-        .to_degrees(),
+        transmission_deg: linkage.angle_at_follower_pin(angle).to_degrees(),
     });
     let rates = motion.definite().map(|m| Rates {
         omega3_rad_s: m.coupler.speed_rad_s,
@@ -408,21 +401,13 @@ fn closed_form(
 /// Computes the mobility of a linkage, which does not depend on the crank angle.
 pub fn mobility(linkage: &FourBar) -> MobilityRecord {
     let mobility = linkage.mobility();
-    let arc = |arc: &crate::mechanism::InputArc| {
-        [(arc.middle - arc.half_width).to_degrees(), (arc.middle + arc.half_width).to_degrees()]
-    };
-    let input_arcs_deg = match &mobility.input {
-        InputRange::Full | InputRange::None => Vec::new(),
-        InputRange::One(one) => vec![arc(one)],
-        InputRange::Two(two) => two.iter().map(arc).collect(),
-    };
     let extremes = mobility.linkage_type.map(|_| linkage.transmission_over_cycle());
     let link_ratio = Some(linkage.link_ratio()).filter(|ratio| ratio.is_finite());
     MobilityRecord {
         linkage_type: mobility.linkage_type,
         grashof_margin: mobility.grashof_margin,
         input_turns_fully: mobility.input_turns_fully(),
-        input_arcs_deg,
+        input_arcs_deg: mobility.input.arcs().iter().map(|arc| arc.ends().map(f64::to_degrees)).collect(),
         toggles_deg: mobility.toggles().iter().map(|t| t.crank_angle.to_degrees()).collect(),
         circuits: mobility.circuits(),
         branches_per_circuit: mobility.branches_per_circuit(),

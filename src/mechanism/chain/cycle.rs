@@ -4,9 +4,6 @@ use super::{Chain, Outcome, PointId, Pose};
 use crate::mechanism::Complex;
 use std::f64::consts::TAU;
 
-/// Default number of samples of a full turn: 0.5 degrees apart.
-pub const DEFAULT_SAMPLES: usize = 720;
-
 /// An interval of crank angles at which every stage closes, between two angles at which one opens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainArc {

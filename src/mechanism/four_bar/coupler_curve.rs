@@ -1,10 +1,8 @@
 //! The coupler curve of a circuit: samples, length, and the distance from a point.
 //!
-//! A circuit is parametrised by tau in [0, 2 pi): the crank angle itself if the input turns fully, psi of
-//! [`InputArc`](crate::mechanism::InputArc) if it rocks (there t1 = sign cos tau, so that both branches and their toggles are
-//! passed smoothly).
+//! A circuit is parametrised by tau in [0, 2 pi) as [`OnCircuit`] defines it.
 
-use crate::mechanism::{AssemblyMode, Circuit, Complex, FourBar, Mobility, dot, length};
+use crate::mechanism::{AssemblyMode, Complex, FourBar, OnCircuit, dot, length};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::LANES;
 use std::f64::consts::TAU;
@@ -15,9 +13,7 @@ pub const DEFAULT_SAMPLES: usize = 720;
 /// The coupler curve of one circuit.
 #[derive(Clone, Debug)]
 pub struct CouplerCurve {
-    linkage: FourBar,
-    mobility: Mobility,
-    circuit: Circuit,
+    on: OnCircuit,
     /// P at tau = 2 pi i / n; `None` if the loop is open (only within rounding of a toggle).
     samples: Vec<Option<Complex>>,
     /// The samples as columns of x and y, infinitely far away if the loop is open: a loop over them becomes vector
@@ -41,14 +37,10 @@ pub struct Nearest {
 impl CouplerCurve {
     /// Samples the curve of the circuit that holds the given position, with `samples` samples (at least 8).
     pub fn through(linkage: &FourBar, crank_angle: f64, assembly: AssemblyMode, samples: usize) -> Self {
-        let mobility = linkage.mobility();
-        let circuit = mobility.branch(crank_angle, assembly).circuit;
-        let linkage = linkage.with_assembly(assembly);
-        let columns = [Vec::new(), Vec::new()];
-        let mut curve =
-            CouplerCurve { linkage, mobility, circuit, samples: Vec::new(), columns, longest_chord: 0.0 };
+        let on = OnCircuit::through(linkage, crank_angle, assembly);
         let n = samples.max(8);
-        curve.samples = (0..n).map(|i| curve.point_at(TAU * i as f64 / n as f64)).collect();
+        let samples = (0..n).map(|i| Some(on.joints_at(TAU * i as f64 / n as f64)?.coupler_point)).collect();
+        let mut curve = CouplerCurve { on, samples, columns: [Vec::new(), Vec::new()], longest_chord: 0.0 };
         let column =
             |of: fn(Complex) -> f64| curve.samples.iter().map(|p| p.map_or(f64::INFINITY, of)).collect();
         curve.columns = [column(|p| p.re), column(|p| p.im)];
@@ -58,16 +50,12 @@ impl CouplerCurve {
 
     /// Returns the crank angle and the assembly mode at a parameter of the circuit.
     pub fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
-        match self.mobility.arc(self.circuit) {
-            None => (parameter, self.linkage.assembly()),
-            Some(arc) => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
-        }
+        self.on.position_at(parameter)
     }
 
     /// Computes P at a parameter of the circuit; `None` if the loop is open.
     pub fn point_at(&self, parameter: f64) -> Option<Complex> {
-        let (crank_angle, assembly) = self.position_at(parameter);
-        self.linkage.position_with(crank_angle, assembly).joints().map(|j| j.coupler_point)
+        self.on.joints_at(parameter).map(|j| j.coupler_point)
     }
 
     /// Iterates over the sampled points in the order of the parameter.
@@ -243,6 +231,7 @@ fn nearest_of_quadratic([(t0, r0), (t1, r1), (t2, r2)]: [(f64, Complex); 3]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanism::Circuit;
     use crate::numbers::arithmetic::streams::{stream, uniform};
 
     /// Returns linkages of each type, and one near a change point.

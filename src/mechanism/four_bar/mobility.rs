@@ -13,7 +13,7 @@
 //! | rocks, non-Grashof (triple-rocker) | 1 | 2 | branch: t1 |
 //! | change point | by its input range; the circuits meet in the flat position | | |
 
-use crate::mechanism::{AssemblyMode, FourBar};
+use crate::mechanism::{AssemblyMode, FourBar, Joints};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -101,6 +101,11 @@ impl InputArc {
         }
     }
 
+    /// Returns the crank angles at the two ends.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.middle - self.half_width, self.middle + self.half_width]
+    }
+
     /// Returns the crank angle less the middle, brought to [-pi, pi].
     pub fn offset(&self, crank_angle: f64) -> f64 {
         wrapped(crank_angle - self.middle)
@@ -118,6 +123,17 @@ pub enum InputRange {
     Two([InputArc; 2]),
     /// No position: the links cannot be assembled.
     None,
+}
+
+impl InputRange {
+    /// Returns the arcs; none for the full turn, or without a position.
+    pub fn arcs(&self) -> &[InputArc] {
+        match self {
+            InputRange::One(arc) => std::slice::from_ref(arc),
+            InputRange::Two(arcs) => arcs,
+            InputRange::Full | InputRange::None => &[],
+        }
+    }
 }
 
 /// A circuit: the positions that are reached without taking the linkage apart.
@@ -143,6 +159,40 @@ pub struct Toggle {
     pub crank_angle: f64,
     /// The circuit it belongs to.
     pub circuit: Circuit,
+}
+
+/// A linkage on one of its circuits, whose positions have one parameter tau: the crank angle itself if the input turns
+/// fully, psi of the [`InputArc`] if it rocks (there t1 = sign cos tau, so that both branches and their toggles are
+/// passed smoothly).
+#[derive(Clone, Debug, PartialEq)]
+pub struct OnCircuit {
+    /// The linkage, with the assembly mode of the position that chose the circuit.
+    pub linkage: FourBar,
+    /// The arc of a rocking input.
+    pub arc: Option<InputArc>,
+}
+
+impl OnCircuit {
+    /// Returns the circuit that holds the given position.
+    pub fn through(linkage: &FourBar, crank_angle: f64, assembly: AssemblyMode) -> Self {
+        let mobility = linkage.mobility();
+        let arc = mobility.arc(mobility.branch(crank_angle, assembly).circuit);
+        OnCircuit { linkage: linkage.with_assembly(assembly), arc }
+    }
+
+    /// Returns the crank angle and the assembly mode at a parameter.
+    pub fn position_at(&self, parameter: f64) -> (f64, AssemblyMode) {
+        match self.arc {
+            None => (parameter, self.linkage.assembly()),
+            Some(arc) => (arc.crank_angle(parameter), AssemblyMode::of(parameter.cos())),
+        }
+    }
+
+    /// Computes the joints at a parameter; `None` if the loop is open.
+    pub fn joints_at(&self, parameter: f64) -> Option<Joints> {
+        let (crank_angle, assembly) = self.position_at(parameter);
+        self.linkage.position_with(crank_angle, assembly).joints()
+    }
 }
 
 /// Brings an angle to (-pi, pi].
@@ -288,11 +338,8 @@ impl Mobility {
 
     /// Returns the arc on which a circuit's input moves; `None` if it turns fully or cannot move.
     pub fn arc(&self, circuit: Circuit) -> Option<InputArc> {
-        match self.input {
-            InputRange::One(arc) => Some(arc),
-            InputRange::Two(arcs) => Some(arcs[usize::from(circuit.index.min(1))]),
-            InputRange::Full | InputRange::None => None,
-        }
+        let arcs = self.input.arcs();
+        arcs.get(usize::from(circuit.index)).or(arcs.last()).copied()
     }
 
     /// Returns the branch of a position that closes the loop.
@@ -309,14 +356,9 @@ impl Mobility {
 
     /// Returns the toggles, at each of which two branches of a circuit meet; none if the input turns fully.
     pub fn toggles(&self) -> Vec<Toggle> {
-        let of = |arc: &InputArc, index: u8| {
-            [arc.middle - arc.half_width, arc.middle + arc.half_width]
-                .map(|angle| Toggle { crank_angle: wrapped(angle), circuit: Circuit { index } })
+        let of = |(arc, index): (&InputArc, u8)| {
+            arc.ends().map(|angle| Toggle { crank_angle: wrapped(angle), circuit: Circuit { index } })
         };
-        match &self.input {
-            InputRange::Full | InputRange::None => Vec::new(),
-            InputRange::One(arc) => of(arc, 0).to_vec(),
-            InputRange::Two(arcs) => arcs.iter().zip(0..).flat_map(|(arc, i)| of(arc, i)).collect(),
-        }
+        self.input.arcs().iter().zip(0..).flat_map(of).collect()
     }
 }

@@ -37,7 +37,7 @@ pub mod position;
 pub mod transmission;
 
 pub use coupler_curve::CouplerCurve;
-pub use mobility::{Branch, Circuit, InputArc, InputRange, LinkageType, Mobility, Toggle};
+pub use mobility::{Branch, Circuit, InputArc, InputRange, LinkageType, Mobility, OnCircuit, Toggle};
 pub use position::{Joints, Position};
 
 use crate::numbers::arithmetic::{Complex, point, xy};
@@ -223,6 +223,14 @@ pub struct NaturalCoordinates {
     pub side: CouplerSide,
 }
 
+impl NaturalCoordinates {
+    /// Returns the numbers in the order Ax, Ay, Bx, By, a, b, c, d, e.
+    pub fn numbers(&self) -> [f64; 9] {
+        let ([ax, ay], [bx, by]) = (self.crank_pivot, self.follower_pivot);
+        [ax, ay, bx, by, self.crank, self.coupler, self.follower, self.crank_side, self.follower_side]
+    }
+}
+
 /// A four-bar as a vector loop (De Castro; Norton): pivots, link lengths and a polar coupler point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -261,18 +269,7 @@ impl FourBar {
     /// no triangle C-D-P exists (beyond [`FLAT_TOLERANCE`] of its perimeter).
     pub fn new(parameters: NaturalCoordinates) -> Result<Self, LinkageError> {
         let p = &parameters;
-        let numbers = [
-            ("A", p.crank_pivot[0]),
-            ("A", p.crank_pivot[1]),
-            ("B", p.follower_pivot[0]),
-            ("B", p.follower_pivot[1]),
-            ("a", p.crank),
-            ("b", p.coupler),
-            ("c", p.follower),
-            ("d", p.crank_side),
-            ("e", p.follower_side),
-        ];
-        for (key, value) in numbers {
+        for (key, value) in ["A", "A", "B", "B", "a", "b", "c", "d", "e"].into_iter().zip(p.numbers()) {
             if value.is_nan() || value.abs() > MAX_MAGNITUDE {
                 return Err(LinkageError::NotFinite { key, value });
             }
@@ -470,21 +467,8 @@ impl TryFrom<NaturalCoordinates> for FourBar {
 
 impl std::fmt::Display for FourBar {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let p = &self.parameters;
-        write!(
-            f,
-            "A ({}, {})  B ({}, {})  a {}  b {}  c {}  d {}  e {}  t1 {:+}  t2 {:+}",
-            p.crank_pivot[0],
-            p.crank_pivot[1],
-            p.follower_pivot[0],
-            p.follower_pivot[1],
-            p.crank,
-            p.coupler,
-            p.follower,
-            p.crank_side,
-            p.follower_side,
-            p.assembly.sign(),
-            p.side.sign()
-        )
+        let [ax, ay, bx, by, a, b, c, d, e] = self.parameters.numbers();
+        let (t1, t2) = (self.assembly().sign(), self.side().sign());
+        write!(f, "A ({ax}, {ay})  B ({bx}, {by})  a {a}  b {b}  c {c}  d {d}  e {e}  t1 {t1:+}  t2 {t2:+}")
     }
 }

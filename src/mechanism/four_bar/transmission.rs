@@ -5,7 +5,7 @@
 //! against it (theta = pi). So the extremes over any interval of crank angles are at its ends or at theta = 0
 //! or pi if it contains one (Alt 1932; Hall 1961).
 
-use crate::mechanism::FourBar;
+use crate::mechanism::{FourBar, least_and_greatest};
 use std::f64::consts::{PI, TAU};
 
 /// The least and the greatest transmission angle over a motion.
@@ -105,7 +105,12 @@ impl FourBar {
     /// Computes mu at a crank angle, radians; `None` if the loop is open.
     pub fn transmission_angle(&self, crank_angle: f64) -> Option<f64> {
         self.position(crank_angle).joints()?;
-        Some(angle_opposite(self.diagonal(crank_angle), self.coupler(), self.follower()))
+        Some(self.angle_at_follower_pin(crank_angle))
+    }
+
+    /// Computes mu at a crank angle, radians; the nearest flat angle, 0 or pi, if the loop is open.
+    pub(crate) fn angle_at_follower_pin(&self, crank_angle: f64) -> f64 {
+        angle_opposite(self.diagonal(crank_angle), self.coupler(), self.follower())
     }
 
     /// Computes the extremes while the crank turns fully: at |CB| = |g - a| and g + a. If the crank cannot turn fully,
@@ -116,23 +121,18 @@ impl FourBar {
     }
 
     /// Computes the extremes over the crank angles between `from` and `to` (radians, either order, any number of
-    /// turns).
+    /// turns): they lie at the ends or where the crank lies along the ground.
     pub fn transmission_over(&self, from: f64, to: f64) -> TransmissionExtremes {
-        let (low, high) = if from <= to { (from, to) } else { (to, from) };
+        let [low, high] = [from.min(to), from.max(to)];
+        let along = [self.ground_angle(), self.ground_angle() + PI];
+        let inside = along.map(|angle| low + (angle - low).rem_euclid(TAU)).into_iter();
+        self.transmission_among([low, high].into_iter().chain(inside.filter(|angle| *angle <= high)))
+    }
+
+    /// Computes the extremes among some crank angles, radians.
+    pub(crate) fn transmission_among(&self, crank_angles: impl Iterator<Item = f64>) -> TransmissionExtremes {
+        let [least, greatest] = least_and_greatest(crank_angles.map(|angle| self.diagonal(angle)));
         let (b, c) = (self.coupler(), self.follower());
-        let mut least = self.diagonal(low).min(self.diagonal(high));
-        let mut greatest = self.diagonal(low).max(self.diagonal(high));
-        let holds = |angle: f64| {
-            let first = low + (angle - low).rem_euclid(TAU);
-            first <= high
-        };
-        let ground = self.ground_angle();
-        if holds(ground) {
-            least = (self.ground() - self.crank()).abs();
-        }
-        if holds(ground + PI) {
-            greatest = self.ground() + self.crank();
-        }
         TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
     }
 }

@@ -155,12 +155,6 @@ impl Plate {
         Plate::new(self.link, self.holes.clone(), radius)
     }
 
-    /// Returns the corners of the hull of the hole centres, counter-clockwise, in the plate's own frame: one for a
-    /// point, two for a line.
-    pub fn corners(&self) -> &[Complex] {
-        &self.corners
-    }
-
     /// Computes the closed outline, counter-clockwise: each edge starts exactly where the one before ends.
     pub fn outline(&self) -> Vec<Edge> {
         outline::outline(&self.corners, self.radius)

@@ -79,7 +79,7 @@ fn outlines_are_closed_smooth_and_enclose_the_plate() {
 
 #[test]
 fn corners_leave_out_what_is_in_line_or_in_one_place() {
-    let corners: Vec<usize> = plates().iter().map(|plate| plate.corners().len()).collect();
+    let corners: Vec<usize> = plates().iter().map(|plate| plate.corners.len()).collect();
     assert_eq!(corners, [3, 3, 2, 2, 2, 2, 1, 2, 1, 3]);
     let names = |plate: &Plate| -> Vec<String> { plate.distinct_holes().into_iter().map(|h| h.0).collect() };
     assert_eq!(names(&plates()[4]), ["CP", "D"]);

@@ -56,3 +56,8 @@ pub fn length(z: Complex) -> f64 {
 pub fn turned(z: Complex) -> Complex {
     Complex::new(-z.im, z.re)
 }
+
+/// Returns the least and the greatest of the values; [inf, -inf] if there are none.
+pub fn least_and_greatest(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}

@@ -36,11 +36,11 @@ fn a_rocker_that_goes_back_the_way_it_came_does_not_close_a_path() {
             let circuit = verdict(&closed(4, Timing::Free, Return::AroundTheCircuit), &l, &places);
             assert_eq!(circuit.defects, [Defect::Branch { at: vec![0] }]);
             assert!(!circuit.to_and_fro);
-            let [low, high] = circuit.motion.range();
+            let [low, high] = circuit.motion.range;
             assert!((high - low - TAU).abs() < 1e-12, "{low} {high}");
             let any = verdict(&closed(4, Timing::Free, Return::Any), &l, &places);
             assert!(any.defects.is_empty() && any.to_and_fro);
-            assert_eq!(any.motion.range(), open.motion.range());
+            assert_eq!(any.motion.range, open.motion.range);
             assert_eq!(any.direction, open.direction);
             places.reverse();
         }
