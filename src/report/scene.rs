@@ -222,10 +222,6 @@ impl Bounds {
         }
     }
 
-    pub(super) fn hold_all(&mut self, other: &Bounds) {
-        other.corners().into_iter().for_each(|corner| self.hold(corner));
-    }
-
     /// Returns the box of the points.
     pub(super) fn of(points: impl IntoIterator<Item = Complex>) -> Self {
         let mut bounds = Bounds::default();

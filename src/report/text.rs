@@ -138,6 +138,11 @@ pub fn grouped(value: u64) -> String {
     text
 }
 
+/// Returns a number with its noun: `1 cognate`, `2 cognates`.
+pub(super) fn plural(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
+}
+
 /// The largest number of characters of foreign text that are shown.
 pub const LONGEST_TEXT: usize = 200;
 /// The largest number of characters of a sentence that is shown whole.

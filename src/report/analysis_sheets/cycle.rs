@@ -1,11 +1,12 @@
 //! Charts of the transmission angle, angles, velocities and accelerations against the crank angle.
 
 use super::chart::{Abscissa, Chart, Range, Series};
-use super::vectors::per_time;
+use super::vectors::{ACCELERATIONS, VELOCITIES, per_time};
 use super::{CYCLE_ROWS, degrees};
 use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
 use crate::mechanism::four_bar::transmission::POOR_DEG;
-use crate::report::canvas::{Area, Canvas, palette};
+use crate::mechanism::point;
+use crate::report::canvas::{Area, palette};
 use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 const HEIGHT: f64 = 196.0;
@@ -24,32 +25,26 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Optio
     let abscissa = abscissa(&analysis.mobility, &span);
     let charts = charts(analysis, configuration, &rows, &span);
     let width = 0.5 * (FULL - 2.0 * INSET - GAP);
-    let mut body = Canvas::default();
+    let bottom = HEAD + charts.len().div_ceil(2) as f64 * (HEIGHT + 8.0);
+    let mut sheet = Sheet::new("Over the cycle", FULL, bottom);
     for (i, chart) in charts.iter().enumerate() {
         let (column, row) = ((i % 2) as f64, (i / 2) as f64);
         let area =
             Area { x: INSET + column * (width + GAP), y: HEAD + row * (HEIGHT + 8.0), width, height: HEIGHT };
-        chart.draw(&mut body, &abscissa, area);
+        chart.draw(&mut sheet.body, &abscissa, area);
     }
-    let mut note = format!(
+    sheet.note = format!(
         "against the crank angle from {} to {}; shaded red: within {POOR_TRANSMISSION_DEG}° of a toggle",
         degrees(abscissa.low),
         degrees(abscissa.high)
     );
     if !abscissa.unreachable.is_empty() {
-        note.push_str("; grey: the loop is open");
+        sheet.note.push_str("; grey: the loop is open");
     }
     if !abscissa.toggles.is_empty() {
-        note.push_str("; dashed: toggles");
+        sheet.note.push_str("; dashed: toggles");
     }
-    Some(Sheet {
-        title: "Over the cycle".to_owned(),
-        note,
-        body,
-        foot: Vec::new(),
-        width: FULL,
-        bottom: HEAD + charts.len().div_ceil(2) as f64 * (HEIGHT + 8.0),
-    })
+    Some(sheet)
 }
 
 /// Returns the rows sorted by crank angle.
@@ -159,7 +154,7 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
     let pose = |name, colour, turns, value: fn(&Pose) -> f64| {
         series(name, colour, rows, span, turns, |row| row.pose.as_ref().map(value))
     };
-    let rate = |name, colour, value: fn(&Rates) -> f64| {
+    let rate = |name, colour, value: &dyn Fn(&Rates) -> f64| {
         series(name, colour, rows, span, false, |row| row.rates.as_ref().map(value))
     };
     let poor = POOR_TRANSMISSION_DEG;
@@ -197,34 +192,18 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
         warning: Vec::new(),
     };
     let length = configuration.linkage.longest_link();
-    let per_s = per_time(analysis.unit, "s").trim_start().to_owned();
-    let per_s2 = per_time(analysis.unit, "s²").trim_start().to_owned();
-    let second = omega * omega + alpha;
-    if omega > 0.0 {
-        charts.push(chart(
-            "Angular velocities",
-            "rad/s".to_owned(),
-            vec![
-                rate("ω3", palette::TARGET, |r| r.omega3_rad_s),
-                rate("ω4", palette::FOLLOWER, |r| r.omega4_rad_s),
-            ],
-            omega,
-        ));
+    // At a crank that only begins to turn there are no velocities.
+    let kinds = [(VELOCITIES, omega), (ACCELERATIONS, omega * omega + alpha)];
+    let kinds = &kinds[usize::from(omega == 0.0)..];
+    for (kind, natural) in kinds {
+        let ([coupler, follower], of) = (kind.turning_names, kind.turning);
+        let coupler = rate(coupler, palette::TARGET, &|r| of(r)[0]);
+        let follower = rate(follower, palette::FOLLOWER, &|r| of(r)[1]);
+        charts.push(chart(kind.charts[0], format!("rad/{}", kind.per), vec![coupler, follower], *natural));
     }
-    charts.push(chart(
-        "Angular accelerations",
-        "rad/s²".to_owned(),
-        vec![
-            rate("α3", palette::TARGET, |r| r.alpha3_rad_s2),
-            rate("α4", palette::FOLLOWER, |r| r.alpha4_rad_s2),
-        ],
-        second,
-    ));
-    if omega > 0.0 {
-        let speed = vec![rate("|vP|", palette::CURVE, |r| r.vP[0].hypot(r.vP[1]))];
-        charts.push(chart("Speed of P", per_s, speed, omega * length));
+    for (kind, natural) in kinds {
+        let size = rate(kind.of_p, palette::CURVE, &|r| point((kind.vectors)(r)[2]).norm());
+        charts.push(chart(kind.charts[1], per_time(analysis.unit, kind.per), vec![size], natural * length));
     }
-    let acceleration = vec![rate("|aP|", palette::CURVE, |r| r.aP[0].hypot(r.aP[1]))];
-    charts.push(chart("Acceleration of P", per_s2, acceleration, second * length));
     charts
 }

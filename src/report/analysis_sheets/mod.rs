@@ -19,14 +19,15 @@ mod vectors;
 
 pub use super::cognates_sheet::cognates_svg;
 
-use super::canvas::{Canvas, Spot, View, palette};
-use super::labels::Labels;
-use super::parts::{letter, stand};
+use super::canvas::{Canvas, View, filled, palette};
+use super::parts::{UP, letter, stand};
+use super::scene::{Pose, Scene, circuits_through, middle_position};
 use super::sheet::{FULL, HALF, Heading, Sheet, page};
-use super::text::{brief, clean, significant};
+use super::text::{brief, clean, plural, significant};
 use super::words;
 use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
 use crate::mechanism::{Complex, FourBar, Joints};
+use vectors::{ACCELERATIONS, VELOCITIES};
 
 /// The least number of rows that are drawn as curves against the crank angle.
 pub const CYCLE_ROWS: usize = 24;
@@ -53,8 +54,12 @@ pub fn analysis_svg(analysis: &Analysis) -> String {
 fn sheets(analysis: &Analysis) -> Vec<Sheet> {
     let Some(configuration) = analysis.configurations.first() else { return Vec::new() };
     type Maker = fn(&Analysis, &Configuration, f64) -> Option<Sheet>;
-    let makers: [Maker; 4] =
-        [positions::sheet, construction::sheet, vectors::velocities, vectors::accelerations];
+    let makers: [Maker; 4] = [
+        positions::sheet,
+        construction::sheet,
+        |analysis, configuration, width| vectors::sheet(analysis, configuration, width, &VELOCITIES),
+        |analysis, configuration, width| vectors::sheet(analysis, configuration, width, &ACCELERATIONS),
+    ];
     let mut sheets: Vec<Sheet> =
         makers.iter().filter_map(|make| make(analysis, configuration, HALF)).collect();
     if sheets.len() % 2 == 1 {
@@ -130,8 +135,7 @@ fn counted(rows: &[Row]) -> String {
         .collect();
     let total = match rows.len() {
         0 => "no crank angle asked".to_owned(),
-        1 => "1 position".to_owned(),
-        n => format!("{n} positions"),
+        n => plural(n, "position"),
     };
     match counts.as_slice() {
         [] | [(Status::Ok, _)] => total,
@@ -173,26 +177,24 @@ fn as_joints([_, _, crank_pin, follower_pin, coupler_point]: [Complex; 5]) -> Jo
     Joints { crank_pin, follower_pin, coupler_point }
 }
 
-/// Returns the crank angle in radians and the assembly of rows, from which their circuits follow.
-fn positions_of<'a>(
-    configuration: &'a Configuration,
-    closed: &'a [(&'a Row, [Complex; 5])],
-) -> impl Iterator<Item = (f64, crate::mechanism::AssemblyMode)> + 'a {
-    closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), configuration.linkage.assembly()))
+/// Returns the scene of the first of these positions, with the circuits through all of them; without a position only
+/// the curve.
+fn scene(linkage: &FourBar, closed: &[(&Row, [Complex; 5])], samples: usize) -> Scene {
+    let positions = closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), linkage.assembly()));
+    let mut circuits = circuits_through(linkage, positions, samples);
+    if circuits.is_empty() {
+        circuits = circuits_through(linkage, [middle_position(linkage)], samples);
+    }
+    let pose = closed.first().map(|(_, joints)| Pose { target: None, joints: as_joints(*joints) });
+    Scene { linkage: Some(*linkage), targets: Vec::new(), circuits, pose }
 }
 
 /// Draws A and B, if there is no position to draw.
-fn pivots(canvas: &mut Canvas, labels: &mut Labels, view: &View, linkage: &FourBar, weight: f64) {
+fn pivots(canvas: &mut Canvas, view: &View, linkage: &FourBar, weight: f64) {
     for (name, pivot) in [("A", linkage.crank_pivot()), ("B", linkage.follower_pivot())] {
         let at = view.spot(pivot);
         stand(canvas, at, weight);
-        let pin = format!(r#"fill="{}" stroke="{}" stroke-width="1.5""#, palette::PAPER, palette::BAR_EDGE);
-        canvas.circle(at, 5.2 * weight, &pin);
-        letter(canvas, labels, name, at, Spot::new(0.0, -1.0));
+        canvas.circle(at, 5.2 * weight, &filled(palette::PAPER, palette::BAR_EDGE, 1.5));
+        letter(canvas, name, at, UP);
     }
-}
-
-/// Returns the middle of two places.
-fn between(a: Spot, b: Spot) -> Spot {
-    Spot::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
 }
