@@ -1,7 +1,7 @@
 //! The practicality of a linkage as text: layers, distances, sensitivities.
 
 use super::grid::Align::{Left, Right};
-use super::grid::{Colour, Grid, Ink, plain};
+use super::grid::{Colour, Column, Grid, Ink, plain};
 use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
@@ -169,39 +169,37 @@ impl Words {
     }
 
     fn distances(&self, distances: &[PivotDistance], hole: f64) -> String {
-        let mut grid = Grid::new(&[(Left, &["joints"]), (Right, &["least", "at crank"]), (Left, &[""])]);
-        for d in distances.iter().filter(|d| !d.fixed) {
-            let [one, other] = d.between;
-            let note = objection(d, hole);
-            let ink = if note.is_empty() { Ink::Plain } else { Ink::Bad };
-            grid.row([
-                plain(format!("{one}-{other}")),
-                (significant(d.closest.value, DIGITS + 1), ink),
-                plain(degrees(d.closest.crank_angle)),
-                (note.to_owned(), ink),
-            ]);
-        }
+        let moving: Vec<&PivotDistance> = distances.iter().filter(|d| !d.fixed).collect();
+        let ink = |d: &PivotDistance| if objection(d, hole).is_empty() { Ink::Plain } else { Ink::Bad };
+        let grid = Grid::of(
+            &moving,
+            &[
+                (Left, "joints", &|d| plain(d.between.join("-"))),
+                (Right, "least", &|d| (significant(d.closest.value, DIGITS + 1), ink(d))),
+                (Right, "at crank", &|d| plain(degrees(d.closest.crank_angle))),
+                (Left, "", &|d| (objection(d, hole).to_owned(), ink(d))),
+            ],
+        );
         let mut out = grid.render(self.colour);
         out.push_str(&indented(&held(distances)));
         out
     }
 
     fn sensitivity(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
-        let heads: &[&str] = if at_points { &["rms", "most", "at point"] } else { &["rms", "most"] };
-        let mut grid = Grid::new(&[(Left, &["dimension"]), (Right, heads)]);
         let worst = felt.worst_dimension().name;
-        let row = |d: &Dimension, ink: Ink| {
-            [
-                (d.name.to_owned(), ink),
-                (significant(d.rms, DIGITS), ink),
-                (significant(d.worst, DIGITS), ink),
-                (d.worst_at.to_string(), ink),
-            ]
+        let ink = |d: &Dimension| match d.name {
+            name if name == felt.ground.name => Ink::Faint,
+            name if name == worst => Ink::Strong,
+            _ => Ink::Plain,
         };
-        for d in &felt.dimensions {
-            grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
-        }
-        grid.row(row(&felt.ground, Ink::Faint));
+        let columns: [Column<'_, &Dimension>; 4] = [
+            (Left, "dimension", &|d| (d.name.to_owned(), ink(d))),
+            (Right, "rms", &|d| (significant(d.rms, DIGITS), ink(d))),
+            (Right, "most", &|d| (significant(d.worst, DIGITS), ink(d))),
+            (Right, "at point", &|d| (d.worst_at.to_string(), ink(d))),
+        ];
+        let rows: Vec<&Dimension> = felt.dimensions.iter().chain([&felt.ground]).collect();
+        let grid = Grid::of(&rows, if at_points { &columns } else { &columns[..3] });
         let mut out = indented(&shift(felt));
         out.push_str(&grid.render(self.colour));
         out.push_str(&indented(&self.together(felt, at_points, tolerance)));
