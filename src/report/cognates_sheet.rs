@@ -6,7 +6,7 @@ use super::canvas::{
     text_width,
 };
 use super::parts::{away, bars, letter, mark_joints, point_mark, stand, triangle};
-use super::scene::{Bounds, SAMPLES, circuits_through, closest, middle_position};
+use super::scene::{Bounds, SAMPLES, all_joints, circuits_through, closest, middle_position};
 use super::sheet::{FULL, Heading, INSET, Sheet, page};
 use super::text::{brief, clean, plural};
 use crate::mechanism::Unit;
@@ -133,9 +133,7 @@ fn spacing(all: &[Option<Joints5>]) -> f64 {
 }
 
 fn joints_at(linkage: &FourBar, angle: f64, assembly: AssemblyMode) -> Option<Joints5> {
-    let joints = linkage.position_with(angle, assembly).joints()?;
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    Some([a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
+    Some(all_joints(linkage, &linkage.position_with(angle, assembly).joints()?))
 }
 
 /// Returns the joints of a linkage whose coupler point is at `p`: C is an intersection of the circles of radius a about

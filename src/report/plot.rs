@@ -106,12 +106,10 @@ impl Raster {
         }
     }
 
-    /// Returns the height of a dot divided by its width.
+    /// Returns the height of a dot divided by its width: a cell is twice as high as wide.
     fn aspect(glyphs: Glyphs) -> f64 {
-        match glyphs {
-            Glyphs::Braille => 1.0,
-            Glyphs::Ascii => 2.0,
-        }
+        let (across, down) = Self::dots(glyphs);
+        2.0 * across as f64 / down as f64
     }
 
     /// Returns a raster in the shape of the box, at most `columns` by `rows`.

@@ -53,9 +53,7 @@ impl Scene {
             let (angle, assembly) = *positions.get(j)?;
             Some(linkage.position_with(angle, assembly).joints()?.coupler_point)
         };
-        let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
-        let first = first.unwrap_or_else(|| middle_position(linkage));
-        let all = std::iter::once(first).chain(positions.iter().copied());
+        let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
         let circuits = circuits_through(linkage, all, samples);
         let pose = legible_pose(linkage, positions)
             .or_else(|| Some(Pose { target: None, joints: *circuits.first()?.first()? }));
@@ -64,12 +62,7 @@ impl Scene {
 
     /// Returns the box of the target points and the coupler points that they are compared with.
     pub(super) fn target_bounds(&self) -> Bounds {
-        let mut bounds = Bounds::default();
-        for target in &self.targets {
-            bounds.hold(target.at);
-            target.reached.into_iter().for_each(|p| bounds.hold(p));
-        }
-        bounds
+        Bounds::of(self.targets.iter().flat_map(|target| std::iter::once(target.at).chain(target.reached)))
     }
 
     /// Returns the box of the target points and the coupler curve.
@@ -82,14 +75,9 @@ impl Scene {
     /// Returns the box of everything, over the whole motion.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = self.curve_bounds();
-        if let Some(linkage) = &self.linkage {
-            bounds.hold(linkage.crank_pivot());
-            bounds.hold(linkage.follower_pivot());
-        }
-        for joints in self.circuits.iter().flatten() {
-            bounds.hold(joints.crank_pin);
-            bounds.hold(joints.follower_pin);
-        }
+        let pivots = self.linkage.iter().flat_map(|l| [l.crank_pivot(), l.follower_pivot()]);
+        let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
+        pivots.chain(pins).for_each(|p| bounds.hold(p));
         bounds
     }
 }
@@ -112,8 +100,12 @@ fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
 
 /// Returns a position on the circuit of the first point: crank angle (radians) and assembly.
 pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
-    let first = positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite());
-    first.unwrap_or_else(|| middle_position(&candidate.linkage))
+    first_of(&candidate.linkage, &positions(candidate))
+}
+
+fn first_of(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
+    let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
+    first.unwrap_or_else(|| middle_position(linkage))
 }
 
 /// Returns a position in the middle of the input's range; if the loop does not determine the follower there (C on B, as

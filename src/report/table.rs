@@ -1,9 +1,10 @@
 //! The output of `synth`: the candidates of a run, or one line for each file of a batch.
 
 use super::beside;
+use super::csv::parameters;
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, brief, clean, exact, grouped, indented, shortened, significant, wrapped};
+use super::text::{COLUMNS, brief, clean, grouped, indented, shortened, significant, wrapped};
 use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
@@ -223,22 +224,12 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
 
 /// Returns the linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
 fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let pair = |p: crate::mechanism::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
-    let parts = [
-        format!("A = {},", pair(a)),
-        format!("B = {},", pair(b)),
-        format!("a = {},", exact(linkage.crank())),
-        format!("b = {},", exact(linkage.coupler())),
-        format!("c = {},", exact(linkage.follower())),
-        format!("d = {},", exact(linkage.crank_side())),
-        format!("e = {},", exact(linkage.follower_side())),
-        format!("t1 = {},", linkage.assembly().sign()),
-        format!("t2 = {} }}", linkage.side().sign()),
-    ];
-    // No line breaks inside of a value.
-    let unbroken = parts.map(|part| part.replace(' ', "\u{a0}")).join(" ");
-    wrapped("    linkage = { ", "      ", &unbroken, columns).replace('\u{a0}', " ")
+    let [ax, ay, bx, by, a, b, c, d, e, t1, t2] = parameters(linkage);
+    // A tilde is a space at which no line is broken.
+    let parts = format!(
+        "A~=~[{ax},~{ay}], B~=~[{bx},~{by}], a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}, t1~=~{t1}, t2~=~{t2}~}}"
+    );
+    wrapped("    linkage = { ", "      ", &parts, columns).replace('~', " ")
 }
 
 /// Returns method, seed, cost and the reason why the search ended.

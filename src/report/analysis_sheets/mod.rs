@@ -20,6 +20,7 @@ mod vectors;
 pub use super::cognates_sheet::cognates_svg;
 
 use super::canvas::{Canvas, View, filled, palette};
+use super::csv::PARAMETERS;
 use super::parts::{UP, letter, stand};
 use super::scene::{Pose, Scene, circuits_through, middle_position};
 use super::sheet::{FULL, HALF, Heading, Sheet, page};
@@ -108,21 +109,9 @@ fn heading(analysis: &Analysis) -> Heading {
 
 /// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
 pub(super) fn dimensions(linkage: &FourBar) -> String {
-    let p = linkage.natural_coordinates();
-    let number = |x: f64| brief(x, 6);
-    let at = |[x, y]: [f64; 2]| format!("({}, {})", number(x), number(y));
-    format!(
-        "A {}, B {}, a {}, b {}, c {}, d {}, e {}, t1 {}, t2 {}",
-        at(p.crank_pivot),
-        at(p.follower_pivot),
-        number(p.crank),
-        number(p.coupler),
-        number(p.follower),
-        number(p.crank_side),
-        number(p.follower_side),
-        sign(p.assembly.sign()),
-        sign(p.side.sign())
-    )
+    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
+    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
+    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
 }
 
 /// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
