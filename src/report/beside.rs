@@ -95,7 +95,7 @@ fn alternatives(candidate: &Candidate) -> Option<String> {
         n => plural(n, "cognate"),
     };
     let accepted: Vec<_> = all.iter().filter(|a| a.accepted).collect();
-    let best = accepted.iter().map(|a| a.transmission_worst_deg).fold(f64::NEG_INFINITY, f64::max);
+    let best = accepted.iter().map(|a| a.transmission_worst_deg).reduce(f64::max);
     let verdict = match (accepted.len(), all.len()) {
         (0, 1) => "not accepted".to_owned(),
         (0, _) => "none accepted".to_owned(),
@@ -103,10 +103,7 @@ fn alternatives(candidate: &Candidate) -> Option<String> {
         (1, _) => "one accepted".to_owned(),
         (n, _) => format!("{n} accepted"),
     };
-    let angle = if accepted.is_empty() {
-        String::new()
-    } else {
-        format!(", worst transmission {} deg", significant(best, 3))
-    };
+    let angle =
+        best.map_or(String::new(), |best| format!(", worst transmission {} deg", significant(best, 3)));
     Some(format!("same curve: {count}, {verdict}{angle}, see record"))
 }

@@ -97,6 +97,7 @@ fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
     let all = count(GENERIC_CLASSES);
+    let some = format!("{found} of {all} solutions up to cognates were found");
     match exact.completeness {
         Completeness::Complete => {
             format!("{found} solutions up to cognates: as many as nine points in general position have.")
@@ -113,14 +114,8 @@ fn found(exact: &ExactRecord) -> String {
             }
             text
         }
-        Completeness::Incomplete => {
-            format!(
-                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost or ended together."
-            )
-        }
-        Completeness::Cancelled => {
-            format!("{found} of {all} solutions up to cognates were found until the search was stopped.")
-        }
+        Completeness::Incomplete => some + ": some may be missing, for paths were lost or ended together.",
+        Completeness::Cancelled => some + " until the search was stopped.",
     }
 }
 

@@ -6,7 +6,8 @@ use super::canvas::{
 };
 use super::labels::Beside;
 use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
-use super::scene::{Bounds, Scene, all_joints};
+use super::scene::{Bounds, Scene, Target};
+use super::words::joined;
 use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
 
@@ -46,7 +47,7 @@ const MARKED: usize = 150;
 
 /// Draws the scene; labels avoid the marked places, and the drawn parts are marked for later labels.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    let joints = joint_spots(scene, view).filter(|_| detail.linkage);
+    let joints = scene.pose.filter(|_| detail.linkage).map(|pose| pose.joints.map(|p| view.spot(p)));
     if let Some(joints) = joints {
         let [a, b, c, d, p] = joints;
         ground(canvas, [a, b], detail);
@@ -93,25 +94,14 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
         return (vec![points.to_vec()], true);
     };
     let n = points.len();
-    let inside = |i: usize| clip.holds(points[i % n]);
     // Begins at a point outside, so that no part is cut in two.
-    let start = (0..n).find(|i| !inside(*i)).unwrap_or(0);
-    let mut strands = Vec::new();
-    let mut strand: Vec<Complex> = Vec::new();
-    for i in start..start + n {
-        if inside(i + 1) || inside(i) {
-            if strand.is_empty() {
-                strand.push(points[i % n]);
-            }
-            strand.push(points[(i + 1) % n]);
-        } else if !strand.is_empty() {
-            strands.push(std::mem::take(&mut strand));
-        }
-    }
-    if !strand.is_empty() {
-        strands.push(strand);
-    }
-    (strands, false)
+    let start = points.iter().position(|p| !clip.holds(*p)).unwrap_or(0);
+    let sides: Vec<[Complex; 2]> = (start..start + n).map(|i| [points[i % n], points[(i + 1) % n]]).collect();
+    let runs = sides.split(|ends| !ends.iter().any(|p| clip.holds(*p)));
+    let strand = |run: &[[Complex; 2]]| {
+        Some([run.first()?[0]].into_iter().chain(run.iter().map(|side| side[1])).collect())
+    };
+    (runs.filter_map(strand).collect(), false)
 }
 
 /// Draws the line A-B, and under each fixed pivot a hatched stand.
@@ -131,11 +121,6 @@ fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
             canvas.path(&spots, true, &attributes);
         }
     }
-}
-
-/// Returns A, B, C, D, P on the canvas; `None` for a scene without a position.
-fn joint_spots(scene: &Scene, view: &View) -> Option<[Spot; 5]> {
-    Some(all_joints(scene.linkage.as_ref()?, &scene.pose.as_ref()?.joints).map(|p| view.spot(p)))
 }
 
 /// The place of a target point, and the place that the coupler point reaches instead.
@@ -242,13 +227,12 @@ fn numbers(canvas: &mut Canvas, scene: &Scene, view: &View, radius: f64) {
     for target in scene.targets.iter().filter(|target| target.index % step == 0) {
         let point = view.spot(target.at);
         // Points at one place, such as a last one that repeats the first, share a label.
-        if scene.targets.iter().take(target.index).any(|other| other.at == target.at) && few {
+        let together = |other: &&Target| other.index == target.index || (few && other.at == target.at);
+        let indices: Vec<usize> = scene.targets.iter().filter(together).map(|other| other.index).collect();
+        if indices.first() != Some(&target.index) {
             continue;
         }
-        let mut number = target.index.to_string();
-        for other in scene.targets.iter().filter(|t| few && t.index > target.index && t.at == target.at) {
-            number.push_str(&format!(", {}", other.index));
-        }
+        let number = joined(&indices);
         let is_first = target.index == 0;
         let distance = radius + if is_first { 5.0 } else { 3.0 };
         let beside = Beside { point, distance, towards: point - centre, needed: is_first };

@@ -20,7 +20,8 @@ pub(super) struct Target {
 pub(super) struct Pose {
     /// The index of the target point of this position; `None` if the loop closes at no target point.
     pub(super) target: Option<usize>,
-    pub(super) joints: Joints,
+    /// A, B, C, D, P.
+    pub(super) joints: [Complex; 5],
 }
 
 /// A candidate, ready to be drawn. Without a candidate, the target alone.
@@ -56,7 +57,7 @@ impl Scene {
         let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
         let circuits = circuits_through(linkage, all, samples);
         let pose = legible_pose(linkage, positions)
-            .or_else(|| Some(Pose { target: None, joints: *circuits.first()?.first()? }));
+            .or_else(|| Some(Pose { target: None, joints: all_joints(linkage, circuits.first()?.first()?) }));
         Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
     }
 
@@ -164,13 +165,12 @@ pub(crate) fn circuits_through(
 fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
     /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
-    let spacing = |joints: &Joints| closest(&all_joints(linkage, joints));
     let poses: Vec<(Pose, f64)> = positions
         .iter()
         .enumerate()
         .filter_map(|(j, (angle, assembly))| {
-            let joints = linkage.position_with(*angle, *assembly).joints()?;
-            Some((Pose { target: Some(j), joints }, spacing(&joints)))
+            let joints = all_joints(linkage, &linkage.position_with(*angle, *assembly).joints()?);
+            Some((Pose { target: Some(j), joints }, closest(&joints)))
         })
         .collect();
     // The first of equal ones.

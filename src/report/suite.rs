@@ -30,28 +30,22 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
 
 /// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
+    let said = |text: &str| wrapped("  ", "    ", text, COLUMNS);
     let mut out = String::new();
     if !suite.problems.is_empty() {
         out.push_str(&answers(suite).shortened(NAME).render(colour));
         out.push('\n');
         out.push_str(&beside(suite).shortened(NAME).render(colour));
         out.push('\n');
-        for what in [WHAT, TIMES, BESIDE] {
-            out.push_str(&wrapped("  ", "    ", what, COLUMNS));
-        }
-        let proofs = proofs(suite);
-        let first = Some(PROVED.to_owned()).filter(|_| !proofs.is_empty());
-        for told in first.into_iter().chain(proofs) {
-            out.push_str(&wrapped("  ", "    ", &told, COLUMNS));
-        }
+        out.extend([WHAT, TIMES, BESIDE].map(said));
+        out.extend(is_certified(suite).then(|| said(PROVED)));
+        out.extend(proofs(suite).iter().map(|proof| said(proof)));
     }
     let notes = notes(suite);
     if !notes.is_empty() {
         out.push('\n');
     }
-    for note in notes {
-        out.push_str(&wrapped("  ", "    ", &note, COLUMNS));
-    }
+    out.extend(notes.iter().map(|note| said(note)));
     out
 }
 
@@ -77,18 +71,10 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out.push_str(&paragraph(TIMES));
     if is_certified(suite) {
         out.push_str(&paragraph(PROVED));
-        for proof in proofs(suite) {
-            out.push_str(&wrapped("- ", "  ", &markdown(&proof), COLUMNS + 10));
-        }
-        out.push('\n');
+        out.push_str(&bullets(&proofs(suite)));
     }
-    let notes = notes(suite);
-    for note in &notes {
-        out.push_str(&wrapped("- ", "  ", &markdown(&clean(note)), COLUMNS + 10));
-    }
-    if !notes.is_empty() {
-        out.push('\n');
-    }
+    let notes: Vec<String> = notes(suite).iter().map(|note| clean(note)).collect();
+    out.push_str(&bullets(&notes));
     out.push_str("## Beside them\n\n");
     out.push_str(&beside(suite).markdown());
     out.push('\n');
@@ -100,6 +86,12 @@ pub fn suite_markdown(suite: &Suite) -> String {
     ));
     out.push_str(&published(suite).markdown());
     out
+}
+
+/// Returns a list in Markdown; nothing for an empty one.
+fn bullets(texts: &[String]) -> String {
+    let end = if texts.is_empty() { "" } else { "\n" };
+    texts.iter().map(|text| wrapped("- ", "  ", &markdown(text), COLUMNS + 10)).collect::<String>() + end
 }
 
 /// Returns whether certificates were asked for.

@@ -238,18 +238,8 @@ pub(super) fn capitalised(text: &str) -> String {
 /// assert_eq!(linkwright::internals::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
 /// ```
 pub fn xml(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in clean(text).chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    let escapes = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;"), ('"', "&quot;"), ('\'', "&#39;")];
+    escapes.into_iter().fold(clean(text), |text, (mark, escape)| text.replace(mark, escape))
 }
 
 /// Returns clean text as Markdown, with its markup characters escaped.

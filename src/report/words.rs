@@ -78,7 +78,8 @@ fn points(at: &[usize]) -> String {
     }
 }
 
-fn joined(at: &[usize]) -> String {
+/// Returns numbers in a row: `2, 5, 8`.
+pub(super) fn joined(at: &[usize]) -> String {
     at.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
@@ -88,19 +89,18 @@ fn of_requirement(requirement: &Requirement) -> Objection {
         // Rounding must not make a missed limit look met.
         (value, limit) = (figure(&requirement.value, exact), figure(&requirement.limit, exact));
     }
-    let name = clean(&requirement.name);
-    if let Some(kind) = RequirementKind::named(&requirement.name) {
-        let sentence = kind.definition().objection(&value, &limit);
-        let sentence = sentence.unwrap_or_else(|| format!("{name}: {value}, limit {limit}"));
-        return Objection { key: kind.definition().words().short.to_owned(), sentence };
-    }
-    if let (Some(key), Figure::Numbers(_)) = (name.strip_prefix("design."), &requirement.limit) {
-        let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");
-        return Objection { key: key.to_owned(), sentence };
-    }
-    let name = if name.is_empty() { "a requirement".to_owned() } else { name };
-    let sentence = format!("{name}: {value}, limit {limit}");
-    Objection { key: name, sentence }
+    let name = Some(clean(&requirement.name)).filter(|name| !name.is_empty());
+    let name = name.unwrap_or("a requirement".to_owned());
+    let plain = format!("{name}: {value}, limit {limit}");
+    let kind = RequirementKind::named(&requirement.name).map(RequirementKind::definition);
+    let (key, sentence) = match (kind, name.strip_prefix("design."), &requirement.limit) {
+        (Some(kind), ..) => (kind.words().short, kind.objection(&value, &limit).unwrap_or(plain)),
+        (None, Some(key), Figure::Numbers(_)) => {
+            (key, format!("{key} = {value}, outside of its bounds [{limit}]"))
+        }
+        _ => (name.as_str(), plain),
+    };
+    Objection { key: key.to_owned(), sentence }
 }
 
 fn short(value: f64) -> String {

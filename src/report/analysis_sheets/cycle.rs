@@ -11,8 +11,6 @@ use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;
-/// The distance from 0 or 180 degrees below which a transmission angle is poor.
-const POOR_TRANSMISSION_DEG: f64 = POOR_DEG;
 /// The number of turns above which toggles and open stretches are not marked: they would cover everything else.
 const MOST_TURNS: f64 = 10.0;
 
@@ -34,7 +32,7 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Optio
         chart.draw(&mut sheet.body, &abscissa, area);
     }
     sheet.note = format!(
-        "against the crank angle from {} to {}; shaded red: within {POOR_TRANSMISSION_DEG}° of a toggle",
+        "against the crank angle from {} to {}; shaded red: within {POOR_DEG}° of a toggle",
         degrees(abscissa.low),
         degrees(abscissa.high)
     );
@@ -157,25 +155,25 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
     let rate = |name, colour, value: &dyn Fn(&Rates) -> f64| {
         series(name, colour, rows, span, false, |row| row.rates.as_ref().map(value))
     };
-    let poor = POOR_TRANSMISSION_DEG;
+    let chart = |title, unit: &str, series, range| Chart {
+        title,
+        unit: unit.to_owned(),
+        series,
+        range,
+        warning: Vec::new(),
+    };
+    let poor = POOR_DEG;
+    let transmission = pose("μ", palette::CURVE, false, |p| p.transmission_deg);
+    let half_turn = Range::Fixed { low: 0.0, high: 180.0, tick: 30.0 };
+    let coupler = pose("coupler θ3", palette::TARGET, true, |p| p.coupler_deg);
+    let follower = pose("follower θ4", palette::FOLLOWER, true, |p| p.follower_deg);
+    let angles = Range::Fitted { natural: 10.0, angle: true, unbounded: false };
     let mut charts = vec![
         Chart {
-            title: "Transmission angle",
-            unit: "μ, °".to_owned(),
-            series: vec![pose("μ", palette::CURVE, false, |p| p.transmission_deg)],
-            range: Range::Fixed { low: 0.0, high: 180.0, tick: 30.0 },
             warning: vec![(0.0, poor), (180.0 - poor, 180.0)],
+            ..chart("Transmission angle", "μ, °", vec![transmission], half_turn)
         },
-        Chart {
-            title: "Angles",
-            unit: "°".to_owned(),
-            series: vec![
-                pose("coupler θ3", palette::TARGET, true, |p| p.coupler_deg),
-                pose("follower θ4", palette::FOLLOWER, true, |p| p.follower_deg),
-            ],
-            range: Range::Fitted { natural: 10.0, angle: true, unbounded: false },
-            warning: Vec::new(),
-        },
+        chart("Angles", "°", vec![coupler, follower], angles),
     ];
     let (omega, alpha) = (analysis.omega2_rad_s.abs(), analysis.alpha2_rad_s2.abs());
     if !rows.iter().any(|row| row.rates.is_some()) || (omega == 0.0 && alpha == 0.0) {
@@ -184,13 +182,6 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
     let singular = rows.iter().any(|row| row.status == Status::Singular);
     let unbounded = singular || !analysis.mobility.toggles_deg.is_empty();
     let fitted = |natural: f64| Range::Fitted { natural, angle: false, unbounded };
-    let chart = |title, unit: String, series, natural| Chart {
-        title,
-        unit,
-        series,
-        range: fitted(natural),
-        warning: Vec::new(),
-    };
     let length = configuration.linkage.longest_link();
     // At a crank that only begins to turn there are no velocities.
     let kinds = [(VELOCITIES, omega), (ACCELERATIONS, omega * omega + alpha)];
@@ -199,11 +190,13 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
         let ([coupler, follower], of) = (kind.turning_names, kind.turning);
         let coupler = rate(coupler, palette::TARGET, &|r| of(r)[0]);
         let follower = rate(follower, palette::FOLLOWER, &|r| of(r)[1]);
-        charts.push(chart(kind.charts[0], format!("rad/{}", kind.per), vec![coupler, follower], *natural));
+        let unit = format!("rad/{}", kind.per);
+        charts.push(chart(kind.charts[0], &unit, vec![coupler, follower], fitted(*natural)));
     }
     for (kind, natural) in kinds {
         let size = rate(kind.of_p, palette::CURVE, &|r| point((kind.vectors)(r)[2]).norm());
-        charts.push(chart(kind.charts[1], per_time(analysis.unit, kind.per), vec![size], natural * length));
+        let unit = per_time(analysis.unit, kind.per);
+        charts.push(chart(kind.charts[1], &unit, vec![size], fitted(natural * length)));
     }
     charts
 }

@@ -27,7 +27,7 @@ use super::sheet::{FULL, HALF, Heading, Sheet, page};
 use super::text::{brief, clean, plural, significant};
 use super::words;
 use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
-use crate::mechanism::{Complex, FourBar, Joints};
+use crate::mechanism::{Complex, FourBar};
 use vectors::{ACCELERATIONS, VELOCITIES};
 
 /// The least number of rows that are drawn as curves against the crank angle.
@@ -162,10 +162,6 @@ fn closed(configuration: &Configuration) -> Vec<(&Row, [Complex; 5])> {
         .collect()
 }
 
-fn as_joints([_, _, crank_pin, follower_pin, coupler_point]: [Complex; 5]) -> Joints {
-    Joints { crank_pin, follower_pin, coupler_point }
-}
-
 /// Returns the scene of the first of these positions, with the circuits through all of them; without a position only
 /// the curve.
 fn scene(linkage: &FourBar, closed: &[(&Row, [Complex; 5])], samples: usize) -> Scene {
@@ -174,7 +170,7 @@ fn scene(linkage: &FourBar, closed: &[(&Row, [Complex; 5])], samples: usize) -> 
     if circuits.is_empty() {
         circuits = circuits_through(linkage, [middle_position(linkage)], samples);
     }
-    let pose = closed.first().map(|(_, joints)| Pose { target: None, joints: as_joints(*joints) });
+    let pose = closed.first().map(|(_, joints)| Pose { target: None, joints: *joints });
     Scene { linkage: Some(*linkage), targets: Vec::new(), circuits, pose }
 }
 

@@ -7,6 +7,7 @@ use crate::mechanism::{Complex, point};
 use crate::report::canvas::{Anchor, Canvas, Corners, Spot, Vec2, View, bold, font, haloed, palette};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Beside;
+use crate::report::practicality::degrees as direction;
 use crate::report::scene::{Bounds, SAMPLES, Scene, round_length};
 use crate::report::sheet::{INSET, Sheet, arrow};
 use crate::report::text::brief;
@@ -108,7 +109,7 @@ pub(super) fn sheet(
         .iter()
         .zip(vectors)
         .map(|(name, v)| {
-            let towards = if v.norm() > 0.0 { format!(" at {}°", direction(v)) } else { String::new() };
+            let towards = if v.norm() > 0.0 { format!(" at {}", direction(v.arg())) } else { String::new() };
             format!("{name} {}{towards}", brief(v.norm(), 5))
         })
         .collect();
@@ -120,12 +121,6 @@ pub(super) fn sheet(
         format!("{coupler} = {of_coupler}, {follower} = {of_follower} (rad/{})", kind.per),
     ];
     Some(sheet)
-}
-
-/// Returns the direction of a vector in degrees, to a tenth, in [0, 360).
-fn direction(v: Complex) -> String {
-    let tenths = (v.arg().to_degrees().rem_euclid(360.0) * 10.0).round();
-    brief(if tenths >= 3600.0 { 0.0 } else { tenths / 10.0 }, 5)
 }
 
 /// Returns a unit such as `mm/s`; `length/s` without a unit of length.
