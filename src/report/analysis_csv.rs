@@ -54,9 +54,9 @@ fn cells(linkage: &FourBar, row: &Row) -> Vec<String> {
     let signs = [linkage.assembly().sign(), linkage.side().sign()];
     let mut cells = vec![exact(row.crank_deg)];
     cells.extend(signs.map(|sign| sign.to_string()));
-    cells.extend(POSE.map(|(_, of)| row.pose.as_ref().map_or(String::new(), |pose| exact(of(pose)))));
-    let rate = |of: fn(&Rates) -> f64| row.rates.as_ref().map_or(String::new(), |rates| exact(of(rates)));
-    cells.extend(RATES.iter().flatten().map(|(_, of)| rate(*of)));
+    let pose = POSE.iter().map(|(_, of)| row.pose.as_ref().map(of));
+    let rates = RATES.iter().flatten().map(|(_, of)| row.rates.as_ref().map(of));
+    cells.extend(pose.chain(rates).map(|number| number.map_or(String::new(), exact)));
     cells.push(row.status.word().to_owned());
     cells
 }

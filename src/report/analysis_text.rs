@@ -1,12 +1,15 @@
 //! An analysis as text: the mobility in words, and the tables of positions, motion and methods.
 
 use super::analysis_csv::{POSE, RATES};
-use super::csv::{Column, names};
+use super::csv::{Column, PARAMETERS, names};
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Grid, Ink, plain};
-use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, significant, wrapped};
+use super::text::{COLUMNS, NO_NUMBER, capitalised, clean, indented, plural, significant, wrapped};
+use super::words::length_suffix;
 use crate::mechanism::Unit;
-use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
+use crate::mechanism::analysis::{
+    Analysis, ConditionRecord, Configuration, MethodRow, MobilityRecord, Pose, Rates, Row, Status,
+};
 use crate::mechanism::four_bar::transmission::ForceTransmission;
 use crate::mechanism::{FourBar, LinkageType};
 
@@ -27,17 +30,10 @@ pub fn analysis_head(analysis: &Analysis, colour: Colour) -> String {
 pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
     let mut out = analysis_head(analysis, colour);
     for configuration in &analysis.configurations {
-        let natural = configuration.linkage.natural_coordinates();
-        let signs = format!(
-            "\n  t1 = {:+}, t2 = {:+} ({}, P {} of C-D)\n",
-            natural.assembly.sign(),
-            natural.side.sign(),
-            match natural.assembly.sign() > 0.0 {
-                true => "D left of C-B",
-                false => "D right of C-B",
-            },
-            if natural.side.sign() > 0.0 { "left" } else { "right" },
-        );
+        let linkage = &configuration.linkage;
+        let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()];
+        let [d, p] = [t1, t2].map(|sign| if sign > 0.0 { "left" } else { "right" });
+        let signs = format!("\n  t1 = {t1:+}, t2 = {t2:+} (D {d} of C-B, P {p} of C-D)\n");
         out.push_str(&colour.paint(Ink::Strong, &signs));
         out.push_str(&positions(configuration, colour));
         if analysis.omega2_rad_s != 0.0 || analysis.alpha2_rad_s2 != 0.0 {
@@ -65,33 +61,19 @@ pub fn analysis_table(analysis: &Analysis, colour: Colour) -> String {
 }
 
 fn linkage_line(linkage: &FourBar, unit: Option<Unit>) -> String {
-    let n = linkage.natural_coordinates();
-    let s = |x: f64| significant(x, 6);
-    let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
+    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| significant(of(linkage), 6));
+    let (ground, unit) = (significant(linkage.ground(), 6), length_suffix(unit));
     indented(&format!(
-        "A ({}, {}), B ({}, {}), ground {}, a {}, b {}, c {}, d {}, e {}{unit}",
-        s(n.crank_pivot[0]),
-        s(n.crank_pivot[1]),
-        s(n.follower_pivot[0]),
-        s(n.follower_pivot[1]),
-        s(linkage.ground()),
-        s(n.crank),
-        s(n.coupler),
-        s(n.follower),
-        s(n.crank_side),
-        s(n.follower_side)
+        "A ({ax}, {ay}), B ({bx}, {by}), ground {ground}, a {a}, b {b}, c {c}, d {d}, e {e}{unit}"
     ))
 }
 
 /// Returns the mobility of a linkage in words: type, margin, input range, toggles, circuits and branches, transmission,
 /// warnings.
 pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
-    let Some(kind) = mobility.linkage_type else {
-        return indented(
-            "These links cannot be joined: the longest is longer than the other three together.",
-        );
-    };
-    let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
+    let apart = "These links cannot be joined: the longest is longer than the other three together.";
+    let Some(kind) = mobility.linkage_type else { return indented(apart) };
+    let unit = length_suffix(unit);
     let of_type = match kind {
         LinkageType::CrankRocker => "the crank turns fully, the follower rocks",
         LinkageType::RockerCrank => "the driven link rocks, the follower turns fully",
@@ -115,12 +97,12 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
             ends.join(", ")
         ));
     }
-    let plural = |n: u8, one: &str, several: &str| format!("{n} {}", if n == 1 { one } else { several });
-    words.push_str(&format!(
-        " {}, {} in each.",
-        plural(mobility.circuits, "circuit", "circuits"),
-        plural(mobility.branches_per_circuit, "branch", "branches")
-    ));
+    let circuits = plural(mobility.circuits.into(), "circuit");
+    let branches = match mobility.branches_per_circuit {
+        1 => "1 branch".to_owned(),
+        n => format!("{n} branches"),
+    };
+    words.push_str(&format!(" {circuits}, {branches} in each."));
     if let (Some([least, greatest]), Some(worst)) =
         (mobility.transmission_deg, mobility.worst_transmission_deg)
     {
@@ -131,15 +113,14 @@ pub fn mobility_words(mobility: &MobilityRecord, unit: Option<Unit>) -> String {
             degrees(worst)
         ));
         let force = ForceTransmission::of(worst);
-        if force < ForceTransmission::Fair {
-            if mobility.input_turns_fully {
-                words.push_str(&format!(" Watch for: {}.", force.words()));
-            } else {
-                words.push_str(
-                    " Watch for: at a toggle the crank can no longer push the follower; stop short of it or drive \
-                     the follower.",
-                );
+        let danger = match mobility.input_turns_fully {
+            true => force.words(),
+            false => {
+                "at a toggle the crank can no longer push the follower; stop short of it or drive the follower"
             }
+        };
+        if force < ForceTransmission::Fair {
+            words.push_str(&format!(" Watch for: {danger}."));
         }
     }
     if let Some(ratio) = mobility.link_ratio {
@@ -225,29 +206,26 @@ fn methods(configuration: &Configuration, colour: Colour) -> String {
     if configuration.rows.iter().all(|row| row.methods.is_empty()) {
         return String::new();
     }
-    let mut grid = Grid::new(&[
-        (Right, &["crank"]),
-        (Left, &["method"]),
-        (Right, &["t1", "theta3", "theta4", "Px", "Py", "off", "rounds"]),
-        (Left, &["status"]),
-    ]);
-    for row in &configuration.rows {
-        for m in &row.methods {
-            let ink = if m.status == "ok" { Ink::Faint } else { Ink::Bad };
-            grid.row([
-                plain(significant(row.crank_deg, 6)),
-                plain(m.method.name()),
-                plain(m.t1.map_or(NO_NUMBER.to_owned(), |t| format!("{:+}", t.sign()))),
-                number(m.coupler_deg, 0.0),
-                number(m.follower_deg, 0.0),
-                number(m.coupler_point.map(|p| p[0]), 0.0),
-                number(m.coupler_point.map(|p| p[1]), 0.0),
-                plain(m.from_natural.map_or(NO_NUMBER.to_owned(), |d| format!("{d:.1e}"))),
-                plain(m.iterations.map_or(String::new(), |n| n.to_string())),
-                (m.status.to_owned(), ink),
-            ]);
-        }
-    }
+    let rows: Vec<(f64, &MethodRow)> =
+        configuration.rows.iter().flat_map(|row| row.methods.iter().map(|m| (row.crank_deg, m))).collect();
+    let or_none = |text: Option<String>| plain(text.unwrap_or(NO_NUMBER.to_owned()));
+    let grid = Grid::of(
+        &rows,
+        &[
+            (Right, "crank", &|(crank_deg, _)| plain(significant(*crank_deg, 6))),
+            (Left, "method", &|(_, m)| plain(m.method.name())),
+            (Right, "t1", &|(_, m)| or_none(m.t1.map(|t| format!("{:+}", t.sign())))),
+            (Right, "theta3", &|(_, m)| number(m.coupler_deg, 0.0)),
+            (Right, "theta4", &|(_, m)| number(m.follower_deg, 0.0)),
+            (Right, "Px", &|(_, m)| number(m.coupler_point.map(|p| p[0]), 0.0)),
+            (Right, "Py", &|(_, m)| number(m.coupler_point.map(|p| p[1]), 0.0)),
+            (Right, "off", &|(_, m)| or_none(m.from_natural.map(|d| format!("{d:.1e}")))),
+            (Right, "rounds", &|(_, m)| plain(m.iterations.map_or(String::new(), |n| n.to_string()))),
+            (Left, "status", &|(_, m)| {
+                (m.status.to_owned(), if m.status == "ok" { Ink::Faint } else { Ink::Bad })
+            }),
+        ],
+    );
     format!(
         "\n  Other methods; off: distance of their P from that of the natural coordinates\n{}",
         grid.render(colour)
@@ -257,8 +235,9 @@ fn methods(configuration: &Configuration, colour: Colour) -> String {
 /// Returns Romero's condition (20) beside a sufficient condition: at the rows without a position, otherwise at the row
 /// at which it is nearest to failing.
 fn conditions(configuration: &Configuration) -> String {
-    let rows = || configuration.rows.iter().filter_map(|row| Some((row, row.assembly?)));
-    let line = |(row, condition): (&Row, crate::mechanism::analysis::ConditionRecord)| {
+    let rows: Vec<(&Row, ConditionRecord)> =
+        configuration.rows.iter().filter_map(|row| Some((row, row.assembly?))).collect();
+    let line = |(row, condition): &(&Row, ConditionRecord)| {
         let ratio = condition.ratio.map_or("undefined".to_owned(), |r| significant(r, 5));
         let word = |holds| if holds { "holds" } else { "fails" };
         format!(
@@ -268,18 +247,14 @@ fn conditions(configuration: &Configuration) -> String {
             word(condition.sufficient)
         )
     };
-    let open: Vec<String> = rows().filter(|(row, _)| row.pose.is_none()).take(6).map(line).collect();
-    let shown = if open.is_empty() {
-        let least = rows().min_by(|x, y| {
-            let ratio = |c: &crate::mechanism::analysis::ConditionRecord| c.ratio.unwrap_or(f64::INFINITY);
-            ratio(&x.1).total_cmp(&ratio(&y.1))
-        });
-        least.map(line).into_iter().collect()
-    } else {
-        open
-    };
+    let ratio = |(_, condition): &(&Row, ConditionRecord)| condition.ratio.unwrap_or(f64::INFINITY);
+    let mut shown: Vec<String> =
+        rows.iter().filter(|(row, _)| row.pose.is_none()).take(6).map(line).collect();
     if shown.is_empty() {
-        return String::new();
+        let Some(least) = rows.iter().min_by(|x, y| ratio(x).total_cmp(&ratio(y))) else {
+            return String::new();
+        };
+        shown.push(line(least));
     }
     let text = format!("Assembly (Romero's condition is necessary, not sufficient): {}.", shown.join("; "));
     wrapped("\n  ", "  ", &text, COLUMNS)

@@ -2,7 +2,7 @@
 //! gives the same bytes.
 
 use super::csv::{Column, cells, names, written};
-use super::table::{BatchOutcome, BatchRow};
+use super::table::BatchRow;
 use super::text::{cell, exact};
 use super::words;
 use crate::record::{ErrorRecord, Record};
@@ -10,20 +10,17 @@ use crate::record::{ErrorRecord, Record};
 fn columns<'a>() -> [Column<BatchRow<'a>>; 12] {
     [
         ("problem", |row| cell(row.name)),
-        ("status", status),
+        ("status", |row| status(row).to_owned()),
         ("points", |row| ran(row, |r| r.problem.resolved.task.path.points.len().to_string())),
         ("candidates", |row| ran(row, |r| r.candidates.len().to_string())),
-        ("accepted", |row| ran(row, |r| accepted(r).to_string())),
+        ("accepted", |row| row.outcome.map_or(String::new(), |_| row.accepted().to_string())),
         ("sum_sq", |row| best(row, |e| e.sum_sq)),
         ("rms", |row| best(row, |e| e.rms)),
         ("max", |row| best(row, |e| e.max)),
         ("rms_over_size", |row| best(row, |e| e.rms_over_size)),
         ("reason", |row| ran(row, |r| words::reason_name(r.termination.reason).to_owned())),
         ("evaluations", |row| ran(row, |r| r.evaluations.objective.to_string())),
-        ("message", |row| match row.outcome {
-            BatchOutcome::Ran(_) => String::new(),
-            BatchOutcome::Refused(why) => cell(why),
-        }),
+        ("message", |row| row.outcome.err().map_or(String::new(), cell)),
     ]
 }
 
@@ -34,31 +31,20 @@ pub fn batch_csv(files: &[BatchRow<'_>]) -> String {
     written(names(&columns), files.iter().map(|file| cells(&columns, file)))
 }
 
-fn accepted(record: &Record) -> usize {
-    record.candidates.iter().filter(|c| c.accepted).count()
-}
-
-fn status(row: &BatchRow<'_>) -> String {
-    let status = match row.outcome {
-        BatchOutcome::Ran(record) if accepted(record) > 0 => "accepted",
-        BatchOutcome::Ran(_) => "nothing-acceptable",
-        BatchOutcome::Refused(_) => "refused",
-    };
-    status.to_owned()
+fn status(row: &BatchRow<'_>) -> &'static str {
+    match row.outcome {
+        Ok(_) if row.accepted() > 0 => "accepted",
+        Ok(_) => "nothing-acceptable",
+        Err(_) => "refused",
+    }
 }
 
 /// Returns a cell of a file that was run; empty for a refused one.
 fn ran(row: &BatchRow<'_>, of: fn(&Record) -> String) -> String {
-    match row.outcome {
-        BatchOutcome::Ran(record) => of(record),
-        BatchOutcome::Refused(_) => String::new(),
-    }
+    row.outcome.map_or(String::new(), of)
 }
 
 /// Returns a figure of the best candidate; empty without one.
 fn best(row: &BatchRow<'_>, of: fn(&ErrorRecord) -> f64) -> String {
-    match row.outcome {
-        BatchOutcome::Ran(record) => record.candidates.first().map_or(String::new(), |c| exact(of(&c.error))),
-        BatchOutcome::Refused(_) => String::new(),
-    }
+    row.best().map_or(String::new(), |error| exact(of(error)))
 }

@@ -1,6 +1,6 @@
 //! Lines printed below the candidates: the family, warnings, cognates, the buildable candidate.
 
-use super::text::{clean, significant, wrapped};
+use super::text::{clean, plural, significant, wrapped};
 use super::words;
 use crate::record::{Candidate, ON_BOUND_TEXT, Record, WarningKind};
 
@@ -92,11 +92,10 @@ fn alternatives(candidate: &Candidate) -> Option<String> {
     let all = &candidate.alternatives;
     let count = match all.len() {
         0 => return None,
-        1 => "1 cognate".to_owned(),
-        n => format!("{n} cognates"),
+        n => plural(n, "cognate"),
     };
     let accepted: Vec<_> = all.iter().filter(|a| a.accepted).collect();
-    let best = accepted.iter().map(|a| a.transmission_worst_deg).fold(f64::NEG_INFINITY, f64::max);
+    let best = accepted.iter().map(|a| a.transmission_worst_deg).reduce(f64::max);
     let verdict = match (accepted.len(), all.len()) {
         (0, 1) => "not accepted".to_owned(),
         (0, _) => "none accepted".to_owned(),
@@ -104,10 +103,7 @@ fn alternatives(candidate: &Candidate) -> Option<String> {
         (1, _) => "one accepted".to_owned(),
         (n, _) => format!("{n} accepted"),
     };
-    let angle = if accepted.is_empty() {
-        String::new()
-    } else {
-        format!(", worst transmission {} deg", significant(best, 3))
-    };
+    let angle =
+        best.map_or(String::new(), |best| format!(", worst transmission {} deg", significant(best, 3)));
     Some(format!("same curve: {count}, {verdict}{angle}, see record"))
 }

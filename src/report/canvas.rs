@@ -1,9 +1,13 @@
 //! The SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up.
 
+use super::labels::{Beside, Labels};
 use super::scene::{Bounds, round_length};
-use super::text::{brief, xml};
+use super::text::{brief, shortened, xml};
 use crate::mechanism::Complex;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
+
+/// A place on the canvas and a displacement on it, in pixels, y down.
+pub(super) use kurbo::{Point as Spot, Vec2};
 
 /// Colours that colour-blind readers can distinguish (Okabe and Ito 2008) on a light ground.
 pub(super) mod palette {
@@ -19,23 +23,6 @@ pub(super) mod palette {
     pub(in crate::report) const SECOND: &str = "#cc79a7";
     pub(in crate::report) const BAR: &str = "#d6dde4";
     pub(in crate::report) const BAR_EDGE: &str = "#45525f";
-}
-
-/// A place on the canvas, in pixels, y down.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spot {
-    pub(super) x: f64,
-    pub(super) y: f64,
-}
-
-impl Spot {
-    pub(super) fn new(x: f64, y: f64) -> Self {
-        Spot { x, y }
-    }
-
-    pub(super) fn distance(self, other: Spot) -> f64 {
-        (self.x - other.x).hypot(self.y - other.y)
-    }
 }
 
 /// A rectangle on the canvas.
@@ -78,10 +65,12 @@ impl View {
     }
 
     pub(super) fn spot(&self, p: Complex) -> Spot {
-        Spot::new(
-            self.to.x + self.scale * (p.re - self.from.re),
-            self.to.y - self.scale * (p.im - self.from.im),
-        )
+        self.to + Vec2::new(self.scale * (p.re - self.from.re), -(self.scale * (p.im - self.from.im)))
+    }
+
+    /// Returns the places of points.
+    pub(super) fn spots<'a>(&self, points: impl IntoIterator<Item = &'a Complex>) -> Vec<Spot> {
+        points.into_iter().map(|p| self.spot(*p)).collect()
     }
 }
 
@@ -103,13 +92,37 @@ impl Frame {
     }
 }
 
+/// Returns the attributes of a line of a colour and width.
+pub(super) fn stroke(colour: &str, width: impl Display) -> String {
+    format!(r#"stroke="{colour}" stroke-width="{width}""#)
+}
+
+/// Returns the attributes of a shape that is filled with one colour and edged in another.
+pub(super) fn filled(fill: &str, edge: &str, width: impl Display) -> String {
+    format!(r#"fill="{fill}" {}"#, stroke(edge, width))
+}
+
+/// Returns the attributes of a curve, which encloses nothing.
+pub(super) fn outline(colour: &str, width: impl Display) -> String {
+    filled("none", colour, width)
+}
+
+/// Returns a width that follows from a drawing's weight, to a hundredth of a pixel.
+pub(super) fn weighted(width: f64) -> String {
+    format!("{width:.2}")
+}
+
+/// The attributes of lines with round ends, and of shapes with round corners.
+pub(super) const ROUND_ENDS: &str = r#" stroke-linecap="round""#;
+pub(super) const ROUND_CORNERS: &str = r#" stroke-linejoin="round""#;
+
 /// Returns the attributes of a text of a size and colour.
-pub(super) fn font(size: impl std::fmt::Display, colour: &str) -> String {
+pub(super) fn font(size: impl Display, colour: &str) -> String {
     format!(r#"font-size="{size}" fill="{colour}""#)
 }
 
 /// Returns the attributes of a bold text of a size and colour.
-pub(super) fn bold(size: impl std::fmt::Display, colour: &str) -> String {
+pub(super) fn bold(size: impl Display, colour: &str) -> String {
     format!(r#"font-size="{size}" font-weight="600" fill="{colour}""#)
 }
 
@@ -122,7 +135,7 @@ pub(super) enum Corners {
 
 /// Returns the attributes of a text with paper of a width around its letters, so that it is legible on lines.
 pub(super) fn haloed(text: &str, width: &str, corners: Corners) -> String {
-    let join = if corners == Corners::Round { r#" stroke-linejoin="round""# } else { "" };
+    let join = if corners == Corners::Round { ROUND_CORNERS } else { "" };
     format!(r#"{text} stroke="{}" stroke-width="{width}"{join} paint-order="stroke""#, palette::PAPER)
 }
 
@@ -173,10 +186,11 @@ pub(super) enum Anchor {
     End,
 }
 
-/// A canvas: SVG elements, one after the other.
+/// A canvas: SVG elements, one after the other, and the places that they occupy for labels.
 #[derive(Default)]
 pub(super) struct Canvas {
     pub(super) body: String,
+    pub(super) labels: Labels,
 }
 
 // Writing to a String cannot fail, so the results of `write!` are dropped.
@@ -195,35 +209,19 @@ impl Canvas {
     }
 
     pub(super) fn line(&mut self, a: Spot, b: Spot, attributes: &str) {
-        let _ = writeln!(
-            self.body,
-            r#"<line x1="{}" y1="{}" x2="{}" y2="{}" {attributes}/>"#,
-            px(a.x),
-            px(a.y),
-            px(b.x),
-            px(b.y)
-        );
+        let [x1, y1, x2, y2] = [a.x, a.y, b.x, b.y].map(px);
+        let _ = writeln!(self.body, r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" {attributes}/>"#);
     }
 
     pub(super) fn circle(&mut self, at: Spot, radius: f64, attributes: &str) {
-        let _ = writeln!(
-            self.body,
-            r#"<circle cx="{}" cy="{}" r="{}" {attributes}/>"#,
-            px(at.x),
-            px(at.y),
-            px(radius)
-        );
+        let [x, y, radius] = [at.x, at.y, radius].map(px);
+        let _ = writeln!(self.body, r#"<circle cx="{x}" cy="{y}" r="{radius}" {attributes}/>"#);
     }
 
     pub(super) fn area(&mut self, area: Area, attributes: &str) {
-        let _ = writeln!(
-            self.body,
-            r#"<rect x="{}" y="{}" width="{}" height="{}" {attributes}/>"#,
-            px(area.x),
-            px(area.y),
-            px(area.width),
-            px(area.height)
-        );
+        let [x, y, width, height] = [area.x, area.y, area.width, area.height].map(px);
+        let _ =
+            writeln!(self.body, r#"<rect x="{x}" y="{y}" width="{width}" height="{height}" {attributes}/>"#);
     }
 
     /// Draws a polyline through the places; those nearer than a third of a pixel to the one before are left out.
@@ -253,11 +251,7 @@ impl Canvas {
             push_spot(&mut data, 'M', spot);
             data.push_str("h0");
         }
-        let _ = writeln!(
-            self.body,
-            r#"<path d="{data}" fill="none" stroke="{colour}" stroke-width="{}" stroke-linecap="round"/>"#,
-            px(diameter)
-        );
+        let _ = writeln!(self.body, r#"<path d="{data}" {}{ROUND_ENDS}/>"#, outline(colour, px(diameter)));
     }
 
     /// Writes a text. Foreign text is cleaned and escaped here and nowhere else.
@@ -267,26 +261,37 @@ impl Canvas {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let _ = writeln!(
-            self.body,
-            r#"<text x="{}" y="{}" text-anchor="{anchor}" {attributes}>{}</text>"#,
-            px(at.x),
-            px(at.y),
-            xml(text)
-        );
+        let ([x, y], text) = ([at.x, at.y].map(px), xml(text));
+        let _ =
+            writeln!(self.body, r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {attributes}>{text}</text>"#);
+    }
+
+    /// Writes a title at the left and a note at the right of a line, each with its size; the title is cut to the space
+    /// that is left.
+    pub(super) fn title(&mut self, [left, right]: [f64; 2], y: f64, title: (&str, f64), note: (&str, f64)) {
+        let room = right - left - text_width(note.0, note.1) - 20.0;
+        let shown = shortened(title.0, (room / text_width("x", title.1)) as usize);
+        self.text(Spot::new(left, y), Anchor::Start, &bold(title.1, palette::INK), &shown);
+        self.text(Spot::new(right, y), Anchor::End, &font(note.1, palette::MUTED), note.0);
+    }
+
+    /// Writes a text of a size beside a point, where it hides least.
+    pub(super) fn label(&mut self, text: &str, font_size: f64, attributes: &str, beside: Beside) {
+        if let Some(at) = self.labels.place(text, font_size, beside) {
+            self.text(at, Anchor::Middle, attributes, text);
+        }
     }
 
     /// Draws a bar of a round length, at most `most` pixels long, with its label above and its left end at `at`.
     pub(super) fn scale_bar(&mut self, at: Spot, view: &View, most: f64, unit: &str) {
         let length = round_length(most / view.scale);
         let label = format!("{}{unit}", brief(length, 3));
-        let ink = format!(r#"stroke="{}" stroke-width="1.5""#, palette::INK);
-        let (left, right) = (at, Spot::new(at.x + length * view.scale, at.y));
-        self.line(left, right, &ink);
-        for end in [left, right] {
-            self.line(Spot::new(end.x, end.y - 4.0), Spot::new(end.x, end.y + 4.0), &ink);
-        }
-        let middle = Spot::new(0.5 * (left.x + right.x), at.y - 7.0);
+        let ink = stroke(palette::INK, 1.5);
+        let ends = [at, at + Vec2::new(length * view.scale, 0.0)];
+        self.line(ends[0], ends[1], &ink);
+        let tick = Vec2::new(0.0, 4.0);
+        ends.into_iter().for_each(|end| self.line(end - tick, end + tick, &ink));
+        let middle = ends[0].midpoint(ends[1]) - Vec2::new(0.0, 7.0);
         self.text(middle, Anchor::Middle, &font(12, palette::INK), &label);
     }
 

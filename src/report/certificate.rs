@@ -95,12 +95,9 @@ pub(super) fn proof_sentences(certificate: &Certificate) -> Vec<String> {
             percent_up(certificate.wanted_gap)
         )
     });
-    if !certificate.covered.is_empty() {
-        sentences.push(format!("Covered: {}.", list(&certificate.covered)));
-    }
-    if !certificate.not_covered.is_empty() {
-        sentences.push(format!("Not covered: {}.", list(&certificate.not_covered)));
-    }
+    let lists = [("Covered", &certificate.covered), ("Not covered", &certificate.not_covered)];
+    let lists = lists.into_iter().filter(|(_, entries)| !entries.is_empty());
+    sentences.extend(lists.map(|(word, entries)| format!("{word}: {}.", list(entries))));
     sentences
 }
 

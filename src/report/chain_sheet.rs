@@ -1,11 +1,10 @@
 //! A drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced
 //! point.
 
-use super::canvas::{Canvas, Spot, palette};
-use super::labels::Labels;
-use super::parts::{away, letter, point_mark, stand};
+use super::canvas::{Canvas, ROUND_ENDS, Spot, filled, outline, palette, stroke};
+use super::parts::{away, letter, plate, point_mark, stand};
 use super::scene::Bounds;
-use super::sheet::{FULL, Heading, Sheet, fitted, page, scale_bar};
+use super::sheet::{FULL, Heading, Sheet, page};
 use super::text::significant;
 use crate::mechanism::analysis::Status;
 use crate::mechanism::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
@@ -20,50 +19,38 @@ pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
     let closed: Vec<f64> =
         analysis.rows.iter().filter(|r| r.status != Status::Open).map(|r| r.crank_deg).collect();
     let poses: Vec<Vec<Complex>> = closed.iter().filter_map(|deg| pose(chain, *deg)).collect();
-    let mut bounds = Bounds::default();
-    path.iter().flatten().chain(poses.iter().flatten()).for_each(|p| bounds.hold(*p));
-    chain.pose().known().iter().for_each(|p| bounds.hold(*p));
-    let (view, bottom) = fitted(&bounds, FULL);
-    let mut body = Canvas::default();
-    let mut labels = Labels::default();
+    let start = chain.pose();
+    let all = path.iter().flatten().chain(poses.iter().flatten()).chain(start.known());
+    let (mut sheet, view) = Sheet::fitted("Positions", &Bounds::of(all.copied()), FULL);
+    let body = &mut sheet.body;
     let step = poses.len().div_ceil(GHOSTS + 1).max(1);
     for ghost in poses.iter().step_by(step).skip(1) {
         body.raw(r#"<g opacity="0.28">"#);
-        links(&mut body, chain, &ghost.iter().map(|p| view.spot(*p)).collect::<Vec<_>>());
+        links(body, chain, &view.spots(ghost));
         body.raw("</g>");
     }
-    let curve = format!(r#"fill="none" stroke="{}" stroke-width="2.2""#, palette::CURVE);
-    let mut run: Vec<Spot> = Vec::new();
-    for at in path.iter().chain([&None]) {
-        match at {
-            Some(p) => run.push(view.spot(*p)),
-            None if run.is_empty() => {}
-            None => {
-                let whole = run.len() == path.len();
-                body.path(&run, whole, &curve);
-                run.clear();
-            }
-        }
+    // A path with gaps is drawn in parts; without one it is closed.
+    for run in path.split(Option::is_none).filter(|run| !run.is_empty()) {
+        body.path(&view.spots(run.iter().flatten()), run.len() == path.len(), &outline(palette::CURVE, 2.2));
     }
     if let Some(first) = poses.first() {
-        let spots: Vec<Spot> = first.iter().map(|p| view.spot(*p)).collect();
+        let spots = view.spots(first);
         let pivots = chain.names().len() - chain.stages() - 1;
-        spots[..pivots].iter().for_each(|spot| stand(&mut body, *spot, 0.9));
-        links(&mut body, chain, &spots);
-        let pin = format!(r#"fill="{}" stroke="{}" stroke-width="1.4""#, palette::PAPER, palette::INK);
+        spots[..pivots].iter().for_each(|spot| stand(body, *spot, 0.9));
+        links(body, chain, &spots);
+        let pin = filled(palette::PAPER, palette::INK, 1.4);
         spots.iter().for_each(|spot| body.circle(*spot, 3.4, &pin));
-        point_mark(&mut body, spots[chain.trace().index()], 1.0);
+        point_mark(body, spots[chain.trace().index()], 1.0);
         for (name, spot) in chain.names().iter().zip(&spots) {
             let others: Vec<Spot> = spots.iter().filter(|s| s.distance(*spot) > 1.0).copied().collect();
-            letter(&mut body, &mut labels, name, *spot, away(*spot, &others));
+            letter(body, name, *spot, away(*spot, &others));
         }
     }
-    scale_bar(&mut body, &view, analysis.unit, FULL, bottom);
-    let note = match closed.first() {
+    sheet.scale_bar(&view, analysis.unit, FULL);
+    sheet.note = match closed.first() {
         Some(deg) => format!("crank at {}°, and the path of {}", significant(*deg, 5), analysis.trace),
         None => "it closes at none of the crank angles asked".to_owned(),
     };
-    let sheet = Sheet { title: "Positions".into(), note, body, foot: Vec::new(), width: FULL, bottom };
     let standing = if analysis.input_turns_fully { "the crank turns fully" } else { "the crank rocks" };
     let mut lines = vec![format!("{} stages after the crank", analysis.stages)];
     if let Some(stroke) = analysis.stroke {
@@ -88,19 +75,10 @@ fn links(canvas: &mut Canvas, chain: &Chain, spots: &[Spot]) {
             [] | [_] => {}
             [from, to] => {
                 for (colour, width) in [(palette::BAR_EDGE, 7.0), (palette::BAR, 4.6)] {
-                    let attributes =
-                        format!(r#"stroke="{colour}" stroke-width="{width}" stroke-linecap="round""#);
-                    canvas.line(*from, *to, &attributes);
+                    canvas.line(*from, *to, &(stroke(colour, width) + ROUND_ENDS));
                 }
             }
-            plate => {
-                let attributes = format!(
-                    r#"fill="{}" fill-opacity="0.22" stroke="{}" stroke-width="2" stroke-linejoin="round""#,
-                    palette::COUPLER,
-                    palette::BAR_EDGE
-                );
-                canvas.path(plate, true, &attributes);
-            }
+            corners => plate(canvas, corners, palette::COUPLER, palette::BAR_EDGE, "2"),
         }
     }
 }

@@ -5,11 +5,12 @@ use super::csv::written;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain};
 use super::text::{COLUMNS, NO_NUMBER, clean, exact, indented, significant, wrapped};
+use super::words::length_suffix;
 use crate::mechanism::analysis::chain::{ChainAnalysis, ChainRow};
 
 /// Returns the mechanism in words: stages, input range, the box of the traced path.
 pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
-    let unit = analysis.unit.map_or(String::new(), |u| format!(" {}", u.label()));
+    let unit = length_suffix(analysis.unit);
     let trace = clean(&analysis.trace);
     let stages = if analysis.stages == 1 { "stage follows" } else { "stages follow" };
     let mut words = format!("{} {stages} the crank.", analysis.stages);
@@ -23,12 +24,8 @@ pub fn chain_head(analysis: &ChainAnalysis, colour: Colour) -> String {
     if let Some(stroke) = analysis.stroke {
         let along = |axis: usize| {
             let (low, high) = (stroke.low[axis], stroke.high[axis]);
-            format!(
-                "{} (from {} to {})",
-                significant(high - low, 5),
-                significant(low, 5),
-                significant(high, 5)
-            )
+            let [moves, from, to] = [high - low, low, high].map(|length| significant(length, 5));
+            format!("{moves} (from {from} to {to})")
         };
         words.push_str(&format!(" Over a turn {trace} moves {} in x and {} in y{unit}.", along(0), along(1)));
     }

@@ -1,12 +1,14 @@
 //! Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share.
 
 use super::analysis_sheets::dimensions;
-use super::canvas::{Anchor, Canvas, Spot, View, bold, font, palette, text_width};
-use super::labels::Labels;
-use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
-use super::scene::{Bounds, SAMPLES, circuits_through, closest, middle_position};
-use super::sheet::{FULL, Heading, INSET, Sheet, fitted, page, scale_bar};
-use super::text::{brief, clean};
+use super::canvas::{
+    Anchor, Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, stroke,
+    text_width,
+};
+use super::parts::{away, bars, letter, mark_joints, point_mark, stand, triangle};
+use super::scene::{Bounds, SAMPLES, all_joints, circuits_through, closest, middle_position};
+use super::sheet::{FULL, Heading, INSET, Sheet, page};
+use super::text::{brief, clean, plural};
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use std::f64::consts::TAU;
@@ -42,8 +44,7 @@ pub fn cognates_svg(name: &str, unit: Option<Unit>, original: &FourBar, cognates
     let name = clean(name);
     let counted = match cognates.len() {
         0 => "no cognate".to_owned(),
-        1 => "1 cognate".to_owned(),
-        n => format!("{n} cognates"),
+        n => plural(n, "cognate"),
     };
     let heading = Heading {
         title: if name.is_empty() { "unnamed linkage".to_owned() } else { name },
@@ -60,26 +61,21 @@ fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet 
     let drawn = position(original, cognates);
     let circuits = circuits_through(original, [middle_position(original)], SAMPLES);
     let curve: Vec<Complex> = circuits.iter().flatten().map(|joints| joints.coupler_point).collect();
-    let mut bounds = Bounds::default();
-    curve.iter().chain(drawn.iter().flatten().flatten()).for_each(|p| bounds.hold(*p));
-    bounds.hold(original.crank_pivot());
-    bounds.hold(original.follower_pivot());
+    let pivots = [original.crank_pivot(), original.follower_pivot()];
+    let bounds = Bounds::of(curve.iter().chain(drawn.iter().flatten().flatten()).chain(&pivots).copied());
 
-    let (view, bottom) = fitted(&bounds, FULL);
-    let mut body = Canvas::default();
-    let mut labels = Labels::default();
-    let spots: Vec<Spot> = curve.iter().map(|p| view.spot(*p)).collect();
-    draw(&mut body, &mut labels, &view, &spots, &drawn);
-    scale_bar(&mut body, &view, unit, 0.6 * FULL, bottom);
+    let (mut sheet, view) = Sheet::fitted("The linkage and its cognates", &bounds, FULL);
+    draw(&mut sheet.body, &view, &view.spots(&curve), &drawn);
+    sheet.scale_bar(&view, unit, 0.6 * FULL);
 
-    let mut y = bottom + 18.0;
-    legend(&mut body, y, palette::CURVE, "the common coupler curve, traced by P", None);
+    let mut y = sheet.bottom + 18.0;
+    legend(&mut sheet.body, y, palette::CURVE, "the common coupler curve, traced by P", None);
     for (i, linkage) in std::iter::once(original).chain(cognates).enumerate() {
         y += LEGEND_LINE;
         let is_drawn = drawn.get(i).is_some_and(Option::is_some);
-        legend(&mut body, y, COLOURS[i % 3].0, &standing(i), Some(&described(linkage, is_drawn)));
+        legend(&mut sheet.body, y, COLOURS[i % 3].0, &standing(i), Some(&described(linkage, is_drawn)));
     }
-    let note = if drawn.first().is_none_or(Option::is_none) {
+    sheet.note = if drawn.first().is_none_or(Option::is_none) {
         "the links of the original cannot be joined".to_owned()
     } else {
         let pivots = fixed_pivots(&drawn);
@@ -88,8 +84,8 @@ fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet 
         });
         format!("all in the position that belongs to one point P of the curve{third}")
     };
-    let title = "The linkage and its cognates".to_owned();
-    Sheet { title, note, body, foot: Vec::new(), width: FULL, bottom: y + 6.0 }
+    sheet.bottom = y + 6.0;
+    sheet
 }
 
 /// Returns `original`, `first cognate` ..
@@ -137,9 +133,7 @@ fn spacing(all: &[Option<Joints5>]) -> f64 {
 }
 
 fn joints_at(linkage: &FourBar, angle: f64, assembly: AssemblyMode) -> Option<Joints5> {
-    let joints = linkage.position_with(angle, assembly).joints()?;
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    Some([a, b, joints.crank_pin, joints.follower_pin, joints.coupler_point])
+    Some(all_joints(linkage, &linkage.position_with(angle, assembly).joints()?))
 }
 
 /// Returns the joints of a linkage whose coupler point is at `p`: C is an intersection of the circles of radius a about
@@ -189,12 +183,10 @@ fn fixed_pivots(all: &[Option<Joints5>]) -> Vec<Complex> {
     pivots
 }
 
-fn draw(canvas: &mut Canvas, labels: &mut Labels, view: &View, curve: &[Spot], drawn: &[Option<Joints5>]) {
+fn draw(canvas: &mut Canvas, view: &View, curve: &[Spot], drawn: &[Option<Joints5>]) {
     const WEIGHT: f64 = 0.8;
-    let pivots: Vec<Spot> = fixed_pivots(drawn).iter().map(|p| view.spot(*p)).collect();
-    let dotted =
-        format!(r#"fill="none" stroke="{}" stroke-width="1.2" stroke-dasharray="2 5""#, palette::MUTED);
-    canvas.path(&pivots, true, &dotted);
+    let pivots = view.spots(&fixed_pivots(drawn));
+    canvas.path(&pivots, true, &(outline(palette::MUTED, 1.2) + r#" stroke-dasharray="2 5""#));
     let linkages: Vec<(usize, [Spot; 5])> = drawn
         .iter()
         .enumerate()
@@ -204,22 +196,20 @@ fn draw(canvas: &mut Canvas, labels: &mut Labels, view: &View, curve: &[Spot], d
         let [.., c, d, p] = *joints;
         let (edge, fill) = COLOURS[i % 3];
         triangle(canvas, [c, d, p], fill, edge, WEIGHT);
-        mark_joints(labels, *joints);
+        mark_joints(&mut canvas.labels, *joints);
     }
-    let stroke =
-        format!(r#"fill="none" stroke="{}" stroke-width="2.6" stroke-linejoin="round""#, palette::CURVE);
-    canvas.path(curve, true, &stroke);
-    mark_path(labels, curve);
+    canvas.path(curve, true, &(outline(palette::CURVE, 2.6) + ROUND_CORNERS));
+    canvas.labels.mark_path(curve);
     pivots.iter().for_each(|pivot| stand(canvas, *pivot, WEIGHT));
     for (i, joints) in linkages.iter().rev() {
         let [a, b, c, d, _] = *joints;
         let (edge, _) = COLOURS[i % 3];
-        bars(canvas, [a, b, c, d], palette::BAR, edge, WEIGHT);
+        bars(canvas, [a, b, c, d], edge, WEIGHT);
     }
     let Some((_, [.., p])) = linkages.first() else { return };
     point_mark(canvas, *p, 1.1);
     let neighbours: Vec<Spot> = linkages.iter().flat_map(|(_, j)| [j[2], j[3]]).collect();
-    letter(canvas, labels, "P", *p, away(*p, &neighbours));
+    letter(canvas, "P", *p, away(*p, &neighbours));
     for (name, pivot) in ["A", "B", "G"].into_iter().zip(&pivots) {
         let arms: Vec<Spot> = linkages
             .iter()
@@ -227,17 +217,17 @@ fn draw(canvas: &mut Canvas, labels: &mut Labels, view: &View, curve: &[Spot], d
             .filter(|(at, _)| at.distance(*pivot) < 0.5)
             .map(|(_, pin)| pin)
             .collect();
-        letter(canvas, labels, name, *pivot, plus(away(*pivot, &arms), Spot::new(0.0, -0.4)));
+        letter(canvas, name, *pivot, away(*pivot, &arms) + Vec2::new(0.0, -0.4));
     }
     for (i, [a, b, c, d, p]) in &linkages {
         let number = if *i == 0 { String::new() } else { i.to_string() };
-        letter(canvas, labels, &format!("C{number}"), *c, away(*c, &[*a, *d, *p]));
-        letter(canvas, labels, &format!("D{number}"), *d, away(*d, &[*b, *c, *p]));
+        letter(canvas, &format!("C{number}"), *c, away(*c, &[*a, *d, *p]));
+        letter(canvas, &format!("D{number}"), *d, away(*d, &[*b, *c, *p]));
     }
 }
 
 fn legend(canvas: &mut Canvas, y: f64, colour: &str, name: &str, rest: Option<&str>) {
-    let swatch = format!(r#"stroke="{colour}" stroke-width="5" stroke-linecap="round""#);
+    let swatch = stroke(colour, 5) + ROUND_ENDS;
     canvas.line(Spot::new(INSET + 4.0, y - 4.0), Spot::new(INSET + 26.0, y - 4.0), &swatch);
     let bold = bold(12.5, palette::INK);
     canvas.text(Spot::new(INSET + 38.0, y), Anchor::Start, &bold, name);

@@ -1,19 +1,71 @@
 //! The contact sheet: small drawings of all candidates side by side.
 
-use super::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette, text_width};
+use super::canvas::{Anchor, Area, Canvas, Spot, View, outline, palette};
 use super::figure::{Detail, draw};
 use super::scene::Scene;
-use super::text::{shortened, significant};
+use super::text::{plural, shortened, significant};
 use super::words;
 use crate::record::{Candidate, Record};
 
-const MARGIN: f64 = 24.0;
-const GAP: f64 = 16.0;
-const CELL: f64 = 276.0;
-/// The height at which the drawing of a cell ends and its figures begin.
-const CELL_DRAWING: f64 = 216.0;
+/// The margin of a contact sheet.
+pub(super) const MARGIN: f64 = 24.0;
 const MOST_COLUMNS: usize = 4;
 const MOST_CELLS: usize = 100;
+
+/// The layout of a contact sheet: square cells in rows, each with a drawing above two lines of words.
+pub(super) struct Layout {
+    pub(super) columns: usize,
+    /// The side of a cell.
+    pub(super) cell: f64,
+    /// The distance between cells.
+    pub(super) gap: f64,
+    /// The height at which the first cells begin.
+    pub(super) head: f64,
+    /// The height at which the drawing of a cell ends and its words begin.
+    pub(super) drawing: f64,
+    /// The distance of the words from the sides of their cell.
+    pub(super) inset: f64,
+    /// The heights of the two lines below the drawing.
+    pub(super) lines: [f64; 2],
+    pub(super) font_size: f64,
+}
+
+/// A word below a drawing: its text, font weight and colour.
+pub(super) type Word<'a> = (&'a str, u16, &'static str);
+
+impl Layout {
+    pub(super) fn width(&self) -> f64 {
+        2.0 * MARGIN + self.columns as f64 * (self.cell + self.gap) - self.gap
+    }
+
+    /// Returns the height of a sheet with `n` cells.
+    pub(super) fn height(&self, n: usize) -> f64 {
+        let rows = n.div_ceil(self.columns) as f64;
+        (self.head + rows * (self.cell + self.gap) - self.gap + MARGIN).max(self.head + MARGIN)
+    }
+
+    /// Returns the cell with an index.
+    pub(super) fn frame(&self, index: usize) -> Area {
+        let at = |start: f64, i: usize| start + i as f64 * (self.cell + self.gap);
+        let (x, y) = (at(MARGIN, index % self.columns), at(self.head, index / self.columns));
+        Area { x, y, width: self.cell, height: self.cell }
+    }
+
+    /// Writes the words below a drawing: in each line one at the left and one at the right.
+    pub(super) fn words(&self, canvas: &mut Canvas, frame: Area, lines: [[Word<'_>; 2]; 2]) {
+        let (left, right) = (frame.x + self.inset, frame.x + frame.width - self.inset);
+        for (line, below) in lines.iter().zip(self.lines) {
+            let y = frame.y + self.drawing + below;
+            for ((text, weight, colour), (x, anchor)) in
+                line.iter().zip([(left, Anchor::Start), (right, Anchor::End)])
+            {
+                let size = self.font_size;
+                let face = format!(r#"font-size="{size}" font-weight="{weight}" fill="{colour}""#);
+                canvas.text(Spot::new(x, y), anchor, &face, text);
+            }
+        }
+    }
+}
 
 /// Returns every candidate with its rank, error, type and verdict (at most a hundred).
 pub fn contact_sheet_svg(record: &Record) -> String {
@@ -24,54 +76,34 @@ pub fn contact_sheet_svg(record: &Record) -> String {
         5 | 6 | 9 => 3,
         _ => MOST_COLUMNS,
     };
-    let rows = n.div_ceil(columns);
-    let width = 2.0 * MARGIN + columns as f64 * (CELL + GAP) - GAP;
+    let (head, drawing, lines) = (56.0, 216.0, [22.0, 42.0]);
+    let layout =
+        Layout { columns, cell: 276.0, gap: 16.0, head, drawing, inset: 12.0, lines, font_size: 12.5 };
     let mut canvas = Canvas::default();
     let name = words::problem_name(record);
     let counted = match record.candidates.len() {
         0 => "no candidate".to_owned(),
-        1 => "1 candidate".to_owned(),
-        n => format!("{n} candidates"),
+        n => plural(n, "candidate"),
     };
-    let room = ((width - 2.0 * MARGIN - text_width(&counted, 13.0) - 20.0) / text_width("x", 19.0)) as usize;
-    let bold = bold(19, palette::INK);
-    canvas.text(Spot::new(MARGIN, 38.0), Anchor::Start, &bold, &shortened(&name, room));
-    let muted = font(13, palette::MUTED);
-    canvas.text(Spot::new(width - MARGIN, 38.0), Anchor::End, &muted, &counted);
+    canvas.title([MARGIN, layout.width() - MARGIN], 38.0, (&name, 19.0), (&counted, 13.0));
     for (i, candidate) in record.candidates.iter().take(n).enumerate() {
-        let corner = Spot::new(
-            MARGIN + (i % columns) as f64 * (CELL + GAP),
-            56.0 + (i / columns) as f64 * (CELL + GAP),
-        );
-        cell(&mut canvas, record, candidate, corner);
+        cell(&mut canvas, record, candidate, &layout, layout.frame(i));
     }
-    let height = 56.0 + rows as f64 * (CELL + GAP) - GAP + MARGIN;
-    canvas.document(width, height.max(80.0), &name, &counted)
+    canvas.document(layout.width(), layout.height(n), &name, &counted)
 }
 
-fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, corner: Spot) {
-    let frame = Area { x: corner.x, y: corner.y, width: CELL, height: CELL };
-    canvas.area(frame, &format!(r#"fill="none" stroke="{}" stroke-width="1" rx="4""#, palette::FAINT));
+fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, layout: &Layout, frame: Area) {
+    canvas.area(frame, &(outline(palette::FAINT, 1) + r#" rx="4""#));
     let scene = Scene::new(record, Some(candidate));
-    let view = View::fit(&scene.bounds(), Area { height: CELL_DRAWING, ..frame }.shrunk(20.0));
+    let view = View::fit(&scene.bounds(), Area { height: layout.drawing, ..frame }.shrunk(20.0));
     draw(canvas, &scene, &view, Detail::small(0.6));
 
-    let (left, right) = (corner.x + 12.0, corner.x + CELL - 12.0);
-    let ink =
-        |weight: u16, colour: &str| format!(r#"font-size="12.5" font-weight="{weight}" fill="{colour}""#);
-    let first = corner.y + CELL_DRAWING + 22.0;
-    let rms = format!(
-        "#{}   rms {}{}",
-        candidate.rank,
-        significant(candidate.error.rms, 4),
-        words::unit_suffix(record)
-    );
-    canvas.text(Spot::new(left, first), Anchor::Start, &ink(600, palette::INK), &rms);
-    let kind = ink(400, palette::INK);
-    canvas.text(Spot::new(right, first), Anchor::End, &kind, candidate.linkage_type.name());
+    let (rms, unit) = (significant(candidate.error.rms, 4), words::unit_suffix(record));
+    let rms = format!("#{}   rms {rms}{unit}", candidate.rank);
     let worst = format!("worst angle {}°", significant(candidate.transmission_deg.worst, 3));
-    canvas.text(Spot::new(left, first + 20.0), Anchor::Start, &ink(400, palette::MUTED), &worst);
-    let colour = if candidate.accepted { palette::MUTED } else { palette::TARGET_TEXT };
     let verdict = shortened(&words::verdict(record, candidate), 20);
-    canvas.text(Spot::new(right, first + 20.0), Anchor::End, &ink(400, colour), &verdict);
+    let colour = if candidate.accepted { palette::MUTED } else { palette::TARGET_TEXT };
+    let kind = candidate.linkage_type.name();
+    let first = [(rms.as_str(), 600, palette::INK), (kind, 400, palette::INK)];
+    layout.words(canvas, frame, [first, [(&worst, 400, palette::MUTED), (&verdict, 400, colour)]]);
 }

@@ -5,7 +5,7 @@ use super::scene::first_position;
 use super::text::{cell, exact, push_exact};
 use super::words;
 use crate::mechanism::four_bar::transmission::angle_opposite;
-use crate::mechanism::{CouplerCurve, FourBar};
+use crate::mechanism::{CouplerCurve, FourBar, Joints};
 use crate::record::{Candidate, Record};
 use crate::task::Defect;
 
@@ -128,19 +128,15 @@ fn curve(candidate: &Candidate) -> Vec<[f64; CURVE_COLUMNS.len()]> {
     for i in 0..rows {
         let parameter_deg = i as f64 * 360.0 / rows as f64;
         let (angle, assembly) = circuit.position_at(parameter_deg.to_radians());
-        let Some(joints) = linkage.position_with(angle, assembly).joints() else { continue };
+        let Some(Joints { crank_pin: c, follower_pin: d, coupler_point: p }) =
+            linkage.position_with(angle, assembly).joints()
+        else {
+            continue;
+        };
         let transmission = angle_opposite(linkage.diagonal(angle), linkage.coupler(), linkage.follower());
-        let numbers = [
-            if rocks { angle.to_degrees() } else { parameter_deg },
-            assembly.sign(),
-            joints.crank_pin.re,
-            joints.crank_pin.im,
-            joints.follower_pin.re,
-            joints.follower_pin.im,
-            joints.coupler_point.re,
-            joints.coupler_point.im,
-            transmission.to_degrees(),
-        ];
+        let crank_deg = if rocks { angle.to_degrees() } else { parameter_deg };
+        let (t1, mu) = (assembly.sign(), transmission.to_degrees());
+        let numbers = [crank_deg, t1, c.re, c.im, d.re, d.im, p.re, p.im, mu];
         if numbers.iter().all(|x| x.is_finite()) {
             table.push(numbers);
         }

@@ -97,6 +97,7 @@ fn found(exact: &ExactRecord) -> String {
     let census = &exact.census;
     let found = count(census.classes);
     let all = count(GENERIC_CLASSES);
+    let some = format!("{found} of {all} solutions up to cognates were found");
     match exact.completeness {
         Completeness::Complete => {
             format!("{found} solutions up to cognates: as many as nine points in general position have.")
@@ -113,14 +114,8 @@ fn found(exact: &ExactRecord) -> String {
             }
             text
         }
-        Completeness::Incomplete => {
-            format!(
-                "{found} of {all} solutions up to cognates were found: some may be missing, for paths were lost or ended together."
-            )
-        }
-        Completeness::Cancelled => {
-            format!("{found} of {all} solutions up to cognates were found until the search was stopped.")
-        }
+        Completeness::Incomplete => some + ": some may be missing, for paths were lost or ended together.",
+        Completeness::Cancelled => some + " until the search was stopped.",
     }
 }
 
@@ -216,36 +211,38 @@ pub(super) fn others(linkage: &ExactLinkage) -> Vec<String> {
 }
 
 fn rows(record: &Record, linkages: &[ExactLinkage], colour: Colour) -> String {
-    let mut grid = Grid::new(&[
-        (Right, &["", "#"]),
-        (Left, &["curve", "type", "t1", "defects"]),
-        (Right, &["transmission", "ratio", "radius"]),
-        (Left, &["verdict"]),
-    ]);
-    for (i, linkage) in linkages.iter().enumerate() {
-        let signs = linkage.t1_at.iter().take(COLUMNS / 4);
-        let signs: String = signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect();
-        let others = others(linkage);
-        let said = match (linkage.accepted, others.as_slice()) {
-            (true, _) => "accepted".to_owned(),
-            (false, []) => "no".to_owned(),
-            (false, [only]) => format!("no: {only}"),
-            (false, [first, rest @ ..]) => format!("no: {first} +{}", rest.len()),
-        };
-        grid.row([
-            plain((i + 1).to_string()),
-            (if linkage.rank > 0 { format!("#{}", linkage.rank) } else { String::new() }, Ink::Strong),
-            plain(ability(linkage)),
-            plain(linkage.linkage_type.name()),
-            plain(signs),
-            plain(defects(linkage)),
-            plain(format!("{}°", significant(linkage.transmission_worst_deg, 3))),
-            plain(significant(linkage.link_ratio, 3)),
-            plain(linkage.certified.map_or("no proof".to_owned(), |c| {
-                format!("{}{}", significant(c.radius, 1), words::unit_suffix(record))
-            })),
-            verdict(shortened(&said, 22), linkage.accepted),
-        ]);
-    }
+    let rank = |l: &ExactLinkage| if l.rank > 0 { format!("#{}", l.rank) } else { String::new() };
+    let signs = |l: &ExactLinkage| -> String {
+        let signs = l.t1_at.iter().take(COLUMNS / 4);
+        signs.map(|t1| if *t1 == AssemblyMode::Plus { '+' } else { '-' }).collect()
+    };
+    let radius = |l: &ExactLinkage| match l.certified {
+        Some(proof) => format!("{}{}", significant(proof.radius, 1), words::unit_suffix(record)),
+        None => "no proof".to_owned(),
+    };
+    let said = |l: &ExactLinkage| match (l.accepted, others(l).as_slice()) {
+        (true, _) => "accepted".to_owned(),
+        (false, []) => "no".to_owned(),
+        (false, [only]) => format!("no: {only}"),
+        (false, [first, rest @ ..]) => format!("no: {first} +{}", rest.len()),
+    };
+    let numbered: Vec<(usize, &ExactLinkage)> = (1..).zip(linkages).collect();
+    let grid = Grid::of(
+        &numbered,
+        &[
+            (Right, "", &|(number, _)| plain(number.to_string())),
+            (Right, "#", &|(_, l)| (rank(l), Ink::Strong)),
+            (Left, "curve", &|(_, l)| plain(ability(l))),
+            (Left, "type", &|(_, l)| plain(l.linkage_type.name())),
+            (Left, "t1", &|(_, l)| plain(signs(l))),
+            (Left, "defects", &|(_, l)| plain(defects(l))),
+            (Right, "transmission", &|(_, l)| {
+                plain(format!("{}°", significant(l.transmission_worst_deg, 3)))
+            }),
+            (Right, "ratio", &|(_, l)| plain(significant(l.link_ratio, 3))),
+            (Right, "radius", &|(_, l)| plain(radius(l))),
+            (Left, "verdict", &|(_, l)| verdict(shortened(&said(l), 22), l.accepted)),
+        ],
+    );
     grid.render(colour)
 }

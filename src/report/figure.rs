@@ -1,9 +1,13 @@
 //! The drawing of a scene: curve, linkage, target and labels.
 
-use super::canvas::{Anchor, Canvas, Corners, Spot, View, font, haloed, palette, px};
-use super::labels::Labels;
-use super::parts::{away, bars, letter, mark_joints, mark_path, plus, point_mark, stand, triangle};
-use super::scene::{Bounds, Scene, all_joints};
+use super::canvas::{
+    Canvas, Corners, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px,
+    stroke, weighted,
+};
+use super::labels::Beside;
+use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
+use super::scene::{Bounds, Scene, Target};
+use super::words::joined;
 use crate::mechanism::{Complex, Joints};
 use std::collections::BTreeSet;
 
@@ -41,64 +45,44 @@ const NUMBERED: usize = 20;
 /// The largest number of target points that are drawn as rings; more are plain dots.
 const MARKED: usize = 150;
 
-/// Draws the scene.
+/// Draws the scene; labels avoid the marked places, and the drawn parts are marked for later labels.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    draw_among(canvas, &mut Labels::default(), scene, view, detail);
-}
-
-/// Draws the scene as [`draw`] does; labels avoid the marked places, and the drawn parts are marked for later labels.
-pub(super) fn draw_among(
-    canvas: &mut Canvas,
-    labels: &mut Labels,
-    scene: &Scene,
-    view: &View,
-    detail: Detail,
-) {
-    let joints = joint_spots(scene, view).filter(|_| detail.linkage);
+    let joints = scene.pose.filter(|_| detail.linkage).map(|pose| pose.joints.map(|p| view.spot(p)));
     if let Some(joints) = joints {
         let [a, b, c, d, p] = joints;
         ground(canvas, [a, b], detail);
         pin_paths(canvas, scene, view, detail);
-        mark_joints(labels, joints);
+        mark_joints(&mut canvas.labels, joints);
         triangle(canvas, [c, d, p], palette::COUPLER, palette::BAR_EDGE, detail.weight);
     }
-    curves(canvas, labels, scene, view, detail);
+    curves(canvas, scene, view, detail);
     let marks = Marks::new(scene, view, detail);
-    whiskers(canvas, labels, &marks, detail);
+    whiskers(canvas, &marks, detail);
     if let Some([a, b, c, d, _]) = joints {
-        bars(canvas, [a, b, c, d], palette::BAR, palette::BAR_EDGE, detail.weight);
+        bars(canvas, [a, b, c, d], palette::BAR_EDGE, detail.weight);
     }
-    targets(canvas, labels, &marks, detail);
+    targets(canvas, &marks, detail);
     if let Some(joints) = joints {
         point_mark(canvas, joints[4], detail.weight);
         if detail.letters {
-            letters(canvas, labels, joints);
+            letters(canvas, joints);
         }
     }
     if detail.numbers {
-        numbers(canvas, labels, scene, view, marks.radius);
+        numbers(canvas, scene, view, marks.radius);
     }
 }
 
 /// Draws the coupler curve of the first circuit, and those of other used circuits dashed.
-fn curves(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, detail: Detail) {
+fn curves(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
+    let line = outline(palette::CURVE, weighted(2.4 * detail.weight)) + ROUND_CORNERS + ROUND_ENDS;
     for (i, circuit) in scene.circuits.iter().enumerate() {
         let points: Vec<Complex> = circuit.iter().map(|joints| joints.coupler_point).collect();
         let dashes = if i == 0 { "" } else { r#" stroke-dasharray="6 5""# };
-        let attributes = format!(
-            concat!(
-                r#"fill="none" stroke="{}" stroke-width="{:.2}" "#,
-                r#"stroke-linejoin="round" stroke-linecap="round"{}"#
-            ),
-            palette::CURVE,
-            2.4 * detail.weight,
-            dashes
-        );
         let (strands, closed) = strands(&points, detail.clip.as_ref());
-        for strand in strands {
-            let spots: Vec<Spot> = strand.iter().map(|p| view.spot(*p)).collect();
-            canvas.path(&spots, closed, &attributes);
-            mark_path(labels, &spots);
+        for spots in strands.iter().map(|strand| view.spots(strand)) {
+            canvas.path(&spots, closed, &format!("{line}{dashes}"));
+            canvas.labels.mark_path(&spots);
         }
     }
 }
@@ -110,39 +94,26 @@ fn strands(points: &[Complex], clip: Option<&Bounds>) -> (Vec<Vec<Complex>>, boo
         return (vec![points.to_vec()], true);
     };
     let n = points.len();
-    let inside = |i: usize| clip.holds(points[i % n]);
     // Begins at a point outside, so that no part is cut in two.
-    let start = (0..n).find(|i| !inside(*i)).unwrap_or(0);
-    let mut strands = Vec::new();
-    let mut strand: Vec<Complex> = Vec::new();
-    for i in start..start + n {
-        if inside(i + 1) || inside(i) {
-            if strand.is_empty() {
-                strand.push(points[i % n]);
-            }
-            strand.push(points[(i + 1) % n]);
-        } else if !strand.is_empty() {
-            strands.push(std::mem::take(&mut strand));
-        }
-    }
-    if !strand.is_empty() {
-        strands.push(strand);
-    }
-    (strands, false)
+    let start = points.iter().position(|p| !clip.holds(*p)).unwrap_or(0);
+    let sides: Vec<[Complex; 2]> = (start..start + n).map(|i| [points[i % n], points[(i + 1) % n]]).collect();
+    let runs = sides.split(|ends| !ends.iter().any(|p| clip.holds(*p)));
+    let strand = |run: &[[Complex; 2]]| {
+        Some([run.first()?[0]].into_iter().chain(run.iter().map(|side| side[1])).collect())
+    };
+    (runs.filter_map(strand).collect(), false)
 }
 
 /// Draws the line A-B, and under each fixed pivot a hatched stand.
 fn ground(canvas: &mut Canvas, pivots: [Spot; 2], detail: Detail) {
-    let faint =
-        format!(r#"stroke="{}" stroke-width="{:.2}" stroke-dasharray="2 5""#, palette::MUTED, detail.weight);
+    let faint = stroke(palette::MUTED, weighted(detail.weight)) + r#" stroke-dasharray="2 5""#;
     canvas.line(pivots[0], pivots[1], &faint);
     pivots.into_iter().for_each(|pivot| stand(canvas, pivot, detail.weight));
 }
 
 /// Draws the paths of C and D.
 fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
-    let attributes =
-        format!(r#"fill="none" stroke="{}" stroke-width="{:.2}""#, palette::FAINT, 1.1 * detail.weight);
+    let attributes = outline(palette::FAINT, weighted(1.1 * detail.weight));
     let pins: [fn(&Joints) -> Complex; 2] = [|joints| joints.crank_pin, |joints| joints.follower_pin];
     for circuit in &scene.circuits {
         for pin in pins {
@@ -150,11 +121,6 @@ fn pin_paths(canvas: &mut Canvas, scene: &Scene, view: &View, detail: Detail) {
             canvas.path(&spots, true, &attributes);
         }
     }
-}
-
-/// Returns A, B, C, D, P on the canvas; `None` for a scene without a position.
-fn joint_spots(scene: &Scene, view: &View) -> Option<[Spot; 5]> {
-    Some(all_joints(scene.linkage.as_ref()?, &scene.pose.as_ref()?.joints).map(|p| view.spot(p)))
 }
 
 /// The place of a target point, and the place that the coupler point reaches instead.
@@ -196,108 +162,80 @@ impl Marks {
 }
 
 /// Draws a line from each target point to the coupler point's place, if it is long enough to be seen.
-fn whiskers(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
+fn whiskers(canvas: &mut Canvas, marks: &Marks, detail: Detail) {
     let mut data = String::new();
     for mark in &marks.list {
         let Some(reached) = mark.reached else { continue };
         // A line inside the ring would only look like a blot.
         if mark.spot.distance(reached) > marks.radius {
-            labels.mark_line(mark.spot, reached);
-            data.push_str(&format!(
-                "M{} {}L{} {}",
-                px(mark.spot.x),
-                px(mark.spot.y),
-                px(reached.x),
-                px(reached.y)
-            ));
+            canvas.labels.mark_line(mark.spot, reached);
+            let [x, y, to_x, to_y] = [mark.spot.x, mark.spot.y, reached.x, reached.y].map(px);
+            data.push_str(&format!("M{x} {y}L{to_x} {to_y}"));
         }
     }
     if !data.is_empty() {
         let (width, opacity) = if marks.many { (0.8, 0.45) } else { (1.6, 1.0) };
-        canvas.raw(&format!(
-            r#"<path d="{data}" fill="none" stroke="{}" stroke-width="{:.2}" stroke-opacity="{opacity}"/>"#,
-            palette::TARGET,
-            width * detail.weight
-        ));
+        let line = outline(palette::TARGET, weighted(width * detail.weight));
+        canvas.raw(&format!(r#"<path d="{data}" {line} stroke-opacity="{opacity}"/>"#));
     }
 }
 
 /// Draws target points as rings, or as dots if there are many, the first one filled and larger.
-fn targets(canvas: &mut Canvas, labels: &mut Labels, marks: &Marks, detail: Detail) {
+fn targets(canvas: &mut Canvas, marks: &Marks, detail: Detail) {
     let spots: Vec<Spot> = marks.list.iter().map(|mark| mark.spot).collect();
-    spots.iter().for_each(|spot| labels.mark(*spot));
+    spots.iter().for_each(|spot| canvas.labels.mark(*spot));
     let (radius, w) = (marks.radius, detail.target_weight);
     if marks.many {
         canvas.dots(&spots, 2.0 * radius, palette::TARGET);
     } else {
-        let ring = format!(
-            r#"fill="{}" fill-opacity="0.75" stroke="{}" stroke-width="{:.2}""#,
-            palette::PAPER,
-            palette::TARGET,
-            1.7 * w
-        );
+        let edge = stroke(palette::TARGET, weighted(1.7 * w));
+        let ring = format!(r#"fill="{}" fill-opacity="0.75" {edge}"#, palette::PAPER);
         spots.iter().for_each(|spot| canvas.circle(*spot, radius, &ring));
         let reached: Vec<Spot> = marks.list.iter().filter_map(|mark| mark.reached).collect();
         canvas.dots(&reached, 3.4 * w, palette::CURVE);
     }
     if let Some(first) = marks.list.first().filter(|mark| mark.index == 0) {
-        let filled = format!(
-            r#"fill="{}" stroke="{}" stroke-width="{:.2}""#,
-            palette::TARGET,
-            palette::PAPER,
-            1.0 * w
-        );
-        canvas.circle(first.spot, (1.5 * radius).max(5.0 * w), &filled);
+        let dot = filled(palette::TARGET, palette::PAPER, weighted(w));
+        canvas.circle(first.spot, (1.5 * radius).max(5.0 * w), &dot);
     }
 }
 
 /// Draws the letters A B C D P.
-fn letters(canvas: &mut Canvas, labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
-    let above = Spot::new(0.0, -1.0);
+fn letters(canvas: &mut Canvas, [a, b, c, d, p]: [Spot; 5]) {
     let joints = [
         ("P", p, away(p, &[c, d])),
         ("C", c, away(c, &[a, d, p])),
         ("D", d, away(d, &[b, c, p])),
-        ("A", a, plus(away(a, &[c]), above)),
-        ("B", b, plus(away(b, &[d]), above)),
+        ("A", a, away(a, &[c]) + UP),
+        ("B", b, away(b, &[d]) + UP),
     ];
     for (name, joint, towards) in joints {
-        letter(canvas, labels, name, joint, towards);
+        letter(canvas, name, joint, towards);
     }
 }
 
 /// Draws the numbers of the target points: all if they are few, otherwise 0 and round steps.
-fn numbers(canvas: &mut Canvas, labels: &mut Labels, scene: &Scene, view: &View, radius: f64) {
+fn numbers(canvas: &mut Canvas, scene: &Scene, view: &View, radius: f64) {
     let n = scene.targets.len();
     let few = n <= NUMBERED;
     let step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 20_000]
         .into_iter()
         .find(|step| n <= NUMBERED * step / if *step > 1 { 2 } else { 1 })
         .unwrap_or(50_000);
-    let mut bounds = Bounds::default();
-    scene.targets.iter().for_each(|target| bounds.hold(target.at));
-    let centre = view.spot(bounds.centre());
+    let centre = view.spot(Bounds::of(scene.targets.iter().map(|target| target.at)).centre());
     let attributes = haloed(&font(11, palette::TARGET_TEXT), "2.5", Corners::Round);
     for target in scene.targets.iter().filter(|target| target.index % step == 0) {
-        let spot = view.spot(target.at);
-        let towards = Spot::new(spot.x - centre.x, spot.y - centre.y);
+        let point = view.spot(target.at);
         // Points at one place, such as a last one that repeats the first, share a label.
-        if scene.targets.iter().take(target.index).any(|other| other.at == target.at) && few {
+        let together = |other: &&Target| other.index == target.index || (few && other.at == target.at);
+        let indices: Vec<usize> = scene.targets.iter().filter(together).map(|other| other.index).collect();
+        if indices.first() != Some(&target.index) {
             continue;
         }
-        let mut number = target.index.to_string();
-        for other in scene.targets.iter().filter(|t| few && t.index > target.index && t.at == target.at) {
-            number.push_str(&format!(", {}", other.index));
-        }
-        if let Some(at) = labels.place(
-            &number,
-            11.0,
-            spot,
-            radius + if target.index == 0 { 5.0 } else { 3.0 },
-            towards,
-            target.index == 0,
-        ) {
-            canvas.text(at, Anchor::Middle, &attributes, &number);
-        }
+        let number = joined(&indices);
+        let is_first = target.index == 0;
+        let distance = radius + if is_first { 5.0 } else { 3.0 };
+        let beside = Beside { point, distance, towards: point - centre, needed: is_first };
+        canvas.label(&number, 11.0, &attributes, beside);
     }
 }

@@ -59,6 +59,9 @@ pub(super) fn verdict(text: impl Into<String>, good: bool) -> Cell {
     (text.into(), if good { Ink::Good } else { Ink::Bad })
 }
 
+/// A column of a table: its alignment, its heading, and the cell of a row.
+pub(super) type Column<'a, Row> = (Align, &'static str, &'a dyn Fn(&Row) -> Cell);
+
 /// A table: the headings, and rows of cells.
 pub(super) struct Grid {
     heads: Vec<(&'static str, Align)>,
@@ -66,6 +69,13 @@ pub(super) struct Grid {
 }
 
 impl Grid {
+    /// Returns the table of these rows.
+    pub(super) fn of<Row>(rows: &[Row], columns: &[Column<'_, Row>]) -> Self {
+        let heads = columns.iter().map(|(align, head, _)| (*head, *align)).collect();
+        let cells = |row| columns.iter().map(|(.., cell)| cell(row)).collect();
+        Grid { heads, rows: rows.iter().map(cells).collect() }
+    }
+
     /// Returns an empty table with headings, neighbours with one alignment together.
     pub(super) fn new(groups: &[(Align, &[&'static str])]) -> Self {
         let heads = groups.iter().flat_map(|(align, heads)| heads.iter().map(|head| (*head, *align)));

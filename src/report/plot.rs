@@ -52,9 +52,9 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
             raster.line(joints.coupler_point, next);
         }
     }
-    let (first, other) = match glyphs {
-        Glyphs::Braille => ('●', '○'),
-        Glyphs::Ascii => ('@', 'o'),
+    let (first, other, rule, curve) = match glyphs {
+        Glyphs::Braille => ('●', '○', "─", "  ⠤⠒ coupler curve"),
+        Glyphs::Ascii => ('@', 'o', "-", "  . coupler curve"),
     };
     // Marking many points would hide the curve. The first one is marked last, so that no other one hides it.
     let every = scene.targets.len().div_ceil(MOST_MARKS);
@@ -62,19 +62,12 @@ pub fn terminal_plot(record: &Record, index: usize, width: usize, height: usize,
         raster.mark(point.at, if point.index == 0 { first } else { other });
     }
     let mut out = raster.render();
-    let curve = match (scene.circuits.is_empty(), glyphs) {
-        (true, _) => "",
-        (false, Glyphs::Braille) => "  ⠤⠒ coupler curve",
-        (false, Glyphs::Ascii) => "  . coupler curve",
-    };
+    let curve = if scene.circuits.is_empty() { "" } else { curve };
     let thinned = if every > 1 { format!(", 1 in {every}") } else { String::new() };
     let columns = 10.0_f64.min(raster.columns as f64);
     let length = round_length(columns * raster.unit_of_column());
     let count = (length / raster.unit_of_column()).round().max(1.0) as usize;
-    let ruler = match glyphs {
-        Glyphs::Braille => "─".repeat(count),
-        Glyphs::Ascii => "-".repeat(count),
-    };
+    let ruler = rule.repeat(count);
     out.push_str(&format!(
         "{:INDENT$}{other} target{thinned}  {first} point 0{curve}  {ruler} {}{}\n",
         "",
@@ -92,9 +85,7 @@ struct Raster {
     /// The number of dots per unit of length, and the plane's point at the middle of the raster.
     scale: f64,
     centre: Complex,
-    /// The Braille dots, one byte for each cell.
-    cells: Vec<u8>,
-    marks: Vec<Option<char>>,
+    cells: Vec<char>,
 }
 
 impl Raster {
@@ -106,12 +97,10 @@ impl Raster {
         }
     }
 
-    /// Returns the height of a dot divided by its width.
+    /// Returns the height of a dot divided by its width: a cell is twice as high as wide.
     fn aspect(glyphs: Glyphs) -> f64 {
-        match glyphs {
-            Glyphs::Braille => 1.0,
-            Glyphs::Ascii => 2.0,
-        }
+        let (across, down) = Self::dots(glyphs);
+        2.0 * across as f64 / down as f64
     }
 
     /// Returns a raster in the shape of the box, at most `columns` by `rows`.
@@ -127,16 +116,7 @@ impl Raster {
         };
         let columns = cells(bounds.width(), across, columns);
         let rows = cells(bounds.height() / aspect, down, rows);
-        let n = columns * rows;
-        Raster {
-            columns,
-            rows,
-            glyphs,
-            scale,
-            centre: bounds.centre(),
-            cells: vec![0; n],
-            marks: vec![None; n],
-        }
+        Raster { columns, rows, glyphs, scale, centre: bounds.centre(), cells: vec![' '; columns * rows] }
     }
 
     fn unit_of_column(&self) -> f64 {
@@ -172,8 +152,11 @@ impl Raster {
             let t = i as f64 / steps as f64;
             if let Some((cell, column, row)) = self.cell(x + t * (to_x - x), y + t * (to_y - y)) {
                 // Dots 1 2 3 7 down the left, 4 5 6 8 down the right.
-                const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
-                self.cells[cell] |= DOTS[column][row];
+                const DOTS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
+                const NO_DOT: u32 = 0x2800;
+                let dots = u32::from(self.cells[cell]).max(NO_DOT) | DOTS[column][row];
+                let braille = self.glyphs == Glyphs::Braille;
+                self.cells[cell] = char::from_u32(dots).filter(|_| braille).unwrap_or('.');
             }
         }
     }
@@ -181,26 +164,14 @@ impl Raster {
     fn mark(&mut self, p: Complex, glyph: char) {
         let (x, y) = self.place(p);
         if let Some((cell, ..)) = self.cell(x, y) {
-            self.marks[cell] = Some(glyph);
+            self.cells[cell] = glyph;
         }
     }
 
     fn render(&self) -> String {
         let mut out = String::new();
-        for row in 0..self.rows {
-            let line: String = (0..self.columns)
-                .map(|column| {
-                    let cell = row * self.columns + column;
-                    match (self.marks[cell], self.cells[cell], self.glyphs) {
-                        (Some(mark), ..) => mark,
-                        (None, 0, _) => ' ',
-                        (None, dots, Glyphs::Braille) => {
-                            char::from_u32(0x2800 + u32::from(dots)).unwrap_or('.')
-                        }
-                        (None, _, Glyphs::Ascii) => '.',
-                    }
-                })
-                .collect();
+        for row in self.cells.chunks(self.columns) {
+            let line: String = row.iter().collect();
             out.push_str(format!("{:INDENT$}{line}", "").trim_end());
             out.push('\n');
         }

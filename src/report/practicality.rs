@@ -1,12 +1,14 @@
 //! The practicality of a linkage as text: layers, distances, sensitivities.
 
 use super::grid::Align::{Left, Right};
-use super::grid::{Colour, Grid, Ink, plain};
+use super::grid::{Colour, Column, Grid, Ink, plain};
 use super::text::{COLUMNS, brief, capitalised, indented, significant, wrapped};
+use super::words::length_suffix;
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
-use crate::judge::practicality::{Closest, Practicality};
+use crate::judge::practicality::sweep::Stretch;
+use crate::judge::practicality::{Closest, Pin, Practicality};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::Link;
 
@@ -60,24 +62,17 @@ impl Words {
     }
 
     pub(super) fn length(&self, value: f64) -> String {
-        let unit = self.unit.map_or(String::new(), |u| format!(" {}", u.label()));
-        format!("{}{unit}", brief(value, DIGITS))
+        brief(value, DIGITS) + &length_suffix(self.unit)
     }
 
     /// Returns the construction of the links, and the motion over which they were examined.
     pub(super) fn made(&self, practicality: &Practicality) -> String {
         let (radius, pin) = (practicality.build.plate_radius, practicality.build.pin_radius);
+        let of = |s: &Stretch| format!("{} to {}", degrees(s.from), degrees(s.to));
+        let stretches: Vec<String> = practicality.sweep.stretches.iter().map(of).collect();
         let motion = match practicality.sweep.full_turn {
             true => "the full turn of the crank".to_owned(),
-            false => {
-                let of = |s: &crate::judge::practicality::sweep::Stretch| {
-                    format!("{} to {}", degrees(s.from), degrees(s.to))
-                };
-                format!(
-                    "crank {}",
-                    practicality.sweep.stretches.iter().map(of).collect::<Vec<_>>().join(", ")
-                )
-            }
+            false => format!("crank {}", stretches.join(", ")),
         };
         format!(
             "Holes {}, plates {} around them; over {motion}.",
@@ -88,39 +83,29 @@ impl Words {
 
     /// Returns the stacking and its obstacles, one line for each.
     pub(super) fn layers(&self, layering: &Layering) -> Vec<String> {
-        let mut out = Vec::new();
-        let mut line = |text: &str| out.push(text.to_owned());
-        let (_, crossed) = layering.obstacles();
+        const NO_STACK: &str =
+            "No stacking of the four plates works, each in one layer, the ground in one piece.";
+        const ALWAYS: &str = "What always works: the ground on both sides, in five layers: ground, crank, coupler, \
+            follower, ground. The two halves are joined outside of where the links reach.";
+        const JOINED: &str = "Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) \
+            overlap at it and never share a layer.";
+        let mut out = vec![match &layering.stack {
+            Some(stack) => format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)),
+            None => self.colour.paint(Ink::Bad, NO_STACK),
+        }];
+        out.extend(layering.free_pairs.iter().map(|pair| self.pair(pair)));
         match &layering.stack {
             Some(stack) => {
-                line(&format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)));
-                for pair in &layering.free_pairs {
-                    line(&self.pair(pair));
-                }
-                for (pin, layer) in &stack.through {
-                    line(&self.through(layering, stack, *pin, *layer));
-                }
+                let through = |(pin, layer): &(Pin, usize)| self.through(layering, stack, *pin, *layer);
+                out.extend(stack.through.iter().map(through));
             }
             None => {
-                line(&self.colour.paint(
-                    Ink::Bad,
-                    "No stacking of the four plates works, each in one layer, the ground in one piece.",
-                ));
-                for pair in &layering.free_pairs {
-                    line(&self.pair(pair));
-                }
-                for p in &crossed {
-                    line(&self.crossing(p));
-                }
-                line(
-                    "What always works: the ground on both sides, in five layers: ground, crank, coupler, follower, \
-                     ground. The two halves are joined outside of where the links reach.",
-                );
+                let (_, crossed) = layering.obstacles();
+                out.extend(crossed.iter().map(|p| self.crossing(p)));
+                out.push(ALWAYS.to_owned());
             }
         }
-        line(
-            "Plates that a pin joins (ground-crank, crank-coupler, coupler-follower, follower-ground) overlap at it and never share a layer.",
-        );
+        out.push(JOINED.to_owned());
         out
     }
 
@@ -146,13 +131,7 @@ impl Words {
         )
     }
 
-    fn through(
-        &self,
-        layering: &Layering,
-        stack: &Stack,
-        pin: crate::judge::practicality::Pin,
-        layer: usize,
-    ) -> String {
+    fn through(&self, layering: &Layering, stack: &Stack, pin: Pin, layer: usize) -> String {
         let beside: Vec<String> = stack.layers[layer]
             .iter()
             .filter_map(|plate| layering.pins_plates.iter().find(|p| p.pin == pin && p.plate == *plate))
@@ -169,39 +148,37 @@ impl Words {
     }
 
     fn distances(&self, distances: &[PivotDistance], hole: f64) -> String {
-        let mut grid = Grid::new(&[(Left, &["joints"]), (Right, &["least", "at crank"]), (Left, &[""])]);
-        for d in distances.iter().filter(|d| !d.fixed) {
-            let [one, other] = d.between;
-            let note = objection(d, hole);
-            let ink = if note.is_empty() { Ink::Plain } else { Ink::Bad };
-            grid.row([
-                plain(format!("{one}-{other}")),
-                (significant(d.closest.value, DIGITS + 1), ink),
-                plain(degrees(d.closest.crank_angle)),
-                (note.to_owned(), ink),
-            ]);
-        }
+        let moving: Vec<&PivotDistance> = distances.iter().filter(|d| !d.fixed).collect();
+        let ink = |d: &PivotDistance| if objection(d, hole).is_empty() { Ink::Plain } else { Ink::Bad };
+        let grid = Grid::of(
+            &moving,
+            &[
+                (Left, "joints", &|d| plain(d.between.join("-"))),
+                (Right, "least", &|d| (significant(d.closest.value, DIGITS + 1), ink(d))),
+                (Right, "at crank", &|d| plain(degrees(d.closest.crank_angle))),
+                (Left, "", &|d| (objection(d, hole).to_owned(), ink(d))),
+            ],
+        );
         let mut out = grid.render(self.colour);
         out.push_str(&indented(&held(distances)));
         out
     }
 
     fn sensitivity(&self, felt: &Sensitivity, at_points: bool, tolerance: f64) -> String {
-        let heads: &[&str] = if at_points { &["rms", "most", "at point"] } else { &["rms", "most"] };
-        let mut grid = Grid::new(&[(Left, &["dimension"]), (Right, heads)]);
         let worst = felt.worst_dimension().name;
-        let row = |d: &Dimension, ink: Ink| {
-            [
-                (d.name.to_owned(), ink),
-                (significant(d.rms, DIGITS), ink),
-                (significant(d.worst, DIGITS), ink),
-                (d.worst_at.to_string(), ink),
-            ]
+        let ink = |d: &Dimension| match d.name {
+            name if name == felt.ground.name => Ink::Faint,
+            name if name == worst => Ink::Strong,
+            _ => Ink::Plain,
         };
-        for d in &felt.dimensions {
-            grid.row(row(d, if d.name == worst { Ink::Strong } else { Ink::Plain }));
-        }
-        grid.row(row(&felt.ground, Ink::Faint));
+        let columns: [Column<'_, &Dimension>; 4] = [
+            (Left, "dimension", &|d| (d.name.to_owned(), ink(d))),
+            (Right, "rms", &|d| (significant(d.rms, DIGITS), ink(d))),
+            (Right, "most", &|d| (significant(d.worst, DIGITS), ink(d))),
+            (Right, "at point", &|d| (d.worst_at.to_string(), ink(d))),
+        ];
+        let rows: Vec<&Dimension> = felt.dimensions.iter().chain([&felt.ground]).collect();
+        let grid = Grid::of(&rows, if at_points { &columns } else { &columns[..3] });
         let mut out = indented(&shift(felt));
         out.push_str(&grid.render(self.colour));
         out.push_str(&indented(&self.together(felt, at_points, tolerance)));

@@ -16,16 +16,10 @@ pub fn costs(record: &Record, columns: usize) -> String {
         return String::new();
     }
     let mut out = format!("\n  What the limits cost (#{})\n", best.rank);
-    let mut names: Vec<&str> = Vec::new();
-    for cost in &best.costs {
-        if !names.contains(&cost.name.as_str()) {
-            names.push(&cost.name);
+    for (i, cost) in best.costs.iter().enumerate() {
+        if best.costs[..i].iter().all(|other| other.name != cost.name) {
+            out.push_str(&wrapped("    ", "      ", &sentence(record, best, &cost.name), columns));
         }
-    }
-    for name in names {
-        let own: Vec<&Cost> = best.costs.iter().filter(|cost| cost.name == name).collect();
-        let text = sentence(record, best, &own);
-        out.push_str(&wrapped("    ", "      ", &text, columns));
     }
     out
 }
@@ -38,19 +32,19 @@ fn rms(record: &Record, candidate: &Candidate) -> f64 {
 
 /// Returns the cost of an active limit: `costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
 pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Option<String> {
-    let own: Vec<&Cost> = candidate.costs.iter().filter(|cost| cost.name == name).collect();
-    let name = clean(name);
-    let text = (!own.is_empty()).then(|| sentence(record, candidate, &own))?;
-    Some(text.strip_prefix(&name).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
+    candidate.costs.iter().find(|cost| cost.name == name)?;
+    let text = sentence(record, candidate, name);
+    Some(text.strip_prefix(&clean(name)).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
 }
 
 /// Returns a sentence such as `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
-fn sentence(record: &Record, candidate: &Candidate, own: &[&Cost]) -> String {
+fn sentence(record: &Record, candidate: &Candidate, name: &str) -> String {
     let unit = words::unit_suffix(record);
     let with = rms(record, candidate);
-    let name = own.first().map_or(String::new(), |cost| clean(&cost.name));
-    let rates: Vec<String> = own.iter().filter_map(|cost| rate(record.problem.unit, with, cost)).collect();
-    let without = own.iter().find_map(|cost| cost.rms_without);
+    let own = || candidate.costs.iter().filter(|cost| cost.name == name);
+    let rates: Vec<String> = own().filter_map(|cost| rate(record.problem.unit, with, cost)).collect();
+    let without = own().find_map(|cost| cost.rms_without);
+    let name = clean(name);
     let total = without.map(|least| format!("costs {}{unit} of rms", significant(with - least, 2)));
     match (total, rates.is_empty()) {
         (Some(total), false) => format!("{name} {total}; {}", rates.join(", ")),
@@ -118,27 +112,23 @@ pub(super) fn changes(record: &Record) -> Vec<(String, String)> {
 
 /// Returns the requirements that conflict, and the beginning of the list of relaxations.
 pub(super) fn conflict(record: &Record) -> Option<String> {
-    let mut parts = Vec::new();
-    if let Some(conflict) = &record.conflict {
-        let named: Vec<String> = conflict.among.iter().map(|key| demand(record, key)).collect();
-        parts.push(match named.as_slice() {
-            [] => String::new(),
-            [only] => format!("Nothing acceptable: {only} asks for more than was found."),
-            [most @ .., last] => format!("Nothing acceptable: {} and {last} conflict.", most.join(", ")),
-        });
-    }
-    if record.conflict.is_none() && !record.relaxations.is_empty() {
-        parts.push("Nothing acceptable.".into());
-    }
-    if record.relaxations.is_empty() {
-        if !parts.is_empty() {
-            parts.push("No single change that helps was found.".into());
-        }
+    let among = record.conflict.as_ref().map(|conflict| &conflict.among);
+    let among: Option<Vec<String>> = among.map(|keys| keys.iter().map(|key| demand(record, key)).collect());
+    let conflict = match among.as_deref() {
+        None if record.relaxations.is_empty() => return None,
+        None => "Nothing acceptable.".to_owned(),
+        Some([]) => String::new(),
+        Some([only]) => format!("Nothing acceptable: {only} asks for more than was found."),
+        Some([most @ .., last]) => format!("Nothing acceptable: {} and {last} conflict.", most.join(", ")),
+    };
+    let help = if record.relaxations.is_empty() {
+        "No single change that helps was found."
+    } else if record.relaxations.iter().any(|relaxation| changed(relaxation) == 1) {
+        "It works with"
     } else {
-        let single = record.relaxations.iter().any(|relaxation| changed(relaxation) == 1);
-        parts.push(if single { "It works with" } else { "No single change helps; it works with" }.into());
-    }
-    (!parts.is_empty()).then(|| parts.join(" "))
+        "No single change helps; it works with"
+    };
+    Some(format!("{conflict} {help}"))
 }
 
 /// Returns the number of keys that change; a key with its old value does not count.

@@ -20,7 +20,8 @@ pub(super) struct Target {
 pub(super) struct Pose {
     /// The index of the target point of this position; `None` if the loop closes at no target point.
     pub(super) target: Option<usize>,
-    pub(super) joints: Joints,
+    /// A, B, C, D, P.
+    pub(super) joints: [Complex; 5],
 }
 
 /// A candidate, ready to be drawn. Without a candidate, the target alone.
@@ -53,23 +54,16 @@ impl Scene {
             let (angle, assembly) = *positions.get(j)?;
             Some(linkage.position_with(angle, assembly).joints()?.coupler_point)
         };
-        let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
-        let first = first.unwrap_or_else(|| middle_position(linkage));
-        let all = std::iter::once(first).chain(positions.iter().copied());
+        let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
         let circuits = circuits_through(linkage, all, samples);
         let pose = legible_pose(linkage, positions)
-            .or_else(|| Some(Pose { target: None, joints: *circuits.first()?.first()? }));
+            .or_else(|| Some(Pose { target: None, joints: all_joints(linkage, circuits.first()?.first()?) }));
         Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
     }
 
     /// Returns the box of the target points and the coupler points that they are compared with.
     pub(super) fn target_bounds(&self) -> Bounds {
-        let mut bounds = Bounds::default();
-        for target in &self.targets {
-            bounds.hold(target.at);
-            target.reached.into_iter().for_each(|p| bounds.hold(p));
-        }
-        bounds
+        Bounds::of(self.targets.iter().flat_map(|target| std::iter::once(target.at).chain(target.reached)))
     }
 
     /// Returns the box of the target points and the coupler curve.
@@ -82,14 +76,9 @@ impl Scene {
     /// Returns the box of everything, over the whole motion.
     pub(super) fn bounds(&self) -> Bounds {
         let mut bounds = self.curve_bounds();
-        if let Some(linkage) = &self.linkage {
-            bounds.hold(linkage.crank_pivot());
-            bounds.hold(linkage.follower_pivot());
-        }
-        for joints in self.circuits.iter().flatten() {
-            bounds.hold(joints.crank_pin);
-            bounds.hold(joints.follower_pin);
-        }
+        let pivots = self.linkage.iter().flat_map(|l| [l.crank_pivot(), l.follower_pivot()]);
+        let pins = self.circuits.iter().flatten().flat_map(|joints| [joints.crank_pin, joints.follower_pin]);
+        pivots.chain(pins).for_each(|p| bounds.hold(p));
         bounds
     }
 }
@@ -112,8 +101,12 @@ fn positions(candidate: &Candidate) -> Vec<(f64, AssemblyMode)> {
 
 /// Returns a position on the circuit of the first point: crank angle (radians) and assembly.
 pub(super) fn first_position(candidate: &Candidate) -> (f64, AssemblyMode) {
-    let first = positions(candidate).first().copied().filter(|(angle, _)| angle.is_finite());
-    first.unwrap_or_else(|| middle_position(&candidate.linkage))
+    first_of(&candidate.linkage, &positions(candidate))
+}
+
+fn first_of(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> (f64, AssemblyMode) {
+    let first = positions.first().copied().filter(|(angle, _)| angle.is_finite());
+    first.unwrap_or_else(|| middle_position(linkage))
 }
 
 /// Returns a position in the middle of the input's range; if the loop does not determine the follower there (C on B, as
@@ -172,13 +165,12 @@ pub(crate) fn circuits_through(
 fn legible_pose(linkage: &FourBar, positions: &[(f64, AssemblyMode)]) -> Option<Pose> {
     /// The fraction of the best spacing down to which the first point is kept.
     const GOOD_ENOUGH: f64 = 0.6;
-    let spacing = |joints: &Joints| closest(&all_joints(linkage, joints));
     let poses: Vec<(Pose, f64)> = positions
         .iter()
         .enumerate()
         .filter_map(|(j, (angle, assembly))| {
-            let joints = linkage.position_with(*angle, *assembly).joints()?;
-            Some((Pose { target: Some(j), joints }, spacing(&joints)))
+            let joints = all_joints(linkage, &linkage.position_with(*angle, *assembly).joints()?);
+            Some((Pose { target: Some(j), joints }, closest(&joints)))
         })
         .collect();
     // The first of equal ones.
@@ -220,10 +212,6 @@ impl Bounds {
                 self.high[axis] = self.high[axis].max(x);
             }
         }
-    }
-
-    pub(super) fn hold_all(&mut self, other: &Bounds) {
-        other.corners().into_iter().for_each(|corner| self.hold(corner));
     }
 
     /// Returns the box of the points.

@@ -1,6 +1,9 @@
 //! Sheets: framed drawings with a title each, laid out on one page.
 
-use super::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px, text_width};
+use super::canvas::{
+    Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, px, stroke,
+    text_width,
+};
 use super::scene::Bounds;
 use super::text::shortened;
 use super::words;
@@ -30,19 +33,37 @@ const HEIGHTS: std::ops::RangeInclusive<f64> = 230.0..=440.0;
 
 /// A sheet: one framed drawing.
 pub(super) struct Sheet {
-    pub(super) title: String,
+    title: &'static str,
     /// A line below the title.
     pub(super) note: String,
     /// The drawing, with the origin at the sheet's corner.
     pub(super) body: Canvas,
     /// The lines below the drawing.
     pub(super) foot: Vec<String>,
-    pub(super) width: f64,
+    width: f64,
     /// The height at which the drawing ends.
     pub(super) bottom: f64,
 }
 
 impl Sheet {
+    /// Returns an empty sheet for a drawing that ends at `bottom`.
+    pub(super) fn new(title: &'static str, width: f64, bottom: f64) -> Sheet {
+        Sheet { title, note: String::new(), body: Canvas::default(), foot: Vec::new(), width, bottom }
+    }
+
+    /// Returns an empty sheet of this width with a view of the box (and space for scale bars below).
+    pub(super) fn fitted(title: &'static str, bounds: &Bounds, width: f64) -> (Sheet, View) {
+        let frame = Frame { width, padding: PADDING, heights: HEIGHTS };
+        let (view, height) = frame.fit(bounds, Spot::new(0.0, HEAD));
+        (Sheet::new(title, width, HEAD + height + FOOTER), view)
+    }
+
+    /// Draws the scale bar of a drawing of a width at the sheet's lower left.
+    pub(super) fn scale_bar(&mut self, view: &View, unit: Option<Unit>, width: f64) {
+        let at = Spot::new(INSET + 2.0, self.bottom - 12.0);
+        self.body.scale_bar(at, view, 0.22 * width, &words::length_suffix(unit));
+    }
+
     fn height(&self) -> f64 {
         self.bottom + LINE * self.foot.len() as f64 + 10.0
     }
@@ -51,18 +72,17 @@ impl Sheet {
     fn put(self, canvas: &mut Canvas, at: Spot, row_height: f64) {
         canvas.raw(&format!(r#"<g transform="translate({} {})">"#, px(at.x), px(at.y)));
         let frame = Area { x: 0.0, y: 0.0, width: self.width, height: row_height };
-        canvas.area(frame, &format!(r#"fill="none" stroke="{}" stroke-width="1" rx="4""#, palette::FAINT));
-        let left = |y: f64| Spot::new(INSET, y);
-        let bold = bold(15, palette::INK);
-        canvas.text(left(26.0), Anchor::Start, &bold, &fitting(&self.title, 15.0, self.width - 2.0 * INSET));
-        let muted = font(12, palette::MUTED);
-        canvas.text(left(44.0), Anchor::Start, &muted, &fitting(&self.note, 12.0, self.width - 2.0 * INSET));
+        canvas.area(frame, &(outline(palette::FAINT, 1) + r#" rx="4""#));
+        let write = |canvas: &mut Canvas, y: f64, attributes: &str, text: &str, size: f64| {
+            let text = fitting(text, size, self.width - 2.0 * INSET);
+            canvas.text(Spot::new(INSET, y), Anchor::Start, attributes, &text);
+        };
+        write(canvas, 26.0, &bold(15, palette::INK), self.title, 15.0);
+        write(canvas, 44.0, &font(12, palette::MUTED), &self.note, 12.0);
         canvas.body.push_str(&self.body.body);
-        let ink = font(12, palette::INK);
         let first = row_height - 10.0 - LINE * self.foot.len() as f64 + 12.0;
         for (i, line) in self.foot.iter().enumerate() {
-            let line = fitting(line, 12.0, self.width - 2.0 * INSET);
-            canvas.text(left(first + LINE * i as f64), Anchor::Start, &ink, &line);
+            write(canvas, first + LINE * i as f64, &font(12, palette::INK), line, 12.0);
         }
         canvas.raw("</g>");
     }
@@ -85,15 +105,11 @@ pub(super) struct Heading {
 /// Returns one page with the sheets from left to right and from top to bottom.
 pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
     let mut canvas = Canvas::default();
-    let taken = text_width(&heading.standing, 14.0) + 20.0;
-    let bold = bold(21, palette::INK);
-    let title = shortened(&heading.title, ((FULL - taken) / text_width("x", 21.0)) as usize);
-    canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &title);
-    let muted = |size: f64| font(size, palette::MUTED);
-    canvas.text(Spot::new(MARGIN + FULL, 42.0), Anchor::End, &muted(14.0), &heading.standing);
+    canvas.title([MARGIN, MARGIN + FULL], 42.0, (&heading.title, 21.0), (&heading.standing, 14.0));
+    let muted = font(13, palette::MUTED);
     let mut y = 64.0;
     for line in &heading.lines {
-        canvas.text(Spot::new(MARGIN, y), Anchor::Start, &muted(13.0), &fitting(line, 13.0, FULL));
+        canvas.text(Spot::new(MARGIN, y), Anchor::Start, &muted, &fitting(line, 13.0, FULL));
         y += 18.0;
     }
     let mut row: Vec<Sheet> = Vec::new();
@@ -126,19 +142,6 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
     y + height + GAP
 }
 
-/// Returns a view of the box in a sheet of this width, and the height at which the drawing ends (scale bars included).
-pub(super) fn fitted(bounds: &Bounds, width: f64) -> (View, f64) {
-    let frame = Frame { width, padding: PADDING, heights: HEIGHTS };
-    let (view, height) = frame.fit(bounds, Spot::new(0.0, HEAD));
-    (view, HEAD + height + FOOTER)
-}
-
-/// Draws the scale bar at the lower left of a drawing that ends at `bottom`.
-pub(super) fn scale_bar(canvas: &mut Canvas, view: &View, unit: Option<Unit>, width: f64, bottom: f64) {
-    let at = Spot::new(INSET + 2.0, bottom - 12.0);
-    canvas.scale_bar(at, view, 0.22 * width, &words::length_suffix(unit));
-}
-
 /// Draws an arrow whose head ends at `to`; nothing if it is too short to be seen.
 pub(super) fn arrow(canvas: &mut Canvas, from: Spot, to: Spot, colour: &str) {
     let length = from.distance(to);
@@ -146,18 +149,12 @@ pub(super) fn arrow(canvas: &mut Canvas, from: Spot, to: Spot, colour: &str) {
     if length.is_nan() || length < 1.0 {
         return;
     }
-    let (x, y) = ((to.x - from.x) / length, (to.y - from.y) / length);
+    let along = Vec2::new((to.x - from.x) / length, (to.y - from.y) / length);
     let head = (0.45 * length).min(11.0);
-    let neck = Spot::new(to.x - head * x, to.y - head * y);
-    let line = format!(r#"stroke="{colour}" stroke-width="2.4" stroke-linecap="round""#);
-    canvas.line(from, neck, &line);
-    let half = 0.36 * head;
-    let barbs = [
-        to,
-        Spot::new(neck.x - half * y, neck.y + half * x),
-        Spot::new(neck.x + half * y, neck.y - half * x),
-    ];
-    canvas.path(&barbs, true, &format!(r#"fill="{colour}""#));
+    let neck = to - head * along;
+    canvas.line(from, neck, &(stroke(colour, 2.4) + ROUND_ENDS));
+    let barb = 0.36 * head * along.turn_90();
+    canvas.path(&[to, neck + barb, neck - barb], true, &format!(r#"fill="{colour}""#));
 }
 
 /// Returns points of an arc about a centre, radians from `from` to `to`.

@@ -4,6 +4,7 @@ use super::csv::PARAMETERS;
 use super::grid::Align::{Left, Right};
 use super::grid::{Colour, Grid, Ink, plain, verdict};
 use super::text::{COLUMNS, brief, exact, grouped, indented, significant, wrapped};
+use super::words::length_suffix;
 use crate::mechanism::Unit;
 use crate::record::Candidate;
 use crate::synthesis::snap::{Length, Request, Snapped};
@@ -20,7 +21,7 @@ pub fn snap_text(
     colour: Colour,
 ) -> String {
     let Some(after) = snapped.candidates.first() else { return String::new() };
-    let unit = unit.map_or(String::new(), |u| format!(" {}", u.label()));
+    let unit = length_suffix(unit);
     let keys: Vec<&str> = snapped.lengths.iter().map(|length| length.key()).collect();
     let text =
         format!("{} snapped to {}{unit}; the rest fitted again.", keys.join(", "), request.stock.words());
@@ -28,22 +29,12 @@ pub fn snap_text(
     out.push_str(&dimensions(before, after, snapped, request, colour));
     out.push('\n');
     out.push_str(&figures(before, snapped, colour));
-    let times = |c: &Candidate| c.error.rms / before.error.rms;
-    let cost = match times(after) {
-        times if before.error.rms > 0.0 && times < 1e3 => {
-            format!(
-                "The rms error goes from {} to {}{unit}: {} times.",
-                significant(before.error.rms, 4),
-                significant(after.error.rms, 4),
-                brief(times, 3)
-            )
-        }
-        _ => format!(
-            "The rms error goes from {} to {}{unit}.",
-            significant(before.error.rms, 4),
-            significant(after.error.rms, 4)
-        ),
+    let [was, is] = [before, after].map(|c| significant(c.error.rms, 4));
+    let times = match after.error.rms / before.error.rms {
+        times if before.error.rms > 0.0 && times < 1e3 => format!(": {} times", brief(times, 3)),
+        _ => String::new(),
     };
+    let cost = format!("The rms error goes from {was} to {is}{unit}{times}.");
     let plain = match &snapped.nearest {
         Some(c) if c.accepted == after.accepted => format!(
             "Each length to its nearest stock size at once would give {}.",
@@ -76,11 +67,7 @@ fn dimensions(
         let shown = if stock { exact(to) } else { significant(to, DIGITS) };
         let change = to - from;
         let change = if change.abs() <= 1e-12 * from.abs().max(to.abs()) { 0.0 } else { change };
-        let change = if change == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{}{}", if change > 0.0 { "+" } else { "" }, significant(change, 3))
-        };
+        let change = format!("{}{}", if change > 0.0 { "+" } else { "" }, significant(change, 3));
         let ink = if stock { Ink::Strong } else { Ink::Plain };
         grid.row([
             plain(name),
@@ -93,13 +80,10 @@ fn dimensions(
     let (from, to) = (&before.linkage, &after.linkage);
     for length in Length::ALL {
         let stock = snapped.lengths.contains(&length);
-        let fixed = request.fixed.get(length);
-        let note = if stock {
-            "stock"
-        } else if fixed.is_some() {
-            "as given"
-        } else {
-            ""
+        let note = match request.fixed.get(length) {
+            _ if stock => "stock",
+            Some(_) => "as given",
+            None => "",
         };
         // The ground follows from the pivots, up to rounding.
         let value = if stock { rounded(length.of(to)) } else { length.of(to) };

@@ -1,7 +1,7 @@
 //! A suite for the terminal and as Markdown: the same tables in two formats.
 
 use super::grid::Align::{Left, Right};
-use super::grid::{Cell, Colour, Grid, Ink, plain};
+use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
 use super::text::{
     COLUMNS, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
 };
@@ -30,28 +30,22 @@ const BESIDE: &str = "printed, re-evaluated: the best published answer's sum as 
 
 /// Returns a suite as text: the answers, the comparisons, and the notes.
 pub fn suite_text(suite: &Suite, colour: Colour) -> String {
+    let said = |text: &str| wrapped("  ", "    ", text, COLUMNS);
     let mut out = String::new();
     if !suite.problems.is_empty() {
         out.push_str(&answers(suite).shortened(NAME).render(colour));
         out.push('\n');
         out.push_str(&beside(suite).shortened(NAME).render(colour));
         out.push('\n');
-        for what in [WHAT, TIMES, BESIDE] {
-            out.push_str(&wrapped("  ", "    ", what, COLUMNS));
-        }
-        let proofs = proofs(suite);
-        let first = Some(PROVED.to_owned()).filter(|_| !proofs.is_empty());
-        for told in first.into_iter().chain(proofs) {
-            out.push_str(&wrapped("  ", "    ", &told, COLUMNS));
-        }
+        out.extend([WHAT, TIMES, BESIDE].map(said));
+        out.extend(is_certified(suite).then(|| said(PROVED)));
+        out.extend(proofs(suite).iter().map(|proof| said(proof)));
     }
     let notes = notes(suite);
     if !notes.is_empty() {
         out.push('\n');
     }
-    for note in notes {
-        out.push_str(&wrapped("  ", "    ", &note, COLUMNS));
-    }
+    out.extend(notes.iter().map(|note| said(note)));
     out
 }
 
@@ -77,18 +71,10 @@ pub fn suite_markdown(suite: &Suite) -> String {
     out.push_str(&paragraph(TIMES));
     if is_certified(suite) {
         out.push_str(&paragraph(PROVED));
-        for proof in proofs(suite) {
-            out.push_str(&wrapped("- ", "  ", &markdown(&proof), COLUMNS + 10));
-        }
-        out.push('\n');
+        out.push_str(&bullets(&proofs(suite)));
     }
-    let notes = notes(suite);
-    for note in &notes {
-        out.push_str(&wrapped("- ", "  ", &markdown(&clean(note)), COLUMNS + 10));
-    }
-    if !notes.is_empty() {
-        out.push('\n');
-    }
+    let notes: Vec<String> = notes(suite).iter().map(|note| clean(note)).collect();
+    out.push_str(&bullets(&notes));
     out.push_str("## Beside them\n\n");
     out.push_str(&beside(suite).markdown());
     out.push('\n');
@@ -100,6 +86,12 @@ pub fn suite_markdown(suite: &Suite) -> String {
     ));
     out.push_str(&published(suite).markdown());
     out
+}
+
+/// Returns a list in Markdown; nothing for an empty one.
+fn bullets(texts: &[String]) -> String {
+    let end = if texts.is_empty() { "" } else { "\n" };
+    texts.iter().map(|text| wrapped("- ", "  ", &markdown(text), COLUMNS + 10)).collect::<String>() + end
 }
 
 /// Returns whether certificates were asked for.
@@ -126,32 +118,29 @@ fn proofs(suite: &Suite) -> Vec<String> {
 }
 
 fn answers(suite: &Suite) -> Grid {
-    let heads =
-        ["sum of sq", "best known", "median", "to curve", "hits", "median ms", "worst ms", "evaluations"];
-    let proved: &[&str] = if is_certified(suite) { &["proved gap"] } else { &[] };
-    let mut grid = Grid::new(&[(Left, &["problem"]), (Right, &heads), (Right, proved)]);
-    for problem in &suite.problems {
-        let summary = &problem.search.summary;
-        let best = summary.best.as_ref();
-        let gap = problem.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
-        let name = clean(&problem.name);
-        grid.row([
-            match problem.smaller_than_best_known {
-                Some(_) => (format!("{name}{SMALLER}"), Ink::Good),
-                None => plain(name),
-            },
-            number(best.map(|best| best.sum_sq), 6),
-            plain(significant(problem.best_known_sum_sq, 6)),
-            number(summary.median_sum_sq, 6),
-            number(best.and_then(|best| best.to_curve_sum_sq), 4),
-            plain(format!("{}/{}", summary.hits, problem.search.runs.len())),
-            number(summary.median_search_s.map(|s| 1e3 * s), 3),
-            number(summary.worst_search_s.map(|s| 1e3 * s), 3),
-            plain(summary.median_evaluations.map_or(NOTHING.into(), grouped)),
-            plain(gap.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap)))),
-        ]);
-    }
-    grid
+    let marked = |p: &ProblemResult| match p.smaller_than_best_known {
+        Some(_) => (format!("{}{SMALLER}", clean(&p.name)), Ink::Good),
+        None => plain(clean(&p.name)),
+    };
+    let to_curve = |p: &ProblemResult| p.search.summary.best.as_ref().and_then(|best| best.to_curve_sum_sq);
+    let evaluations = |p: &ProblemResult| p.search.summary.median_evaluations.map_or(NOTHING.into(), grouped);
+    let gap = |p: &ProblemResult| {
+        let proof = p.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
+        proof.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap)))
+    };
+    let columns: [Column<'_, ProblemResult>; 10] = [
+        (Left, "problem", &marked),
+        (Right, "sum of sq", &|p| number(p.search.summary.best.as_ref().map(|best| best.sum_sq), 6)),
+        (Right, "best known", &|p| number(Some(p.best_known_sum_sq), 6)),
+        (Right, "median", &|p| number(p.search.summary.median_sum_sq, 6)),
+        (Right, "to curve", &|p| number(to_curve(p), 4)),
+        (Right, "hits", &|p| plain(format!("{}/{}", p.search.summary.hits, p.search.runs.len()))),
+        (Right, "median ms", &|p| number(p.search.summary.median_search_s.map(|s| 1e3 * s), 3)),
+        (Right, "worst ms", &|p| number(p.search.summary.worst_search_s.map(|s| 1e3 * s), 3)),
+        (Right, "evaluations", &|p| plain(evaluations(p))),
+        (Right, "proved gap", &|p| plain(gap(p))),
+    ];
+    Grid::of(&suite.problems, if is_certified(suite) { &columns } else { &columns[..9] })
 }
 
 fn beside(suite: &Suite) -> Grid {
@@ -175,29 +164,27 @@ fn beside(suite: &Suite) -> Grid {
 }
 
 fn published(suite: &Suite) -> Grid {
-    let mut grid = Grid::new(&[
-        (Left, &["problem", "source"]),
-        (Right, &["printed", "re-evaluated", "to curve"]),
-        (Left, &["our referee"]),
-    ]);
-    let entries =
-        suite.problems.iter().flat_map(|problem| problem.published.iter().map(move |e| (problem, e)));
-    for (problem, entry) in entries {
-        let verdict = match entry.accepted {
-            None => "cannot be evaluated".to_owned(),
-            Some(true) => "accepted".to_owned(),
-            Some(false) => format!("no: {}", entry.unmet.join(", ")),
-        };
-        grid.row([
-            plain(clean(&problem.name)),
-            plain(entry.source.clone()),
-            plain(printed(entry)),
-            number(entry.sum_sq, DIGITS),
-            number(entry.to_curve_sum_sq, 4),
-            plain(verdict),
-        ]);
-    }
-    grid
+    let verdict = |entry: &PublishedResult| match entry.accepted {
+        None => "cannot be evaluated".to_owned(),
+        Some(true) => "accepted".to_owned(),
+        Some(false) => format!("no: {}", entry.unmet.join(", ")),
+    };
+    let entries: Vec<(&str, &PublishedResult)> = suite
+        .problems
+        .iter()
+        .flat_map(|p| p.published.iter().map(|entry| (p.name.as_str(), entry)))
+        .collect();
+    Grid::of(
+        &entries,
+        &[
+            (Left, "problem", &|(name, _)| plain(clean(name))),
+            (Left, "source", &|(_, entry)| plain(entry.source.clone())),
+            (Right, "printed", &|(_, entry)| plain(printed(entry))),
+            (Right, "re-evaluated", &|(_, entry)| number(entry.sum_sq, DIGITS)),
+            (Right, "to curve", &|(_, entry)| number(entry.to_curve_sum_sq, 4)),
+            (Left, "our referee", &|(_, entry)| plain(verdict(entry))),
+        ],
+    )
 }
 
 /// Returns the notes that a reader must not miss: a goal that is not the best known sum, a sum smaller than the best

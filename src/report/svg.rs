@@ -2,7 +2,9 @@
 //! A target that is small beside its linkage has an enlarged view of its own.
 
 use super::beside;
-use super::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, text_width};
+use super::canvas::{
+    Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke, text_width,
+};
 use super::figure::{Detail, draw};
 use super::scene::{SAMPLES, Scene, circuits};
 use super::text::{brief, clean, shortened, significant};
@@ -66,22 +68,20 @@ fn standing(record: &Record, candidate: Option<&Candidate>) -> String {
 
 /// Draws title, rank and source; returns the height at which the drawing starts.
 fn heading(canvas: &mut Canvas, record: &Record, candidate: Option<&Candidate>, title: &str) -> f64 {
-    let room = WIDTH - 2.0 * MARGIN;
-    let standing = standing(record, candidate);
-    let left = |size: f64, taken: f64| ((room - taken) / text_width("x", size)) as usize;
-    let name = shortened(title, left(21.0, text_width(&standing, 14.0) + 20.0));
-    let bold = bold(21, palette::INK);
-    canvas.text(Spot::new(MARGIN, 42.0), Anchor::Start, &bold, &name);
-    let muted = |size: u8| font(size, palette::MUTED);
-    canvas.text(Spot::new(WIDTH - MARGIN, 42.0), Anchor::End, &muted(14), &standing);
+    canvas.title([MARGIN, WIDTH - MARGIN], 42.0, (title, 21.0), (&standing(record, candidate), 14.0));
     match record.problem.source.as_deref().map(clean).filter(|source| !source.is_empty()) {
         Some(source) => {
-            let source = shortened(&source, left(13.0, 0.0));
-            canvas.text(Spot::new(MARGIN, 63.0), Anchor::Start, &muted(13), &source);
+            line(canvas, 63.0, palette::MUTED, &source);
             76.0
         }
         None => 56.0,
     }
+}
+
+/// Writes a line over the whole width, cut to it.
+fn line(canvas: &mut Canvas, y: f64, colour: &str, text: &str) {
+    let room = ((WIDTH - 2.0 * MARGIN) / text_width("x", 13.0)) as usize;
+    canvas.text(Spot::new(MARGIN, y), Anchor::Start, &font(13, colour), &shortened(text, room));
 }
 
 /// Draws the target and the curve beside it, in a panel that is connected to its place in the drawing.
@@ -96,22 +96,15 @@ fn enlarged(
     let bounds = scene.target_bounds().padded(0.06);
     let inside = Area { x: 0.0, y: 0.0, width: panel.width, height: panel.height };
     let zoom = View::fit(&bounds, inside.shrunk(PADDING));
-    // The area that the panel shows, in the plane and then in the drawing.
-    let (half_width, half_height) =
-        (0.5 * panel.width / zoom.scale * view.scale, 0.5 * panel.height / zoom.scale * view.scale);
+    // The area that the panel shows, in the drawing.
     let centre = view.spot(bounds.centre());
-    let shown = Area {
-        x: centre.x - half_width,
-        y: centre.y - half_height,
-        width: 2.0 * half_width,
-        height: 2.0 * half_height,
-    };
-    let thin = format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED);
-    canvas.area(shown, &thin);
+    let [width, height] = [panel.width, panel.height].map(|side| side / zoom.scale * view.scale);
+    let shown = Area { x: centre.x - 0.5 * width, y: centre.y - 0.5 * height, width, height };
+    canvas.area(shown, &outline(palette::MUTED, 1));
     for (dy_shown, dy_panel) in [(0.0, 0.0), (shown.height, panel.height)] {
         let from = Spot::new(shown.x + shown.width, shown.y + dy_shown);
         let to = Spot::new(panel.x, panel.y + dy_panel);
-        canvas.line(from, to, &format!(r#"stroke="{}" stroke-width="1""#, palette::FAINT));
+        canvas.line(from, to, &stroke(palette::FAINT, 1));
     }
 
     let ratio = scene.bounds().extent() / bounds.extent().max(f64::MIN_POSITIVE);
@@ -127,7 +120,7 @@ fn enlarged(
     let muted = font(12, palette::MUTED);
     within.text(Spot::new(panel.width - 10.0, 19.0), Anchor::End, &muted, &label);
     canvas.clipped(panel, |canvas| canvas.body.push_str(&within.body));
-    canvas.area(panel, &format!(r#"fill="none" stroke="{}" stroke-width="1.2" rx="3""#, palette::MUTED));
+    canvas.area(panel, &(outline(palette::MUTED, 1.2) + r#" rx="3""#));
 }
 
 /// Draws the legend of the marks, from the right.
@@ -137,16 +130,15 @@ fn legend(canvas: &mut Canvas, y: f64, with_curve: bool) {
     if with_curve {
         x -= text_width("coupler curve", 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, "coupler curve");
-        let line = format!(r#"stroke="{}" stroke-width="2.4" stroke-linecap="round""#, palette::CURVE);
+        let line = stroke(palette::CURVE, 2.4) + ROUND_ENDS;
         canvas.line(Spot::new(x - 30.0, y - 4.0), Spot::new(x - 8.0, y - 4.0), &line);
         x -= 50.0;
     }
-    for (label, filled) in [("target", false), ("target point 0", true)] {
+    for (label, fill, radius) in [("target", "none", 4.6), ("target point 0", palette::TARGET, 5.4)] {
         x -= text_width(label, 12.0);
         canvas.text(Spot::new(x, y), Anchor::Start, &text, label);
-        let fill = if filled { palette::TARGET } else { "none" };
-        let mark = format!(r#"fill="{fill}" stroke="{}" stroke-width="1.7""#, palette::TARGET);
-        canvas.circle(Spot::new(x - 13.0, y - 4.0), if filled { 5.4 } else { 4.6 }, &mark);
+        let mark = filled(fill, palette::TARGET, 1.7);
+        canvas.circle(Spot::new(x - 13.0, y - 4.0), radius, &mark);
         x -= 38.0;
     }
 }
@@ -199,12 +191,7 @@ fn caption(
         lines.push("no linkage to draw".to_owned());
     }
     lines.extend(candidate.map(beside::warnings).filter(|text| !text.is_empty()));
-    let ink = font(13, palette::INK);
-    let room = ((WIDTH - 2.0 * MARGIN) / text_width("x", 13.0)) as usize;
-    let mut y = top;
-    for line in &lines {
-        canvas.text(Spot::new(MARGIN, y), Anchor::Start, &ink, &shortened(line, room));
-        y += 19.0;
-    }
-    y - 19.0
+    let y = |i: usize| top + 19.0 * i as f64;
+    lines.iter().enumerate().for_each(|(i, text)| line(canvas, y(i), palette::INK, text));
+    y(lines.len()) - 19.0
 }

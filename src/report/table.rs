@@ -1,13 +1,14 @@
 //! The output of `synth`: the candidates of a run, or one line for each file of a batch.
 
 use super::beside;
+use super::csv::parameters;
 use super::grid::Align::{Left, Right};
-use super::grid::{Colour, Grid, Ink, plain, verdict};
-use super::text::{COLUMNS, brief, clean, exact, grouped, indented, shortened, significant, wrapped};
+use super::grid::{Cell, Colour, Column, Grid, Ink, plain, verdict};
+use super::text::{COLUMNS, brief, clean, grouped, indented, shortened, significant, wrapped};
 use super::{price, words};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, ErrorRecord, Record};
 use crate::task::Defect;
 use crate::task::spec::Measure;
 
@@ -80,32 +81,30 @@ fn rows(record: &Record, colour: Colour) -> String {
     // Beside the largest part of the tolerances the table shows that part's point, which need not be that of the
     // largest error.
     let parts = measure == Measure::LargestPart;
-    let [first, second, third] = if parts { ["at", "rms", "max"] } else { ["rms", "max", "at"] };
-    let sum = ranks.map_or("sum of sq", |(head, _)| head);
-    let mut grid = Grid::new(&[
-        (Right, &["#", sum, first, second, third, "to curve"]),
-        (Left, &["type"]),
-        (Right, &["transmission", "ratio"]),
-        (Left, &["verdict"]),
-    ]);
-    for candidate in &record.candidates {
-        let (error, transmission) = (&candidate.error, &candidate.transmission_deg);
-        let at = worst_at(record, candidate).to_string();
-        let (rms, max) = (significant(error.rms, 4), significant(error.max, 4));
-        let [first, second, third] = if parts { [at, rms, max] } else { [rms, max, at] };
-        grid.row([
-            (candidate.rank.to_string(), Ink::Strong),
-            plain(significant(if ranks.is_some() { error.objective } else { error.sum_sq }, 6)),
-            plain(first),
-            plain(second),
-            plain(third),
-            plain(significant(error.to_curve.rms, 4)),
-            plain(candidate.linkage_type.name()),
-            plain(format!("{}° {:<5}", significant(transmission.worst, 3), words::over(transmission.over))),
-            plain(significant(candidate.link_ratio, 3)),
-            verdict(shortened(&words::verdict(record, candidate), 24), candidate.accepted),
-        ]);
-    }
+    let at: Column<'_, Candidate> = (Right, "at", &|c| plain(worst_at(record, c).to_string()));
+    let rms: Column<'_, Candidate> = (Right, "rms", &|c| plain(significant(c.error.rms, 4)));
+    let max: Column<'_, Candidate> = (Right, "max", &|c| plain(significant(c.error.max, 4)));
+    let [first, second, third] = if parts { [at, rms, max] } else { [rms, max, at] };
+    let objective = |c: &Candidate| if ranks.is_some() { c.error.objective } else { c.error.sum_sq };
+    let transmission = |c: &Candidate| {
+        let (worst, over) = (c.transmission_deg.worst, words::over(c.transmission_deg.over));
+        format!("{}° {over:<5}", significant(worst, 3))
+    };
+    let grid = Grid::of(
+        &record.candidates,
+        &[
+            (Right, "#", &|c| (c.rank.to_string(), Ink::Strong)),
+            (Right, ranks.map_or("sum of sq", |(head, _)| head), &|c| plain(significant(objective(c), 6))),
+            first,
+            second,
+            third,
+            (Right, "to curve", &|c| plain(significant(c.error.to_curve.rms, 4))),
+            (Left, "type", &|c| plain(c.linkage_type.name())),
+            (Right, "transmission", &|c| plain(transmission(c))),
+            (Right, "ratio", &|c| plain(significant(c.link_ratio, 3))),
+            (Left, "verdict", &|c| verdict(shortened(&words::verdict(record, c), 24), c.accepted)),
+        ],
+    );
     grid.render(colour)
 }
 
@@ -225,22 +224,12 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
 
 /// Returns the linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
 fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
-    let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let pair = |p: crate::mechanism::Complex| format!("[{}, {}]", exact(p.re), exact(p.im));
-    let parts = [
-        format!("A = {},", pair(a)),
-        format!("B = {},", pair(b)),
-        format!("a = {},", exact(linkage.crank())),
-        format!("b = {},", exact(linkage.coupler())),
-        format!("c = {},", exact(linkage.follower())),
-        format!("d = {},", exact(linkage.crank_side())),
-        format!("e = {},", exact(linkage.follower_side())),
-        format!("t1 = {},", linkage.assembly().sign()),
-        format!("t2 = {} }}", linkage.side().sign()),
-    ];
-    // No line breaks inside of a value.
-    let unbroken = parts.map(|part| part.replace(' ', "\u{a0}")).join(" ");
-    wrapped("    linkage = { ", "      ", &unbroken, columns).replace('\u{a0}', " ")
+    let [ax, ay, bx, by, a, b, c, d, e, t1, t2] = parameters(linkage);
+    // A tilde is a space at which no line is broken.
+    let parts = format!(
+        "A~=~[{ax},~{ay}], B~=~[{bx},~{by}], a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}, t1~=~{t1}, t2~=~{t2}~}}"
+    );
+    wrapped("    linkage = { ", "      ", &parts, columns).replace('~', " ")
 }
 
 /// Returns method, seed, cost and the reason why the search ended.
@@ -276,56 +265,56 @@ pub fn ending_sentences(record: &Record) -> String {
 pub struct BatchRow<'a> {
     /// The name of the file or problem.
     pub name: &'a str,
-    /// The outcome.
-    pub outcome: BatchOutcome<'a>,
+    /// The record; or the reason why the file could not be run.
+    pub outcome: Result<&'a Record, &'a str>,
 }
 
-/// The outcome of one file of a batch.
-#[derive(Clone, Copy, Debug)]
-pub enum BatchOutcome<'a> {
-    /// The file was run.
-    Ran(&'a Record),
-    /// The file could not be run, for this reason.
-    Refused(&'a str),
+impl BatchRow<'_> {
+    /// Returns the number of accepted candidates; 0 for a refused file.
+    pub(super) fn accepted(&self) -> usize {
+        self.outcome.map_or(0, |record| record.candidates.iter().filter(|c| c.accepted).count())
+    }
+
+    /// Returns the errors of the best candidate.
+    pub(super) fn best(&self) -> Option<&ErrorRecord> {
+        self.outcome.ok()?.candidates.first().map(|c| &c.error)
+    }
 }
 
 /// Returns a row for each file of a batch and a line with the counts.
 pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
-    let mut grid = Grid::new(&[
-        (Left, &["problem"]),
-        (Right, &["points", "best sum of sq", "rms", "max", "accepted"]),
-        (Left, &["status"]),
-    ]);
-    let (mut good, mut without) = (0, 0);
-    let mut refused = Vec::new();
-    for file in files {
-        let name = plain(shortened(&clean(file.name), 30));
-        match file.outcome {
-            BatchOutcome::Ran(record) => {
-                let accepted = record.candidates.iter().filter(|c| c.accepted).count();
-                *(if accepted > 0 { &mut good } else { &mut without }) += 1;
-                let best = record.candidates.first().map(|c| &c.error);
-                let figure = |of: fn(&crate::record::ErrorRecord) -> f64, digits| {
-                    plain(best.map_or(String::new(), |error| significant(of(error), digits)))
-                };
-                grid.row([
-                    name,
-                    plain(grouped(record.problem.resolved.task.path.points.len() as u64)),
-                    figure(|e| e.sum_sq, 6),
-                    figure(|e| e.rms, 4),
-                    figure(|e| e.max, 4),
-                    verdict(format!("{accepted} of {}", record.candidates.len()), accepted > 0),
-                    plain(words::reason_name(record.termination.reason)),
-                ]);
-            }
-            BatchOutcome::Refused(why) => {
-                let said = format!("{}: {}", clean(file.name), clean(why));
-                refused.push(wrapped("  ", "    ", &said, COLUMNS));
-                let empty = || plain("");
-                grid.row([name, empty(), empty(), empty(), empty(), empty(), verdict("refused", false)]);
-            }
-        }
-    }
+    let ran = |file: &BatchRow<'_>, of: &dyn Fn(&Record) -> String| -> Cell {
+        plain(file.outcome.map_or_else(|_| String::new(), of))
+    };
+    let figure = |file: &BatchRow<'_>, of: fn(&ErrorRecord) -> f64, digits| {
+        plain(file.best().map_or(String::new(), |error| significant(of(error), digits)))
+    };
+    let grid = Grid::of(
+        files,
+        &[
+            (Left, "problem", &|file| plain(shortened(&clean(file.name), 30))),
+            (Right, "points", &|file| {
+                ran(file, &|r| grouped(r.problem.resolved.task.path.points.len() as u64))
+            }),
+            (Right, "best sum of sq", &|file| figure(file, |e| e.sum_sq, 6)),
+            (Right, "rms", &|file| figure(file, |e| e.rms, 4)),
+            (Right, "max", &|file| figure(file, |e| e.max, 4)),
+            (Right, "accepted", &|file| {
+                let (of, _) = ran(file, &|r| format!("{} of {}", file.accepted(), r.candidates.len()));
+                verdict(of, file.accepted() > 0)
+            }),
+            (Left, "status", &|file| {
+                let ended = |r: &Record| plain(words::reason_name(r.termination.reason));
+                file.outcome.map_or_else(|_| verdict("refused", false), ended)
+            }),
+        ],
+    );
+    let good = files.iter().filter(|file| file.accepted() > 0).count();
+    let refused: Vec<String> = files
+        .iter()
+        .filter_map(|file| Some(format!("{}: {}", clean(file.name), clean(file.outcome.err()?))))
+        .collect();
+    let without = files.len() - good - refused.len();
     let mut out = if files.is_empty() { String::new() } else { grid.render(colour) + "\n" };
     let mut parts = vec![format!("{good} with an accepted linkage")];
     if without > 0 {
@@ -333,7 +322,7 @@ pub fn batch_summary(files: &[BatchRow<'_>], colour: Colour) -> String {
     }
     if !refused.is_empty() {
         parts.push(format!("{} refused", refused.len()));
-        out.push_str(&refused.concat());
+        out.extend(refused.iter().map(|said| wrapped("  ", "    ", said, COLUMNS)));
         out.push('\n');
     }
     out.push_str(&format!("  {}: {}.\n", count(files.len(), "file"), parts.join(", ")));

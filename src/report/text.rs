@@ -56,7 +56,8 @@ pub fn percent_up(gap: f64) -> String {
     let percent = 100.0 * gap;
     // The product is rounded, so the text, with the point moved by two places, is compared with the gap itself.
     without_zeros(&on_one_side(percent, 2, 1.0, |shown| {
-        let (mantissa, exponent) = split(&format!("{shown:e}"));
+        let scientific = format!("{shown:e}");
+        let (mantissa, exponent) = split(&scientific);
         format!("{mantissa}e{}", exponent - 2).parse().is_ok_and(|shown: f64| shown >= gap)
     }))
 }
@@ -74,9 +75,9 @@ fn on_one_side(value: f64, digits: usize, way: f64, is_right: impl Fn(f64) -> bo
 }
 
 /// Returns mantissa and exponent of a number in the form `1.5e-3`.
-fn split(scientific: &str) -> (String, i32) {
+fn split(scientific: &str) -> (&str, i32) {
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((scientific, "0"));
-    (mantissa.to_owned(), exponent.parse().unwrap_or(0))
+    (mantissa, exponent.parse().unwrap_or(0))
 }
 
 /// Returns a number as [`significant`] does, without zeros at the end of the decimals: `30`, `0.5`.
@@ -85,16 +86,10 @@ pub fn brief(value: f64, digits: usize) -> String {
 }
 
 fn without_zeros(text: &str) -> String {
-    let (mantissa, exponent) = match text.split_once('e') {
-        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
-        None => (text, None),
-    };
+    let (mantissa, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
     let short =
         if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
-    match exponent {
-        Some(exponent) => format!("{short}e{exponent}"),
-        None => short.to_owned(),
-    }
+    format!("{short}{exponent}")
 }
 
 /// Returns the shortest text that reads back as the same number; empty for a number that is not finite.
@@ -127,15 +122,16 @@ pub(super) fn push_exact(text: &mut String, value: f64) {
 
 /// Returns a whole number in groups of three digits: `12,345`.
 pub fn grouped(value: u64) -> String {
-    let digits = value.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
+    let mut text = value.to_string();
+    for i in (1..text.len()).rev().skip(2).step_by(3) {
+        text.insert(i, ',');
     }
     text
+}
+
+/// Returns a number with its noun: `1 cognate`, `2 cognates`.
+pub(super) fn plural(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 
 /// The largest number of characters of foreign text that are shown.
@@ -242,30 +238,14 @@ pub(super) fn capitalised(text: &str) -> String {
 /// assert_eq!(linkwright::internals::report::text::xml("<a b='c'> & \u{0}"), "&lt;a b=&#39;c&#39;&gt; &amp;");
 /// ```
 pub fn xml(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in clean(text).chars() {
-        match c {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    let escapes = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;"), ('"', "&quot;"), ('\'', "&#39;")];
+    escapes.into_iter().fold(clean(text), |text, (mark, escape)| text.replace(mark, escape))
 }
 
 /// Returns clean text as Markdown, with its markup characters escaped.
 pub(super) fn markdown(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        if matches!(c, '|' | '*' | '_' | '`' | '<' | '[' | '\\' | '#') {
-            out.push('\\');
-        }
-        out.push(c);
-    }
-    out
+    let escape = |c: char| "|*_`<[\\#".contains(c).then_some('\\');
+    text.chars().flat_map(|c| escape(c).into_iter().chain([c])).collect()
 }
 
 /// The width of all text output, in columns.

@@ -21,29 +21,32 @@ pub(super) fn objections(record: &Record, candidate: &Candidate) -> Vec<Objectio
     if candidate.accepted {
         return Vec::new();
     }
-    let forbidden: Vec<&Defect> =
-        candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect)).collect();
-    let mut list: Vec<Objection> = candidate
-        .requirements
-        .iter()
-        .filter(|r| !r.met && !forbidden.iter().any(|defect| defect.name() == r.name))
+    let of_defect = |d: &Defect| Objection { key: d.name().to_owned(), sentence: of_defect(d) };
+    let unmet = candidate.requirements.iter().filter(|r| !r.met);
+    let mut list: Vec<Objection> = unmet
+        .filter(|r| !forbidden(record, candidate).any(|defect| defect.name() == r.name))
         .map(|r| {
-            let pointed = if r.name == RequirementKind::Tolerance.name() {
-                of_tolerance(record, candidate)
-            } else {
-                None
-            };
+            let pointed = if is_tolerance(r) { of_tolerance(record, candidate) } else { None };
             pointed.unwrap_or_else(|| of_requirement(r))
         })
         .collect();
-    list.extend(forbidden.iter().map(|d| Objection { key: d.name().to_owned(), sentence: of_defect(d) }));
-    if !candidate.requirements.iter().any(|r| r.name == RequirementKind::Tolerance.name()) {
+    list.extend(forbidden(record, candidate).map(of_defect));
+    if !candidate.requirements.iter().any(is_tolerance) {
         list.extend(of_tolerance(record, candidate));
     }
     if list.is_empty() {
         list.push(Objection { key: "reason not recorded".into(), sentence: "reason not recorded".into() });
     }
     list
+}
+
+/// Returns the defects for which a candidate is not accepted.
+fn forbidden<'a>(record: &Record, candidate: &'a Candidate) -> impl Iterator<Item = &'a Defect> {
+    candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect))
+}
+
+fn is_tolerance(requirement: &Requirement) -> bool {
+    requirement.name == RequirementKind::Tolerance.name()
 }
 
 /// Returns a defect as a sentence part.
@@ -75,7 +78,8 @@ fn points(at: &[usize]) -> String {
     }
 }
 
-fn joined(at: &[usize]) -> String {
+/// Returns numbers in a row: `2, 5, 8`.
+pub(super) fn joined(at: &[usize]) -> String {
     at.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
 }
 
@@ -85,19 +89,18 @@ fn of_requirement(requirement: &Requirement) -> Objection {
         // Rounding must not make a missed limit look met.
         (value, limit) = (figure(&requirement.value, exact), figure(&requirement.limit, exact));
     }
-    let name = clean(&requirement.name);
-    if let Some(kind) = RequirementKind::named(&requirement.name) {
-        let sentence = (kind.definition().objection)(&value, &limit);
-        let sentence = sentence.unwrap_or_else(|| format!("{name}: {value}, limit {limit}"));
-        return Objection { key: kind.definition().short.to_owned(), sentence };
-    }
-    if let (Some(key), Figure::Numbers(_)) = (name.strip_prefix("design."), &requirement.limit) {
-        let sentence = format!("{key} = {value}, outside of its bounds [{limit}]");
-        return Objection { key: key.to_owned(), sentence };
-    }
-    let name = if name.is_empty() { "a requirement".to_owned() } else { name };
-    let sentence = format!("{name}: {value}, limit {limit}");
-    Objection { key: name, sentence }
+    let name = Some(clean(&requirement.name)).filter(|name| !name.is_empty());
+    let name = name.unwrap_or("a requirement".to_owned());
+    let plain = format!("{name}: {value}, limit {limit}");
+    let kind = RequirementKind::named(&requirement.name).map(RequirementKind::definition);
+    let (key, sentence) = match (kind, name.strip_prefix("design."), &requirement.limit) {
+        (Some(kind), ..) => (kind.short, (kind.objection)(&value, &limit).unwrap_or(plain)),
+        (None, Some(key), Figure::Numbers(_)) => {
+            (key, format!("{key} = {value}, outside of its bounds [{limit}]"))
+        }
+        _ => (name.as_str(), plain),
+    };
+    Objection { key: key.to_owned(), sentence }
 }
 
 fn short(value: f64) -> String {
@@ -122,78 +125,58 @@ struct Deviation {
     tolerance: f64,
 }
 
-/// Returns the errors of a candidate at its points, if tolerances were asked for.
-fn deviations(record: &Record, candidate: &Candidate) -> Vec<Deviation> {
-    let path = &record.problem.resolved.task.path;
-    let Some(tolerance) = path.tolerance.as_ref() else { return Vec::new() };
-    let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
-    let points = path.points.iter().zip(tolerance).zip(positions).enumerate();
-    points
-        .filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
+impl Deviation {
+    /// Returns the deviation of a candidate that is the largest part of its tolerance, of equal ones the first; `None` if
+    /// no tolerances were asked for.
+    fn worst(record: &Record, candidate: &Candidate) -> Option<Deviation> {
+        let path = &record.problem.resolved.task.path;
+        let positions = candidate.crank_deg.iter().zip(&candidate.t1_at);
+        let points = path.points.iter().zip(path.tolerance.as_ref()?).zip(positions).enumerate();
+        let deviations = points.filter_map(|(point, ((target, tolerance), (angle, assembly)))| {
             let joints = candidate.linkage.position_with(angle.to_radians(), *assembly).joints()?;
             let error = (crate::mechanism::point(*target) - joints.coupler_point).norm();
             Some(Deviation { point, error, tolerance: *tolerance })
-        })
-        .collect()
-}
+        });
+        deviations.max_by(|x, y| x.part().total_cmp(&y.part()).then(y.point.cmp(&x.point)))
+    }
 
-impl Deviation {
     /// Returns the error in parts of its tolerance; 0 if there is no error.
     fn part(&self) -> f64 {
         if self.error == 0.0 { 0.0 } else { self.error / self.tolerance }
     }
 }
 
-/// Returns the deviation that is the largest part of its tolerance; of equal ones the first.
-fn worst(list: &[Deviation]) -> Option<&Deviation> {
-    list.iter().max_by(|x, y| x.part().total_cmp(&y.part()).then(y.point.cmp(&x.point)))
-}
-
 /// Returns whether a candidate keeps to the tolerances, and if none does, by how much and at which point the nearest
 /// one exceeds them: a sentence or two; `None` if no tolerance was asked for.
 pub(super) fn tolerances(record: &Record) -> Option<String> {
-    let band = |candidate: &Candidate| {
-        worst(&deviations(record, candidate)).map_or(f64::NEG_INFINITY, Deviation::part)
-    };
+    let band = |c: &Candidate| Deviation::worst(record, c).map_or(f64::NEG_INFINITY, |worst| worst.part());
     // Among the candidates that meet everything else, if there are any.
-    let otherwise_good = |c: &&Candidate| {
-        let forbidden = c.defects.iter().any(|d| record.problem.resolved.require.forbids(d));
-        !forbidden && c.requirements.iter().all(|r| r.met || r.name == RequirementKind::Tolerance.name())
+    let otherwise_good = |c: &Candidate| {
+        forbidden(record, c).next().is_none() && c.requirements.iter().all(|r| r.met || is_tolerance(r))
     };
-    let nearest = |list: &mut dyn Iterator<Item = &Candidate>| {
-        let measured = list.map(|c| (band(c), c.rank, c.clone()));
-        measured.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1))).map(|(_, _, c)| c)
+    let nearest = |is_good: &dyn Fn(&Candidate) -> bool| {
+        let measured = record.candidates.iter().filter(|c| is_good(c)).map(|c| (band(c), c));
+        measured.min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.rank.cmp(&y.1.rank))).map(|(_, c)| c)
     };
     let first = record.candidates.first()?;
-    let best = if first.accepted {
-        first.clone()
-    } else {
-        nearest(&mut record.candidates.iter().filter(otherwise_good))
-            .or_else(|| nearest(&mut record.candidates.iter()))?
-    };
-    let row = best.requirements.iter().find(|r| r.name == RequirementKind::Tolerance.name())?;
-    let list = deviations(record, &best);
-    let unit = unit_suffix(record);
-    let worst = worst(&list)?;
-    if row.met {
+    let best =
+        if first.accepted { first } else { nearest(&otherwise_good).or_else(|| nearest(&|_| true))? };
+    let met = best.requirements.iter().find(|r| is_tolerance(r))?.met;
+    let worst = Deviation::worst(record, best)?;
+    let (rank, unit, point) = (best.rank, unit_suffix(record), worst.point);
+    let [error, allowed, excess] =
+        [worst.error, worst.tolerance, worst.error - worst.tolerance].map(|length| short(length) + &unit);
+    if met {
         return Some(format!(
-            "Tolerances met: #{} comes nearest to one at point {}, with an error of {}{unit} where {}{unit} is \
-             allowed.",
-            best.rank,
-            worst.point,
-            short(worst.error),
-            short(worst.tolerance)
+            "Tolerances met: #{rank} comes nearest to one at point {point}, with an error of {error} where {allowed} is \
+             allowed."
         ));
     }
     let mut text = format!(
-        "Tolerances not met by {}{unit} at point {}: the nearest, #{}, has an error of {}{unit} there and {}{unit} is allowed.",
-        short(worst.error - worst.tolerance),
-        worst.point,
-        best.rank,
-        short(worst.error),
-        short(worst.tolerance)
+        "Tolerances not met by {excess} at point {point}: the nearest, #{rank}, has an error of {error} there and \
+         {allowed} is allowed."
     );
-    let least = band(&best);
+    let least = worst.part();
     if least.is_finite() {
         // Rounded up, so that the text never promises a narrower band than was found.
         let shown = brief((least * 1e4).ceil() / 1e4, 6);
@@ -205,18 +188,13 @@ pub(super) fn tolerances(record: &Record) -> Option<String> {
 /// Returns the objection about the point whose error is the largest part of its tolerance, if tolerances were asked for
 /// and are exceeded.
 fn of_tolerance(record: &Record, candidate: &Candidate) -> Option<Objection> {
-    let list = deviations(record, candidate);
-    let worst = worst(&list)?;
-    let (excess, j, error, limit) =
-        (worst.error - worst.tolerance, worst.point, worst.error, worst.tolerance);
-    let (mut shown, mut allowed) = (short(error), short(limit));
+    let Deviation { point, error, tolerance } = Deviation::worst(record, candidate)?;
+    let (mut shown, mut allowed) = (short(error), short(tolerance));
     if shown == allowed {
-        (shown, allowed) = (exact(error), exact(limit));
+        (shown, allowed) = (exact(error), exact(tolerance));
     }
-    (excess > 0.0).then(|| Objection {
-        key: "tolerance".to_owned(),
-        sentence: format!("error {shown} at point {j}, tolerance {allowed}"),
-    })
+    let sentence = format!("error {shown} at point {point}, tolerance {allowed}");
+    (error - tolerance > 0.0).then(|| Objection { key: "tolerance".to_owned(), sentence })
 }
 
 /// Returns the objective if it is not the plain sum of squares: the heading of its column and a sentence on it.
@@ -240,7 +218,7 @@ pub(super) fn minimised(measure: Measure) -> Option<(&'static str, &'static str)
 
 /// Returns the point whose error is the largest in parts of its tolerance, if tolerances were asked for.
 pub(super) fn worst_in_parts(record: &Record, candidate: &Candidate) -> Option<usize> {
-    worst(&deviations(record, candidate)).map(|worst| worst.point)
+    Deviation::worst(record, candidate).map(|worst| worst.point)
 }
 
 /// Returns the reason why fewer candidates are listed than were asked for; `None` if there are as many, or none at all.
@@ -367,17 +345,15 @@ pub(super) fn length_suffix(unit: Option<Unit>) -> String {
 
 /// Returns the names of the obstacles to acceptance, for files: the problem file's keys if there are any.
 pub(super) fn unmet(record: &Record, candidate: &Candidate) -> Vec<String> {
-    let forbidden = candidate.defects.iter().filter(|defect| record.problem.resolved.require.forbids(defect));
-    let mut names: Vec<String> = forbidden.map(|defect| defect.name().to_owned()).collect();
+    let mut names: Vec<String> =
+        forbidden(record, candidate).map(|defect| defect.name().to_owned()).collect();
     for requirement in candidate.requirements.iter().filter(|r| !r.met) {
         let name = clean(&requirement.name).replace(';', ",");
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    if !candidate.accepted
-        && !candidate.requirements.iter().any(|r| r.name == RequirementKind::Tolerance.name())
-    {
+    if !candidate.accepted && !candidate.requirements.iter().any(is_tolerance) {
         names.extend(of_tolerance(record, candidate).map(|objection| objection.key));
     }
     names

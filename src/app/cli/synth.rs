@@ -17,7 +17,7 @@ use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
 use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
-use crate::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
+use crate::report::table::{BatchRow, batch_summary, candidates_table};
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
@@ -262,10 +262,10 @@ fn ended_of(outcome: &Outcome) -> Ended {
 fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
     let name = input.job.as_ref().map_or(input.file.as_str(), |(job, _)| &job.name);
     let outcome = match outcome {
-        Outcome::Done(done) => BatchOutcome::Ran(&done.record),
-        Outcome::Refused(why) => BatchOutcome::Refused(why),
-        Outcome::Bug => BatchOutcome::Refused("a bug of linkwright: please report it with this input"),
-        Outcome::NotRun => BatchOutcome::Refused("not run: the batch was interrupted before"),
+        Outcome::Done(done) => Ok(&done.record),
+        Outcome::Refused(why) => Err(why.as_str()),
+        Outcome::Bug => Err("a bug of linkwright: please report it with this input"),
+        Outcome::NotRun => Err("not run: the batch was interrupted before"),
     };
     BatchRow { name, outcome }
 }

@@ -1,6 +1,8 @@
 //! A chart of a few series against the crank angle.
 
-use crate::report::canvas::{Anchor, Area, Canvas, Spot, bold, font, palette, px, text_width};
+use crate::report::canvas::{
+    Anchor, Area, Canvas, ROUND_CORNERS, Spot, Vec2, bold, font, outline, palette, px, stroke, text_width,
+};
 use crate::report::scene::round_length;
 use crate::report::text::{brief, xml};
 
@@ -74,7 +76,7 @@ impl Chart {
         // Curves that could run out of the plot are clipped to it.
         canvas
             .clipped(plot, |canvas| self.curves(canvas, abscissa, (low, high, tick), (&x_of, &y_of), &plot));
-        canvas.area(plot, &format!(r#"fill="none" stroke="{}" stroke-width="1""#, palette::MUTED));
+        canvas.area(plot, &outline(palette::MUTED, 1));
         numbers(canvas, &plot, (low, high, tick), y_of);
         crank_angles(canvas, &plot, abscissa, x_of);
     }
@@ -105,21 +107,15 @@ impl Chart {
         for (value, is_zero) in ticks(low, high, tick) {
             let (colour, width) = if is_zero { (palette::MUTED, 1.0) } else { (palette::FAINT, 0.6) };
             let y = y_of(value);
-            let line = format!(r#"stroke="{colour}" stroke-width="{width}""#);
-            canvas.line(Spot::new(0.0, y), Spot::new(plot.width, y), &line);
+            canvas.line(Spot::new(0.0, y), Spot::new(plot.width, y), &stroke(colour, width));
         }
         for toggle in &abscissa.toggles {
             let x = x_of(*toggle);
-            let line =
-                format!(r#"stroke="{}" stroke-width="1" stroke-dasharray="4 3""#, palette::TARGET_TEXT);
+            let line = stroke(palette::TARGET_TEXT, 1) + r#" stroke-dasharray="4 3""#;
             canvas.line(Spot::new(x, 0.0), Spot::new(x, plot.height), &line);
         }
         for (i, series) in self.series.iter().enumerate() {
-            let attributes = format!(
-                concat!(r#"fill="none" stroke="{}" stroke-width="1.8" "#, r#"stroke-linejoin="round"{}"#),
-                series.colour,
-                dashes(i)
-            );
+            let attributes = outline(series.colour, 1.8) + ROUND_CORNERS + dashes(i);
             for strand in &series.strands {
                 // Values far outside are moved nearer, to coordinates that viewers can read.
                 let far = 4.0 * plot.height;
@@ -138,13 +134,9 @@ impl Chart {
         let y = area.y + 17.0;
         let bold = bold(12.5, palette::INK);
         let note = if cut { format!("{}, peaks at toggles cut off", self.unit) } else { self.unit.clone() };
+        let ([x, at], title, note) = ([area.x, y].map(px), xml(self.title), xml(&note));
         canvas.raw(&format!(
-            r#"<text x="{}" y="{}" {bold}>{}<tspan dx="7" {}>{}</tspan></text>"#,
-            px(area.x),
-            px(y),
-            xml(self.title),
-            r#"font-weight="400""#,
-            xml(&note)
+            r#"<text x="{x}" y="{at}" {bold}>{title}<tspan dx="7" font-weight="400">{note}</tspan></text>"#
         ));
         if self.series.len() < 2 {
             return;
@@ -154,7 +146,7 @@ impl Chart {
             let text = font(12, palette::INK);
             canvas.text(Spot::new(x, y), Anchor::End, &text, series.name);
             x -= text_width(series.name, 12.0) + 9.0;
-            let line = format!(r#"stroke="{}" stroke-width="2.2"{}"#, series.colour, dashes(i));
+            let line = stroke(series.colour, 2.2) + dashes(i);
             canvas.line(Spot::new(x - 17.0, y - 4.0), Spot::new(x, y - 4.0), &line);
             x -= 30.0;
         }
@@ -241,12 +233,9 @@ fn crank_angles(canvas: &mut Canvas, plot: &Area, abscissa: &Abscissa, x_of: imp
     let step = degree_step((abscissa.high - abscissa.low) / 7.0);
     let y = plot.y + plot.height;
     for (value, _) in ticks(abscissa.low, abscissa.high, step) {
-        let x = plot.x + x_of(value);
-        canvas.line(
-            Spot::new(x, y),
-            Spot::new(x, y + 4.0),
-            &format!(r#"stroke="{}" stroke-width="1""#, palette::MUTED),
-        );
-        canvas.text(Spot::new(x, y + 16.0), Anchor::Middle, &muted(11), &format!("{}°", label(value, step)));
+        let at = Spot::new(plot.x + x_of(value), y);
+        canvas.line(at, at + Vec2::new(0.0, 4.0), &stroke(palette::MUTED, 1));
+        let below = at + Vec2::new(0.0, 16.0);
+        canvas.text(below, Anchor::Middle, &muted(11), &format!("{}°", label(value, step)));
     }
 }

@@ -1,12 +1,12 @@
 //! The four configurations (t1, t2) side by side, each with its coupler curve (Romero, figure 3).
 
-use super::{as_joints, closed, degrees, pivots, positions_of, sign};
+use super::{closed, degrees, pivots, scene, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Labels;
-use crate::report::scene::{Bounds, Pose, Scene, circuits_through, middle_position};
-use crate::report::sheet::{FULL, HEAD, INSET, Sheet, scale_bar};
+use crate::report::scene::Bounds;
+use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 /// The number of samples of a circuit: a degree of the crank, in a small drawing.
 const SAMPLES: usize = 360;
@@ -19,61 +19,47 @@ const HEIGHTS: std::ops::RangeInclusive<f64> = 150.0..=330.0;
 
 pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
     let all: &[Configuration; 4] = analysis.configurations.as_slice().try_into().ok()?;
-    let scenes = all.each_ref().map(scene);
+    let positions = all.each_ref().map(closed);
+    let scenes: Vec<_> = all
+        .iter()
+        .zip(&positions)
+        .map(|(c, closed)| scene(&c.linkage, closed.get(..1).unwrap_or_default(), SAMPLES))
+        .collect();
     // One frame and one scale, so that the four can be compared.
-    let mut bounds = Bounds::default();
-    scenes.iter().for_each(|(scene, _)| bounds.hold_all(&scene.bounds()));
+    let bounds = Bounds::of(scenes.iter().flat_map(|scene| scene.bounds().corners()));
     let wanted = CELL * bounds.height() / bounds.width().max(f64::MIN_POSITIVE) + 40.0;
     let height = wanted.clamp(*HEIGHTS.start(), *HEIGHTS.end());
-    let mut body = Canvas::default();
     let top = HEAD + CELL_HEAD;
-    let mut scale = None;
-    for (i, (configuration, (scene, crank_deg))) in all.iter().zip(&scenes).enumerate() {
+    let mut sheet = Sheet::new("The four configurations", FULL, top + height + 30.0);
+    let body = &mut sheet.body;
+    let view = |i: usize| {
         let x = INSET + i as f64 * (CELL + GAP);
-        let view = View::fit(&bounds, Area { x, y: top, width: CELL, height }.shrunk(20.0));
-        draw(&mut body, scene, &view, Detail { letters: scene.pose.is_some(), ..Detail::small(0.62) });
+        View::fit(&bounds, Area { x, y: top, width: CELL, height }.shrunk(20.0))
+    };
+    for (i, (configuration, scene)) in all.iter().zip(&scenes).enumerate() {
+        body.labels = Labels::default();
+        draw(body, scene, &view(i), Detail { letters: scene.pose.is_some(), ..Detail::small(0.62) });
         if scene.pose.is_none() {
-            pivots(&mut body, &mut Labels::default(), &view, &configuration.linkage, 0.62);
+            body.labels = Labels::default();
+            pivots(body, &view(i), &configuration.linkage, 0.62);
         }
-        heading(&mut body, configuration, *crank_deg, x, i == 0);
-        scale.get_or_insert(view);
+        heading(body, configuration, positions[i].first().map(|(row, _)| row.crank_deg), i);
     }
-    let bottom = top + height + 30.0;
-    if let Some(view) = &scale {
-        scale_bar(&mut body, view, analysis.unit, CELL, bottom);
-    }
-    Some(Sheet {
-        title: "The four configurations".to_owned(),
-        note: "t1 = +1: D left of the line C→B; t2 = +1: P left of the line C→D".to_owned(),
-        body,
-        foot: Vec::new(),
-        width: FULL,
-        bottom,
-    })
+    sheet.scale_bar(&view(0), analysis.unit, CELL);
+    sheet.note = "t1 = +1: D left of the line C→B; t2 = +1: P left of the line C→D".to_owned();
+    Some(sheet)
 }
 
-/// Returns the scene of the first position that closes, with its crank angle; otherwise only the curve.
-fn scene(configuration: &Configuration) -> (Scene, Option<f64>) {
-    let linkage = &configuration.linkage;
-    let all = closed(configuration);
-    let mut circuits = circuits_through(linkage, positions_of(configuration, &all).take(1), SAMPLES);
-    if circuits.is_empty() {
-        circuits = circuits_through(linkage, [middle_position(linkage)], SAMPLES);
-    }
-    let first = all.first();
-    let pose = first.map(|(_, joints)| Pose { target: None, joints: as_joints(*joints) });
-    let scene = Scene { linkage: Some(*linkage), targets: Vec::new(), circuits, pose };
-    (scene, first.map(|(row, _)| row.crank_deg))
-}
-
-fn heading(canvas: &mut Canvas, configuration: &Configuration, crank_deg: Option<f64>, x: f64, own: bool) {
+/// Writes the signs and the crank angle of the configuration at an index above its drawing.
+fn heading(canvas: &mut Canvas, configuration: &Configuration, crank_deg: Option<f64>, index: usize) {
+    let x = INSET + index as f64 * (CELL + GAP);
     let linkage = &configuration.linkage;
     let signs = format!("t1 = {}, t2 = {}", sign(linkage.assembly().sign()), sign(linkage.side().sign()));
     let bold = bold(12.5, palette::INK);
     let y = HEAD + 14.0;
     canvas.text(Spot::new(x, y), Anchor::Start, &bold, &signs);
     let at = crank_deg.map_or("open".to_owned(), |deg| format!("at {}", degrees(deg)));
-    let text = if own { format!("as given, {at}") } else { at };
+    let text = if index == 0 { format!("as given, {at}") } else { at };
     let muted = font(12, palette::MUTED);
     canvas.text(Spot::new(x + CELL, y), Anchor::End, &muted, &text);
 }

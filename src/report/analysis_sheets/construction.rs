@@ -1,14 +1,16 @@
 //! The construction of a position with ruler and compasses: C from the crank angle, D as an intersection of the circle
 //! of radius b about C with the circle of radius c about B.
 
-use super::{between, closed, degrees, sign};
+use super::{closed, degrees, sign};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::mechanism::{Complex, FourBar, cross};
-use crate::report::canvas::{Anchor, Canvas, Corners, Spot, font, haloed, palette};
-use crate::report::labels::Labels;
-use crate::report::parts::{away, bars, letter, mark_path, plus, stand};
+use crate::report::canvas::{
+    Canvas, Corners, ROUND_ENDS, Spot, Vec2, filled, font, haloed, outline, palette, stroke,
+};
+use crate::report::labels::Beside;
+use crate::report::parts::{away, bars, letter, stand};
 use crate::report::scene::Bounds;
-use crate::report::sheet::{Sheet, arc, fitted, scale_bar};
+use crate::report::sheet::{Sheet, arc};
 use crate::report::text::brief;
 use crate::report::words;
 
@@ -31,69 +33,56 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration, width: f
     let crank = [arc(a, linkage.crank(), phi - CRANK_ARC, phi + CRANK_ARC).collect()];
     let about_c = arcs(c, linkage.coupler(), b, d, other);
     let about_b = arcs(b, linkage.follower(), c, d, other);
-    let mut bounds = Bounds::default();
-    [a, b, c, d].into_iter().chain(other).for_each(|p| bounds.hold(p));
-    crank.iter().chain(&about_c).chain(&about_b).flatten().for_each(|p| bounds.hold(*p));
+    let arcs = crank.iter().chain(&about_c).chain(&about_b).flatten().copied();
+    let bounds = Bounds::of([a, b, c, d].into_iter().chain(other).chain(arcs));
 
-    let (view, bottom) = fitted(&bounds, width);
-    let mut body = Canvas::default();
-    let mut labels = Labels::default();
+    let (mut sheet, view) = Sheet::fitted("Construction by arcs", &bounds, width);
+    let body = &mut sheet.body;
     for (strokes, colour) in
         [(&crank[..], palette::MUTED), (&about_c[..], palette::TARGET), (&about_b[..], palette::FOLLOWER)]
     {
         for stroke in strokes {
-            let spots: Vec<Spot> = stroke.iter().map(|p| view.spot(*p)).collect();
-            body.path(
-                &spots,
-                false,
-                &format!(r#"fill="none" stroke="{colour}" stroke-width="1.6" stroke-linecap="round""#),
-            );
-            mark_path(&mut labels, &spots);
+            let spots = view.spots(stroke);
+            body.path(&spots, false, &(outline(colour, 1.6) + ROUND_ENDS));
+            body.labels.mark_path(&spots);
         }
     }
     let [sa, sb, sc, sd] = [a, b, c, d].map(|p| view.spot(p));
     if let Some(other) = other {
         let at = view.spot(other);
-        let dashed = format!(r#"stroke="{}" stroke-width="1.6" stroke-dasharray="6 5""#, palette::MUTED);
+        let dashed = stroke(palette::MUTED, 1.6) + r#" stroke-dasharray="6 5""#;
         for from in [sc, sb] {
             body.line(from, at, &dashed);
-            labels.mark_line(from, at);
+            body.labels.mark_line(from, at);
         }
-        let ring = format!(r#"fill="{}" stroke="{}" stroke-width="1.6""#, palette::PAPER, palette::MUTED);
-        body.circle(at, 4.2, &ring);
+        body.circle(at, 4.2, &filled(palette::PAPER, palette::MUTED, 1.6));
     }
     for (from, to) in [(sa, sc), (sc, sd), (sb, sd)] {
-        labels.mark_line(from, to);
-        labels.mark_line(from, to);
+        body.labels.mark_line(from, to);
+        body.labels.mark_line(from, to);
     }
     for pivot in [sa, sb] {
-        stand(&mut body, pivot, 0.9);
-        labels.mark_line(plus(pivot, Spot::new(-14.0, 15.0)), plus(pivot, Spot::new(14.0, 15.0)));
+        stand(body, pivot, 0.9);
+        body.labels.mark_line(pivot + Vec2::new(-14.0, 15.0), pivot + Vec2::new(14.0, 15.0));
     }
-    bars(&mut body, [sa, sb, sc, sd], palette::BAR, palette::BAR_EDGE, 0.75);
-    letter(&mut body, &mut labels, "A", sa, away(sa, &[sc]));
-    letter(&mut body, &mut labels, "B", sb, away(sb, &[sd]));
-    letter(&mut body, &mut labels, "C", sc, away(sc, &[sa, sd]));
-    letter(&mut body, &mut labels, "D", sd, away(sd, &[sb, sc]));
+    bars(body, [sa, sb, sc, sd], palette::BAR_EDGE, 0.75);
+    letter(body, "A", sa, away(sa, &[sc]));
+    letter(body, "B", sb, away(sb, &[sd]));
+    letter(body, "C", sc, away(sc, &[sa, sd]));
+    letter(body, "D", sd, away(sd, &[sb, sc]));
     if let Some(other) = other.map(|p| view.spot(p)) {
-        letter(&mut body, &mut labels, "D′", other, away(other, &[sb, sc]));
+        letter(body, "D′", other, away(other, &[sb, sc]));
     }
     for (name, from, to, colour) in
         [("a", sa, sc, palette::INK), ("b", sc, sd, palette::TARGET_TEXT), ("c", sb, sd, palette::FOLLOWER)]
     {
-        link_name(&mut body, &mut labels, name, from, to, colour);
+        link_name(body, name, from, to, colour);
     }
-    crank_angle(&mut body, &mut labels, [sa, sc], phi, &format!("φ = {}", degrees(row.crank_deg)));
-    scale_bar(&mut body, &view, analysis.unit, width, bottom);
-
-    Some(Sheet {
-        title: "Construction by arcs".to_owned(),
-        note: format!("the first position that closes, crank at {}", degrees(row.crank_deg)),
-        body,
-        foot: steps(analysis, linkage, joints, other),
-        width,
-        bottom,
-    })
+    crank_angle(body, [sa, sc], phi, &format!("φ = {}", degrees(row.crank_deg)));
+    sheet.scale_bar(&view, analysis.unit, width);
+    sheet.note = format!("the first position that closes, crank at {}", degrees(row.crank_deg));
+    sheet.foot = steps(analysis, linkage, joints, other);
+    Some(sheet)
 }
 
 /// Returns the steps of the construction in words.
@@ -162,34 +151,30 @@ fn crosses_itself([a, b, c, d]: [Complex; 4]) -> bool {
 }
 
 /// Draws the crank angle between the x axis and the crank.
-fn crank_angle(canvas: &mut Canvas, labels: &mut Labels, [pivot, pin]: [Spot; 2], phi: f64, text: &str) {
+fn crank_angle(canvas: &mut Canvas, [pivot, pin]: [Spot; 2], phi: f64, text: &str) {
     let radius = (0.4 * pivot.distance(pin)).clamp(8.0, 40.0);
-    let thin = format!(r#"stroke="{}" stroke-width="1""#, palette::MUTED);
     let end = Spot::new(pivot.x + radius + 14.0, pivot.y);
-    canvas.line(pivot, end, &format!(r#"{thin} stroke-dasharray="2 3""#));
-    labels.mark_line(pivot, end);
+    canvas.line(pivot, end, &(stroke(palette::MUTED, 1) + r#" stroke-dasharray="2 3""#));
+    canvas.labels.mark_line(pivot, end);
     let turn = phi.rem_euclid(std::f64::consts::TAU);
     // Counter-clockwise in the plane is clockwise with y down.
-    let spots: Vec<Spot> = arc(Complex::new(0.0, 0.0), radius, 0.0, turn)
-        .map(|p| Spot::new(pivot.x + p.re, pivot.y - p.im))
-        .collect();
-    canvas.path(&spots, false, &format!(r#"fill="none" {thin}"#));
-    mark_path(labels, &spots);
-    let towards = Spot::new((0.5 * turn).cos(), -(0.5 * turn).sin());
-    let near = Spot::new(pivot.x + radius * towards.x, pivot.y + radius * towards.y);
-    if let Some(at) = labels.place(text, 12.0, near, 8.0, towards, true) {
-        canvas.text(at, Anchor::Middle, &haloed(&font(12, palette::INK), "2.5", Corners::Sharp), text);
-    }
+    let spots: Vec<Spot> =
+        arc(Complex::ZERO, radius, 0.0, turn).map(|p| pivot + Vec2::new(p.re, -p.im)).collect();
+    canvas.path(&spots, false, &outline(palette::MUTED, 1));
+    canvas.labels.mark_path(&spots);
+    let towards = Vec2::new((0.5 * turn).cos(), -(0.5 * turn).sin());
+    let attributes = haloed(&font(12, palette::INK), "2.5", Corners::Sharp);
+    let beside = Beside { point: pivot + radius * towards, distance: 8.0, towards, needed: true };
+    canvas.label(text, 12.0, &attributes, beside);
 }
 
 /// Draws the letter of a link beside its middle.
-fn link_name(canvas: &mut Canvas, labels: &mut Labels, name: &str, from: Spot, to: Spot, colour: &str) {
+fn link_name(canvas: &mut Canvas, name: &str, from: Spot, to: Spot, colour: &str) {
     let length = from.distance(to).max(f64::MIN_POSITIVE);
-    let normal = Spot::new((to.y - from.y) / length, (from.x - to.x) / length);
-    if let Some(at) = labels.place(name, 14.0, between(from, to), 7.0, normal, false) {
-        let italic = format!(r#"font-size="14" font-style="italic" fill="{colour}""#);
-        canvas.text(at, Anchor::Middle, &haloed(&italic, "2.5", Corners::Sharp), name);
-    }
+    let towards = Vec2::new((to.y - from.y) / length, (from.x - to.x) / length);
+    let italic = format!(r#"font-size="14" font-style="italic" fill="{colour}""#);
+    let beside = Beside { point: from.midpoint(to), distance: 7.0, towards, needed: false };
+    canvas.label(name, 14.0, &haloed(&italic, "2.5", Corners::Sharp), beside);
 }
 
 #[cfg(test)]

@@ -1,17 +1,16 @@
 //! Charts of the transmission angle, angles, velocities and accelerations against the crank angle.
 
 use super::chart::{Abscissa, Chart, Range, Series};
-use super::vectors::per_time;
+use super::vectors::{ACCELERATIONS, VELOCITIES, per_time};
 use super::{CYCLE_ROWS, degrees};
 use crate::mechanism::analysis::{Analysis, Configuration, MobilityRecord, Pose, Rates, Row, Status};
 use crate::mechanism::four_bar::transmission::POOR_DEG;
-use crate::report::canvas::{Area, Canvas, palette};
+use crate::mechanism::point;
+use crate::report::canvas::{Area, palette};
 use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
 
 const HEIGHT: f64 = 196.0;
 const GAP: f64 = 22.0;
-/// The distance from 0 or 180 degrees below which a transmission angle is poor.
-const POOR_TRANSMISSION_DEG: f64 = POOR_DEG;
 /// The number of turns above which toggles and open stretches are not marked: they would cover everything else.
 const MOST_TURNS: f64 = 10.0;
 
@@ -24,32 +23,26 @@ pub(super) fn sheet(analysis: &Analysis, configuration: &Configuration) -> Optio
     let abscissa = abscissa(&analysis.mobility, &span);
     let charts = charts(analysis, configuration, &rows, &span);
     let width = 0.5 * (FULL - 2.0 * INSET - GAP);
-    let mut body = Canvas::default();
+    let bottom = HEAD + charts.len().div_ceil(2) as f64 * (HEIGHT + 8.0);
+    let mut sheet = Sheet::new("Over the cycle", FULL, bottom);
     for (i, chart) in charts.iter().enumerate() {
         let (column, row) = ((i % 2) as f64, (i / 2) as f64);
         let area =
             Area { x: INSET + column * (width + GAP), y: HEAD + row * (HEIGHT + 8.0), width, height: HEIGHT };
-        chart.draw(&mut body, &abscissa, area);
+        chart.draw(&mut sheet.body, &abscissa, area);
     }
-    let mut note = format!(
-        "against the crank angle from {} to {}; shaded red: within {POOR_TRANSMISSION_DEG}° of a toggle",
+    sheet.note = format!(
+        "against the crank angle from {} to {}; shaded red: within {POOR_DEG}° of a toggle",
         degrees(abscissa.low),
         degrees(abscissa.high)
     );
     if !abscissa.unreachable.is_empty() {
-        note.push_str("; grey: the loop is open");
+        sheet.note.push_str("; grey: the loop is open");
     }
     if !abscissa.toggles.is_empty() {
-        note.push_str("; dashed: toggles");
+        sheet.note.push_str("; dashed: toggles");
     }
-    Some(Sheet {
-        title: "Over the cycle".to_owned(),
-        note,
-        body,
-        foot: Vec::new(),
-        width: FULL,
-        bottom: HEAD + charts.len().div_ceil(2) as f64 * (HEIGHT + 8.0),
-    })
+    Some(sheet)
 }
 
 /// Returns the rows sorted by crank angle.
@@ -159,28 +152,28 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
     let pose = |name, colour, turns, value: fn(&Pose) -> f64| {
         series(name, colour, rows, span, turns, |row| row.pose.as_ref().map(value))
     };
-    let rate = |name, colour, value: fn(&Rates) -> f64| {
+    let rate = |name, colour, value: &dyn Fn(&Rates) -> f64| {
         series(name, colour, rows, span, false, |row| row.rates.as_ref().map(value))
     };
-    let poor = POOR_TRANSMISSION_DEG;
+    let chart = |title, unit: &str, series, range| Chart {
+        title,
+        unit: unit.to_owned(),
+        series,
+        range,
+        warning: Vec::new(),
+    };
+    let poor = POOR_DEG;
+    let transmission = pose("μ", palette::CURVE, false, |p| p.transmission_deg);
+    let half_turn = Range::Fixed { low: 0.0, high: 180.0, tick: 30.0 };
+    let coupler = pose("coupler θ3", palette::TARGET, true, |p| p.coupler_deg);
+    let follower = pose("follower θ4", palette::FOLLOWER, true, |p| p.follower_deg);
+    let angles = Range::Fitted { natural: 10.0, angle: true, unbounded: false };
     let mut charts = vec![
         Chart {
-            title: "Transmission angle",
-            unit: "μ, °".to_owned(),
-            series: vec![pose("μ", palette::CURVE, false, |p| p.transmission_deg)],
-            range: Range::Fixed { low: 0.0, high: 180.0, tick: 30.0 },
             warning: vec![(0.0, poor), (180.0 - poor, 180.0)],
+            ..chart("Transmission angle", "μ, °", vec![transmission], half_turn)
         },
-        Chart {
-            title: "Angles",
-            unit: "°".to_owned(),
-            series: vec![
-                pose("coupler θ3", palette::TARGET, true, |p| p.coupler_deg),
-                pose("follower θ4", palette::FOLLOWER, true, |p| p.follower_deg),
-            ],
-            range: Range::Fitted { natural: 10.0, angle: true, unbounded: false },
-            warning: Vec::new(),
-        },
+        chart("Angles", "°", vec![coupler, follower], angles),
     ];
     let (omega, alpha) = (analysis.omega2_rad_s.abs(), analysis.alpha2_rad_s2.abs());
     if !rows.iter().any(|row| row.rates.is_some()) || (omega == 0.0 && alpha == 0.0) {
@@ -189,42 +182,21 @@ fn charts(analysis: &Analysis, configuration: &Configuration, rows: &[&Row], spa
     let singular = rows.iter().any(|row| row.status == Status::Singular);
     let unbounded = singular || !analysis.mobility.toggles_deg.is_empty();
     let fitted = |natural: f64| Range::Fitted { natural, angle: false, unbounded };
-    let chart = |title, unit: String, series, natural| Chart {
-        title,
-        unit,
-        series,
-        range: fitted(natural),
-        warning: Vec::new(),
-    };
     let length = configuration.linkage.longest_link();
-    let per_s = per_time(analysis.unit, "s").trim_start().to_owned();
-    let per_s2 = per_time(analysis.unit, "s²").trim_start().to_owned();
-    let second = omega * omega + alpha;
-    if omega > 0.0 {
-        charts.push(chart(
-            "Angular velocities",
-            "rad/s".to_owned(),
-            vec![
-                rate("ω3", palette::TARGET, |r| r.omega3_rad_s),
-                rate("ω4", palette::FOLLOWER, |r| r.omega4_rad_s),
-            ],
-            omega,
-        ));
+    // At a crank that only begins to turn there are no velocities.
+    let kinds = [(VELOCITIES, omega), (ACCELERATIONS, omega * omega + alpha)];
+    let kinds = &kinds[usize::from(omega == 0.0)..];
+    for (kind, natural) in kinds {
+        let ([coupler, follower], of) = (kind.turning_names, kind.turning);
+        let coupler = rate(coupler, palette::TARGET, &|r| of(r)[0]);
+        let follower = rate(follower, palette::FOLLOWER, &|r| of(r)[1]);
+        let unit = format!("rad/{}", kind.per);
+        charts.push(chart(kind.charts[0], &unit, vec![coupler, follower], fitted(*natural)));
     }
-    charts.push(chart(
-        "Angular accelerations",
-        "rad/s²".to_owned(),
-        vec![
-            rate("α3", palette::TARGET, |r| r.alpha3_rad_s2),
-            rate("α4", palette::FOLLOWER, |r| r.alpha4_rad_s2),
-        ],
-        second,
-    ));
-    if omega > 0.0 {
-        let speed = vec![rate("|vP|", palette::CURVE, |r| r.vP[0].hypot(r.vP[1]))];
-        charts.push(chart("Speed of P", per_s, speed, omega * length));
+    for (kind, natural) in kinds {
+        let size = rate(kind.of_p, palette::CURVE, &|r| point((kind.vectors)(r)[2]).norm());
+        let unit = per_time(analysis.unit, kind.per);
+        charts.push(chart(kind.charts[1], &unit, vec![size], fitted(natural * length)));
     }
-    let acceleration = vec![rate("|aP|", palette::CURVE, |r| r.aP[0].hypot(r.aP[1]))];
-    charts.push(chart("Acceleration of P", per_s2, acceleration, second * length));
     charts
 }

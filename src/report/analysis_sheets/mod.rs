@@ -19,14 +19,16 @@ mod vectors;
 
 pub use super::cognates_sheet::cognates_svg;
 
-use super::canvas::{Canvas, Spot, View, palette};
-use super::labels::Labels;
-use super::parts::{letter, stand};
+use super::canvas::{Canvas, View, filled, palette};
+use super::csv::PARAMETERS;
+use super::parts::{UP, letter, stand};
+use super::scene::{Pose, Scene, circuits_through, middle_position};
 use super::sheet::{FULL, HALF, Heading, Sheet, page};
-use super::text::{brief, clean, significant};
+use super::text::{brief, clean, plural, significant};
 use super::words;
 use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
-use crate::mechanism::{Complex, FourBar, Joints};
+use crate::mechanism::{Complex, FourBar};
+use vectors::{ACCELERATIONS, VELOCITIES};
 
 /// The least number of rows that are drawn as curves against the crank angle.
 pub const CYCLE_ROWS: usize = 24;
@@ -53,8 +55,12 @@ pub fn analysis_svg(analysis: &Analysis) -> String {
 fn sheets(analysis: &Analysis) -> Vec<Sheet> {
     let Some(configuration) = analysis.configurations.first() else { return Vec::new() };
     type Maker = fn(&Analysis, &Configuration, f64) -> Option<Sheet>;
-    let makers: [Maker; 4] =
-        [positions::sheet, construction::sheet, vectors::velocities, vectors::accelerations];
+    let makers: [Maker; 4] = [
+        positions::sheet,
+        construction::sheet,
+        |analysis, configuration, width| vectors::sheet(analysis, configuration, width, &VELOCITIES),
+        |analysis, configuration, width| vectors::sheet(analysis, configuration, width, &ACCELERATIONS),
+    ];
     let mut sheets: Vec<Sheet> =
         makers.iter().filter_map(|make| make(analysis, configuration, HALF)).collect();
     if sheets.len() % 2 == 1 {
@@ -103,21 +109,9 @@ fn heading(analysis: &Analysis) -> Heading {
 
 /// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
 pub(super) fn dimensions(linkage: &FourBar) -> String {
-    let p = linkage.natural_coordinates();
-    let number = |x: f64| brief(x, 6);
-    let at = |[x, y]: [f64; 2]| format!("({}, {})", number(x), number(y));
-    format!(
-        "A {}, B {}, a {}, b {}, c {}, d {}, e {}, t1 {}, t2 {}",
-        at(p.crank_pivot),
-        at(p.follower_pivot),
-        number(p.crank),
-        number(p.coupler),
-        number(p.follower),
-        number(p.crank_side),
-        number(p.follower_side),
-        sign(p.assembly.sign()),
-        sign(p.side.sign())
-    )
+    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
+    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
+    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
 }
 
 /// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
@@ -130,8 +124,7 @@ fn counted(rows: &[Row]) -> String {
         .collect();
     let total = match rows.len() {
         0 => "no crank angle asked".to_owned(),
-        1 => "1 position".to_owned(),
-        n => format!("{n} positions"),
+        n => plural(n, "position"),
     };
     match counts.as_slice() {
         [] | [(Status::Ok, _)] => total,
@@ -169,30 +162,24 @@ fn closed(configuration: &Configuration) -> Vec<(&Row, [Complex; 5])> {
         .collect()
 }
 
-fn as_joints([_, _, crank_pin, follower_pin, coupler_point]: [Complex; 5]) -> Joints {
-    Joints { crank_pin, follower_pin, coupler_point }
-}
-
-/// Returns the crank angle in radians and the assembly of rows, from which their circuits follow.
-fn positions_of<'a>(
-    configuration: &'a Configuration,
-    closed: &'a [(&'a Row, [Complex; 5])],
-) -> impl Iterator<Item = (f64, crate::mechanism::AssemblyMode)> + 'a {
-    closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), configuration.linkage.assembly()))
+/// Returns the scene of the first of these positions, with the circuits through all of them; without a position only
+/// the curve.
+fn scene(linkage: &FourBar, closed: &[(&Row, [Complex; 5])], samples: usize) -> Scene {
+    let positions = closed.iter().map(|(row, _)| (row.crank_deg.to_radians(), linkage.assembly()));
+    let mut circuits = circuits_through(linkage, positions, samples);
+    if circuits.is_empty() {
+        circuits = circuits_through(linkage, [middle_position(linkage)], samples);
+    }
+    let pose = closed.first().map(|(_, joints)| Pose { target: None, joints: *joints });
+    Scene { linkage: Some(*linkage), targets: Vec::new(), circuits, pose }
 }
 
 /// Draws A and B, if there is no position to draw.
-fn pivots(canvas: &mut Canvas, labels: &mut Labels, view: &View, linkage: &FourBar, weight: f64) {
+fn pivots(canvas: &mut Canvas, view: &View, linkage: &FourBar, weight: f64) {
     for (name, pivot) in [("A", linkage.crank_pivot()), ("B", linkage.follower_pivot())] {
         let at = view.spot(pivot);
         stand(canvas, at, weight);
-        let pin = format!(r#"fill="{}" stroke="{}" stroke-width="1.5""#, palette::PAPER, palette::BAR_EDGE);
-        canvas.circle(at, 5.2 * weight, &pin);
-        letter(canvas, labels, name, at, Spot::new(0.0, -1.0));
+        canvas.circle(at, 5.2 * weight, &filled(palette::PAPER, palette::BAR_EDGE, 1.5));
+        letter(canvas, name, at, UP);
     }
-}
-
-/// Returns the middle of two places.
-fn between(a: Spot, b: Spot) -> Spot {
-    Spot::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
 }

@@ -14,7 +14,7 @@ use linkwright::internals::report::csv::{candidates_csv, curve_csv};
 use linkwright::internals::report::html::report_html;
 use linkwright::internals::report::plot::{Glyphs, terminal_plot};
 use linkwright::internals::report::svg::candidate_svg;
-use linkwright::internals::report::table::{BatchOutcome, BatchRow, batch_summary, candidates_table};
+use linkwright::internals::report::table::{BatchRow, batch_summary, candidates_table};
 use records::{detail, ellipse, k18, rocking, shapes};
 use std::collections::HashMap;
 
@@ -28,10 +28,7 @@ fn everything(record: &Record) -> Vec<(&'static str, String)> {
         (0..3).filter_map(|i| Entry::from_record(&record.problem.name, record, i)).collect();
     let comparison = compare(&entries, &[SortKey::Max], None);
     let name = record.problem.name.as_str();
-    let files = [
-        BatchRow { name, outcome: BatchOutcome::Ran(record) },
-        BatchRow { name, outcome: BatchOutcome::Refused(name) },
-    ];
+    let files = [BatchRow { name, outcome: Ok(record) }, BatchRow { name, outcome: Err(name) }];
     let mut all = vec![
         ("table", candidates_table(record, Colour::Never)),
         ("batch", batch_summary(&files, Colour::Never)),
