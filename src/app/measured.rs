@@ -12,7 +12,7 @@ use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
 use crate::report::compare::{
-    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, scaled, times, unit_remarks,
+    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, unit_remarks,
 };
 use crate::synthesis::nearest::nearest_positions;
 use crate::task::Problem;
@@ -106,8 +106,8 @@ impl Target {
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
     fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
-        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
-        let linkage = scaled(linkage, factor)?;
+        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
+        let linkage = linkage.scaled(factor)?;
         nearest_positions(&self.problem, &linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
             .ok_or_else(|| NotMeasured::NotAssembled(self.name.clone()))

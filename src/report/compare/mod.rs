@@ -28,7 +28,7 @@ mod unit;
 pub use data::JSON_FORMAT;
 pub use front::{Point, front};
 pub use key::{SortKey, UnknownKey};
-pub use unit::{in_one_unit, scaled, times, unit_remarks};
+pub use unit::{in_one_unit, unit_remarks};
 
 /// An entry of a comparison: a linkage with its figures on a target, from a record or evaluated on one.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,6 @@ use super::{Format, Subject};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::{Placement, Plate};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
-use crate::report::compare::times;
 use crate::report::scene::{circuits_through, middle_position};
 use crate::report::text::{brief, exact};
 
@@ -49,7 +48,7 @@ impl<'a> Model<'a> {
         if unit.is_none() {
             assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
         }
-        let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| times(unit, Unit::Mm));
+        let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
         let linkage = scaled(&subject.linkage, mm_per_unit)?;
         check_size(&linkage, settings)?;
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
@@ -217,7 +216,7 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
 
 /// Returns a linkage with all lengths multiplied by a factor.
 pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
-    crate::report::compare::scaled(linkage, factor).map_err(|e| {
+    linkage.scaled(factor).map_err(|e| {
         Refusal::new(
             format!("scaled {} times, this is no linkage: {e}", exact(factor)),
             "choose another scale",

@@ -5,7 +5,7 @@ use super::page::{list, paragraph, section};
 use super::table::{Cell, Row, scrolling};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::sensitivity::Sensitivity;
-use crate::judge::practicality::{Build, Practicality, millimetre, usual_tolerance};
+use crate::judge::practicality::{Build, Practicality, usual_tolerance};
 use crate::record::{Candidate, Record};
 use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
@@ -41,7 +41,7 @@ const NOTES: &str = "linkwright build RESULT says the same of other candidates, 
 
 fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> {
     let unit = record.problem.unit;
-    let hole = Build::usual_hole(&c.linkage, unit.map(millimetre));
+    let hole = Build::usual_hole(&c.linkage, unit);
     let found = Practicality::of_candidate(problem, c, Build::new(hole, hole))?;
     let words = Words { unit, colour: Colour::Never };
     let title = match c.rank {
