@@ -96,7 +96,6 @@ impl Target {
             candidate,
             target_name: self.name.clone(),
             target: path.points.clone(),
-            closed: path.closed,
             unit: self.unit.or(unit),
             measure: self.problem.spec().measure(),
             of_run,

@@ -1,6 +1,7 @@
 //! `compare`: ranks, front, differences, units, targets; what it prints and writes; records that are not true.
 
 use crate::common::root;
+use crate::corpora::readers::entry;
 use crate::report::records::{detail, ellipse, k18};
 use assert_cmd::Command;
 use linkwright::internals::files::linkage_file;
@@ -39,7 +40,7 @@ fn run(folder: &Path, name: &str, extra: &[&str]) {
 
 fn entries(record: &Record) -> Vec<Entry> {
     (0..record.candidates.len())
-        .filter_map(|i| Entry::from_record(&format!("{}:{}", record.problem.name, i + 1), record, i))
+        .filter_map(|i| entry(&format!("{}:{}", record.problem.name, i + 1), record, i))
         .collect()
 }
 
