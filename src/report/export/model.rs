@@ -149,9 +149,7 @@ impl<'a> Model<'a> {
                             let other = brief(other.to_degrees(), 4);
                             format!("choose another crank_deg, such as {other}, or leave it out")
                         }
-                        Err(_) => {
-                            "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned()
-                        }
+                        Err(refusal) => refusal.help,
                     },
                 )
             });
@@ -254,21 +252,27 @@ fn too_far(settings: &Settings) -> Refusal {
     )
 }
 
-/// Returns the distance of the nearest two distinct holes of one plate, and their names.
-fn nearest_holes(linkage: &FourBar) -> (f64, String) {
-    let mut nearest = (f64::INFINITY, String::new());
-    for plate in Plate::all(linkage, 0.0) {
-        let holes = plate.distinct_holes();
-        for (i, (name, at)) in holes.iter().enumerate() {
-            for (other, there) in &holes[..i] {
-                let distance = (at - there).norm();
-                if distance < nearest.0 {
-                    nearest = (distance, format!("{other} and {name} of the {}", plate.link.name()));
-                }
-            }
+/// Returns the names of each pair of distinct holes of a plate with their distance.
+pub(super) fn hole_distances(plate: &Plate) -> Vec<(String, String, f64)> {
+    let holes = plate.distinct_holes();
+    let mut pairs = Vec::new();
+    for (i, (from, at)) in holes.iter().enumerate() {
+        for (to, there) in &holes[i + 1..] {
+            pairs.push((from.clone(), to.clone(), (there - at).norm()));
         }
     }
-    nearest
+    pairs
+}
+
+/// Returns the distance of the nearest two distinct holes of one plate, and their names.
+fn nearest_holes(linkage: &FourBar) -> (f64, String) {
+    let named = |plate: Plate| {
+        hole_distances(&plate)
+            .into_iter()
+            .map(move |(from, to, apart)| (apart, format!("{from} and {to} of the {}", plate.link.name())))
+    };
+    let all = Plate::all(linkage, 0.0).into_iter().flat_map(named);
+    all.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((f64::INFINITY, String::new()))
 }
 
 /// Returns the largest number of two significant digits that is not larger than a value.
