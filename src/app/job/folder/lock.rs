@@ -36,7 +36,7 @@ impl Lock {
                 Err(TryLockError::Error(e)) => return Err(FolderError::io(&path, e)),
             }
         }
-        Err(FolderError::Locked { path: folder.display().to_string() })
+        Err(FolderError::Locked(folder.display().to_string()))
     }
 
     /// Returns whether another run has the folder now.

@@ -48,11 +48,8 @@ pub enum FolderError {
         source: io::Error,
     },
     /// The path of the results folder leads to a file.
-    #[error("{path} is a file; give a folder for the results with --out")]
-    NotAFolder {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is a file; give a folder for the results with --out")]
+    NotAFolder(String),
     /// The folder contains something that linkwright did not write.
     #[error(
         "{path} holds {foreign}, which linkwright did not write; give another folder with --out or move it away"
@@ -74,35 +71,20 @@ pub enum FolderError {
         kind: &'static str,
     },
     /// A file that a person named for writing is also read by the same command.
-    #[error("{path} is an input of this command; name another file, or replace it with --force")]
-    OwnInput {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is an input of this command; name another file, or replace it with --force")]
+    OwnInput(String),
     /// A file that is to be created exists already.
-    #[error("{path} exists already; choose another name, or replace it with --force")]
-    Exists {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} exists already; choose another name, or replace it with --force")]
+    Exists(String),
     /// Two files were to be written to one path.
-    #[error("{path} is named twice: each file needs a place of its own")]
-    NamedTwice {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is named twice: each file needs a place of its own")]
+    NamedTwice(String),
     /// Another run uses the folder.
-    #[error("{path} is in use by another run; wait for it to end or give another folder with --out")]
-    Locked {
-        /// The path of the folder.
-        path: String,
-    },
+    #[error("{0} is in use by another run; wait for it to end or give another folder with --out")]
+    Locked(String),
     /// The folder holds no record.
-    #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
-    NoRecord {
-        /// The path of the file that was looked for.
-        path: String,
-    },
+    #[error("{0}: there is no such record; name the folder of a result, such as results/my-path")]
+    NoRecord(String),
     /// The file is not a valid record.
     #[error("{path}:{line}:{column}: this is not a linkwright record: {message}")]
     NotARecord {
@@ -261,7 +243,7 @@ impl ResultsFolder {
         let shown = || path.display().to_string();
         let created = match fs::metadata(path) {
             Ok(found) if found.is_dir() => Vec::new(),
-            Ok(_) => return Err(FolderError::NotAFolder { path: shown() }),
+            Ok(_) => return Err(FolderError::NotAFolder(shown())),
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
                 let missing = path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists());
                 let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
@@ -270,17 +252,12 @@ impl ResultsFolder {
             }
             Err(e) => return Err(FolderError::io(path, e)),
         };
-        let mut names = Vec::new();
-        for entry in fs::read_dir(path).map_err(|e| FolderError::io(path, e))? {
-            let entry = entry.map_err(|e| FolderError::io(path, e))?;
-            names.push(entry.file_name().to_string_lossy().into_owned());
-        }
-        names.sort();
+        let names = replacement::names(path)?;
         if let Some(foreign) = foreign(path, &names) {
             // Half of another run's result, while it is moved to its place, looks foreign too.
             let in_use = Lock::is_taken(path);
             return Err(if in_use {
-                FolderError::Locked { path: shown() }
+                FolderError::Locked(shown())
             } else {
                 FolderError::Foreign { path: shown(), foreign }
             });
@@ -420,18 +397,16 @@ pub fn read_record(path: &Path) -> Result<Record, FolderError> {
 
 fn read_record_file(file: &Path) -> Result<Record, FolderError> {
     let path = file.display().to_string();
-    let bytes = match fs::metadata(file) {
-        Ok(metadata) => metadata.len(),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Err(FolderError::NoRecord { path }),
-        Err(e) => return Err(FolderError::io(file, e)),
-    };
-    if bytes > MAX_RECORD_BYTES {
-        return Err(FolderError::TooLarge { path, bytes });
+    match read_at_most(file, MAX_RECORD_BYTES) {
+        Ok(Some(text)) => parse_record(&path, &text),
+        Ok(None) => {
+            // A pipe states no length.
+            let stated = fs::metadata(file).map_or(0, |found| found.len());
+            Err(FolderError::TooLarge { path, bytes: stated.max(MAX_RECORD_BYTES + 1) })
+        }
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Err(FolderError::NoRecord(path)),
+        Err(e) => Err(FolderError::io(file, e)),
     }
-    let text = read_at_most(file, MAX_RECORD_BYTES).map_err(|e| FolderError::io(file, e))?;
-    let text =
-        text.ok_or_else(|| FolderError::TooLarge { path: path.clone(), bytes: MAX_RECORD_BYTES + 1 })?;
-    parse_record(&path, &text)
 }
 
 /// Reads a file of at most `most` bytes; `None` if it has more. A pipe or a device states no length, so bytes are counted

@@ -42,7 +42,7 @@ pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
         let there = may_replace(file, replace)?;
         // A stream may be written to twice.
         if there != There::Stream && files[..i].iter().any(|other| is_same(other.path, file.path)) {
-            return Err(FolderError::NamedTwice { path: file.path.display().to_string() });
+            return Err(FolderError::NamedTwice(file.path.display().to_string()));
         }
     }
     Ok(())
@@ -105,11 +105,11 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     };
     let inputs = match replace {
         Replace::Anything => return Ok(There::File),
-        Replace::Nothing => return Err(FolderError::Exists { path: shown() }),
+        Replace::Nothing => return Err(FolderError::Exists(shown())),
         Replace::Ours(inputs) => inputs,
     };
     if inputs.iter().any(|input| is_same(input, file.path)) {
-        return Err(FolderError::OwnInput { path: shown() });
+        return Err(FolderError::OwnInput(shown()));
     }
     // An empty file holds nothing that could be lost.
     if found.len() == 0 {
@@ -124,14 +124,16 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     Err(FolderError::NotOurs { path: shown(), kind: file.kind.described() })
 }
 
+/// Returns the folder in which a path lies.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Returns whether two paths lead to one file, which need not exist yet.
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| {
-        path.canonicalize().ok().or_else(|| {
-            let folder =
-                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            Some(folder.canonicalize().ok()?.join(path.file_name()?))
-        })
+        let there = path.canonicalize().ok();
+        there.or_else(|| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)))
     };
     match (real(one), real(other)) {
         (Some(one), Some(other)) => one == other,
@@ -170,7 +172,6 @@ pub(super) fn over(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// Creates a temporary file beside a path, with these bytes.
 fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY);
     #[cfg(unix)]
@@ -179,7 +180,7 @@ fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
         // Readable like any new file: the permissions that the user's mask allows.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder_of(path))?;
     disk::fill(file.as_file_mut(), bytes)?;
     disk::sync(file.as_file())?;
     Ok(file)
