@@ -49,11 +49,16 @@ impl Tags {
         self.number(code + 20, 0.0);
     }
 
-    /// Writes a table's entry with its classes.
-    fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
+    /// Writes the beginning of an object: its kind, its handle and that of its owner.
+    fn object(&mut self, kind: &str, handle: u32, owner: u32) {
         self.text(0, kind);
         self.handle(if kind == "DIMSTYLE" { 105 } else { 5 }, handle);
         self.handle(330, owner);
+    }
+
+    /// Writes a table's entry with its classes.
+    fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
+        self.object(kind, handle, owner);
         self.texts(&[(100, "AcDbSymbolTableRecord"), (100, class), (2, name)]);
         // No flags; records of blocks have none.
         if kind != "BLOCK_RECORD" {
@@ -86,10 +91,8 @@ impl Drawing {
     }
 
     fn entity(&mut self, kind: &str, layer: &str, class: &str) {
-        self.entities.text(0, kind);
-        self.entities.handle(5, self.next);
+        self.entities.object(kind, self.next, MODEL_SPACE);
         self.next += 1;
-        self.entities.handle(330, MODEL_SPACE);
         self.entities.texts(&[(100, "AcDbEntity"), (8, layer), (100, class)]);
     }
 
@@ -255,15 +258,12 @@ impl Drawing {
 fn blocks(out: &mut Tags) {
     out.section("BLOCKS");
     for (name, owner, handle) in [("*Model_Space", MODEL_SPACE, 0x20), ("*Paper_Space", PAPER_SPACE, 0x1C)] {
-        out.text(0, "BLOCK");
-        out.handle(5, handle);
-        out.handle(330, owner);
+        out.object("BLOCK", handle, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockBegin"), (2, name)]);
         out.text(70, 0);
         out.point(10, Complex::default());
-        out.texts(&[(3, name), (1, ""), (0, "ENDBLK")]);
-        out.handle(5, handle + 1);
-        out.handle(330, owner);
+        out.texts(&[(3, name), (1, "")]);
+        out.object("ENDBLK", handle + 1, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockEnd")]);
     }
     out.text(0, "ENDSEC");
@@ -271,31 +271,20 @@ fn blocks(out: &mut Tags) {
 
 fn objects(out: &mut Tags) {
     out.section("OBJECTS");
-    let dictionary = |out: &mut Tags, handle: u32, owner: u32, entries: &[(&str, u32)]| {
-        out.text(0, "DICTIONARY");
-        out.handle(5, handle);
-        out.handle(330, owner);
-        out.text(100, "AcDbDictionary");
-        out.text(281, 1);
+    let dictionary = |out: &mut Tags, kind: &str, handle: u32, owner: u32, entries: &[(&str, u32)]| {
+        out.object(kind, handle, owner);
+        out.texts(&[(100, "AcDbDictionary"), (281, "1")]);
         for (name, entry) in entries {
             out.text(3, name);
             out.handle(350, *entry);
         }
     };
-    dictionary(out, 0xC, 0, &[("ACAD_GROUP", 0xD), ("ACAD_PLOTSTYLENAME", 0xE)]);
-    dictionary(out, 0xD, 0xC, &[]);
-    out.text(0, "ACDBDICTIONARYWDFLT");
-    out.handle(5, 0xE);
-    out.handle(330, 0xC);
-    out.text(100, "AcDbDictionary");
-    out.text(281, 1);
-    out.text(3, "Normal");
-    out.handle(350, 0xF);
+    dictionary(out, "DICTIONARY", 0xC, 0, &[("ACAD_GROUP", 0xD), ("ACAD_PLOTSTYLENAME", 0xE)]);
+    dictionary(out, "DICTIONARY", 0xD, 0xC, &[]);
+    dictionary(out, "ACDBDICTIONARYWDFLT", 0xE, 0xC, &[("Normal", 0xF)]);
     out.text(100, "AcDbDictionaryWithDefault");
     out.handle(340, 0xF);
-    out.text(0, "ACDBPLACEHOLDER");
-    out.handle(5, 0xF);
-    out.handle(330, 0xE);
+    out.object("ACDBPLACEHOLDER", 0xF, 0xE);
     out.text(0, "ENDSEC");
 }
 

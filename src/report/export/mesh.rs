@@ -7,6 +7,7 @@
 use super::model::Model;
 use crate::mechanism::plates::{Edge, Placement, Plate};
 use crate::mechanism::{Complex, cross};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
@@ -84,12 +85,8 @@ impl Mesh {
 
     /// Returns the unit normal of a triangle; zeros for one without area.
     pub(super) fn normal(&self, triangle: [usize; 3]) -> [f64; 3] {
-        let [p, q, r] = triangle.map(|i| self.vertices[i].map(f64::from));
-        let u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-        let v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
-        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length > 0.0 { n.map(|x| x / length) } else { [0.0; 3] }
+        let [p, q, r] = triangle.map(|i| Vector3::from(self.vertices[i].map(f64::from)));
+        (q - p).cross(&(r - p)).try_normalize(0.0).map_or([0.0; 3], Into::into)
     }
 }
 

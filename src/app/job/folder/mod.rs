@@ -19,7 +19,7 @@ pub use output_file::{OutputFile, Replace, check_files, write_files};
 pub use together::put_together;
 
 use lock::Lock;
-use replacement::{Failure, Wait};
+use replacement::Wait;
 
 const LOCK: &str = ".lock";
 /// The name of the file with the record.
@@ -135,17 +135,9 @@ fn remedy(error: &io::Error) -> &'static str {
     }
 }
 
-impl FolderError {
-    /// Returns the error for a failure of the system (a full disk, a read-only folder).
-    fn io(path: &Path, source: io::Error) -> Self {
-        FolderError::Io { path: path.display().to_string(), source }
-    }
-}
-
-impl From<Failure> for FolderError {
-    fn from((path, source): Failure) -> Self {
-        FolderError::io(&path, source)
-    }
+/// Returns the error for a failure of the system (a full disk, a read-only folder) at a path.
+fn about(path: &Path) -> impl FnOnce(io::Error) -> FolderError + '_ {
+    move |source| FolderError::Io { path: path.display().to_string(), source }
 }
 
 /// A results folder that is locked for this run until it is dropped.
@@ -247,10 +239,10 @@ impl ResultsFolder {
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
                 let missing = path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists());
                 let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
-                disk::create_folders(path).map_err(|e| FolderError::io(path, e))?;
+                disk::create_folders(path).map_err(about(path))?;
                 missing
             }
-            Err(e) => return Err(FolderError::io(path, e)),
+            Err(e) => return Err(about(path)(e)),
         };
         let names = replacement::names(path)?;
         if let Some(foreign) = foreign(path, &names) {
@@ -292,7 +284,7 @@ impl ResultsFolder {
     pub fn remove_checkpoint(&self) -> Result<(), FolderError> {
         let path = self.path.join(CHECKPOINT);
         match fs::remove_file(&path) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(FolderError::io(&path, e)),
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(about(&path)(e)),
             _ => Ok(()),
         }
     }
@@ -316,19 +308,19 @@ impl ResultsFolder {
     /// As [`ResultsFolder::replace`].
     pub fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
         if !self.lock.stands() {
-            disk::create_folders(&self.path).map_err(|e| FolderError::io(&self.path, e))?;
+            disk::create_folders(&self.path).map_err(about(&self.path))?;
             self.lock = Lock::take(&self.path)?;
         }
-        Ok(replacement::write(&self.path, files, self.kept())?)
+        replacement::write(&self.path, files, self.kept())
     }
 
     fn sync(&self) -> Result<(), FolderError> {
-        Ok(replacement::sync(&self.path)?)
+        replacement::sync(&self.path)
     }
 
     /// Waits until the names in the folder are on the disk.
     fn sync_names(&self) -> Result<(), FolderError> {
-        disk::sync_folder(&self.path).map_err(|e| FolderError::io(&self.path, e))
+        disk::sync_folder(&self.path).map_err(about(&self.path))
     }
 
     fn put(&mut self, names: Wait) -> Result<(), FolderError> {
@@ -350,7 +342,7 @@ impl ResultsFolder {
 /// [`FolderError::Io`] with the file; the old file is kept.
 pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
     let target = folder.join(name);
-    output_file::over(&target, bytes).map_err(|e| FolderError::io(&target, e))
+    output_file::over(&target, bytes).map_err(about(&target))
 }
 
 /// Saves the files of a result that cannot be written to its folder in a new folder among the system's temporary files.
@@ -360,7 +352,7 @@ pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Folde
 pub fn rescue(files: &[(String, Vec<u8>)]) -> Result<PathBuf, FolderError> {
     let place = std::env::temp_dir();
     let folder = tempfile::Builder::new().prefix("linkwright-rescued-").tempdir_in(&place);
-    let folder = folder.map_err(|e| FolderError::io(&place, e))?;
+    let folder = folder.map_err(about(&place))?;
     for (name, bytes) in files {
         replace_file(folder.path(), name, bytes)?;
     }
@@ -405,7 +397,7 @@ fn read_record_file(file: &Path) -> Result<Record, FolderError> {
             Err(FolderError::TooLarge { path, bytes: stated.max(MAX_RECORD_BYTES + 1) })
         }
         Err(e) if e.kind() == io::ErrorKind::NotFound => Err(FolderError::NoRecord(path)),
-        Err(e) => Err(FolderError::io(file, e)),
+        Err(e) => Err(about(file)(e)),
     }
 }
 

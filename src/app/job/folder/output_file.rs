@@ -1,6 +1,6 @@
 //! Output files that a person named, each written as a whole or not at all.
 
-use super::{FolderError, TEMPORARY, disk};
+use super::{FolderError, TEMPORARY, about, disk};
 use crate::files::generator;
 use crate::files::generator::FileKind;
 use std::fs::{self, File};
@@ -60,9 +60,8 @@ pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
     let mut made = Vec::new();
     for file in files {
         // Checked once more: another program may have written it in between.
-        let written = may_replace(file, replace).and_then(|there| {
-            write(file, there, replace).map_err(|e| FolderError::io(file.path, e)).map(|()| there)
-        });
+        let written = may_replace(file, replace)
+            .and_then(|there| write(file, there, replace).map_err(about(file.path)).map(|()| there));
         match written {
             Ok(There::Nothing) => made.push(file.path),
             Ok(_) => {}
@@ -95,13 +94,13 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     let shown = || file.path.display().to_string();
     let found = match fs::metadata(file.path) {
         Ok(found) if found.is_dir() => {
-            return Err(FolderError::io(file.path, io::ErrorKind::IsADirectory.into()));
+            return Err(about(file.path)(io::ErrorKind::IsADirectory.into()));
         }
         Ok(found) if !found.is_file() => return Ok(There::Stream),
         Ok(found) => found,
         // A link to nothing is noticed when a new file is to take its name.
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(There::Nothing),
-        Err(e) => return Err(FolderError::io(file.path, e)),
+        Err(e) => return Err(about(file.path)(e)),
     };
     let inputs = match replace {
         Replace::Anything => return Ok(There::File),
@@ -117,7 +116,7 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     }
     let mut existing = Vec::new();
     let read = File::open(file.path).and_then(|f| f.take(generator::MAX_BYTES).read_to_end(&mut existing));
-    read.map_err(|e| FolderError::io(file.path, e))?;
+    read.map_err(about(file.path))?;
     if file.kind.is_written_by_us(&existing, file.bytes) {
         return Ok(There::File);
     }
