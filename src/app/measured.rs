@@ -12,7 +12,7 @@ use crate::record::Candidate;
 use crate::record::digest::digest;
 use crate::report::certificate::headline;
 use crate::report::compare::{
-    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, scaled, times, unit_remarks,
+    Comparison, Entry, LeftOut, SortKey, compare, in_one_unit, same_points, unit_remarks,
 };
 use crate::synthesis::nearest::nearest_positions;
 use crate::task::Problem;
@@ -96,7 +96,6 @@ impl Target {
             candidate,
             target_name: self.name.clone(),
             target: path.points.clone(),
-            closed: path.closed,
             unit: self.unit.or(unit),
             measure: self.problem.spec().measure(),
             of_run,
@@ -106,8 +105,8 @@ impl Target {
 
     /// Returns the linkage in this target's unit, measured at the positions nearest to its points or at its angles.
     fn nearest(&self, linkage: &FourBar, unit: Option<Unit>) -> Result<Candidate, NotMeasured> {
-        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| times(from, to));
-        let linkage = scaled(linkage, factor)?;
+        let factor = unit.zip(self.unit).map_or(1.0, |(from, to)| from.factor_to(to));
+        let linkage = linkage.scaled(factor)?;
         nearest_positions(&self.problem, &linkage)
             .and_then(|(crank_deg, assemblies)| assess(&self.problem, &linkage, &crank_deg, &assemblies))
             .ok_or_else(|| NotMeasured::NotAssembled(self.name.clone()))
@@ -122,15 +121,15 @@ impl Target {
 
 /// The inputs of a comparison, measured.
 #[derive(Default)]
-pub struct Measured {
+struct Measured {
     /// The entries with figures.
-    pub entries: Vec<Entry>,
+    entries: Vec<Entry>,
     /// The inputs without figures.
-    pub left_out: Vec<LeftOut>,
-    /// The label of each input with the unit of its file.
-    pub units: Vec<(String, Option<Unit>)>,
+    left_out: Vec<LeftOut>,
+    /// The name of the target and the label of each input with the unit of its file.
+    units: Vec<(String, Option<Unit>)>,
     /// Remarks on how the figures were measured, in sentences.
-    pub remarks: Vec<String>,
+    remarks: Vec<String>,
 }
 
 /// Compares the inputs side by side: in the unit of the target, otherwise of the first input that has a unit, ranked by
@@ -144,8 +143,11 @@ pub fn compared(
     keys: &[SortKey],
     reference: Option<&str>,
 ) -> Result<Comparison, NotCompared> {
-    let named = target.map(|target| (target.name.clone(), target.unit));
-    let unit = named.as_ref().and_then(|(_, unit)| *unit);
+    let unit_of = |one: &Given| match one {
+        Given::Run(run) => run.record.problem.unit,
+        Given::Linkage(file) => file.unit,
+    };
+    let unit = target.and_then(|target| target.unit);
     let unit = unit.or_else(|| given.iter().find_map(|(_, one)| unit_of(one)));
     let measured = Measured::of(given, target, unit)?;
     if measured.entries.is_empty() {
@@ -159,17 +161,9 @@ pub fn compared(
     let entries = in_one_unit(&measured.entries, unit).map_err(NotCompared::Unit)?;
     let mut comparison = compare(&entries, keys, reference);
     comparison.remarks.extend(measured.remarks);
-    let units: Vec<_> = named.into_iter().chain(measured.units).collect();
-    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&units, *unit)));
+    comparison.remarks.extend(unit.iter().flat_map(|unit| unit_remarks(&measured.units, *unit)));
     comparison.left_out = measured.left_out;
     Ok(comparison)
-}
-
-fn unit_of(given: &Given) -> Option<Unit> {
-    match given {
-        Given::Run(run) => run.record.problem.unit,
-        Given::Linkage(file) => file.unit,
-    }
 }
 
 /// Returns the label of a linkage file: its name, or its path if another file has the same name.
@@ -187,21 +181,20 @@ impl Measured {
     ///
     /// # Errors
     /// [`NotCompared`].
-    pub fn of(
+    fn of(
         given: &[(&Path, Given)],
         target: Option<&Target>,
         unit: Option<Unit>,
     ) -> Result<Self, NotCompared> {
         let mut measured = Measured::default();
+        measured.units.extend(target.map(|target| (target.name.clone(), target.unit)));
         let target = target.map(|target| Target { unit: target.unit.or(unit), ..target.clone() });
         let target = target.as_ref();
-        let mut of_runs: Vec<Option<Target>> = Vec::new();
-        for (_, one) in given {
-            of_runs.push(match one {
-                Given::Run(run) => Some(Target::of_run(run, unit)?),
-                Given::Linkage(_) => None,
-            });
-        }
+        let own = |(_, one): &(&Path, Given)| match one {
+            Given::Run(run) => Target::of_run(run, unit).map(Some),
+            Given::Linkage(_) => Ok(None),
+        };
+        let of_runs: Vec<Option<Target>> = given.iter().map(own).collect::<Result<_, _>>()?;
         let mut runs = of_runs.iter().flatten();
         let first = runs.next();
         let common = target.or(first.filter(|first| runs.all(|other| first.is(other))));
@@ -229,14 +222,11 @@ impl Measured {
                 (Given::Run(_), None) => {}
             }
         }
-        if target.is_none()
-            && let Some(common) = common
-            && measured.entries.iter().any(|entry| !entry.of_run)
-        {
-            measured
-                .remarks
-                .push(format!("Linkage files are measured on {}, the problem of the runs.", common.name));
-        }
+        let beside =
+            common.filter(|_| target.is_none() && measured.entries.iter().any(|entry| !entry.of_run));
+        measured.remarks.extend(
+            beside.map(|on| format!("Linkage files are measured on {}, the problem of the runs.", on.name)),
+        );
         Ok(measured)
     }
 

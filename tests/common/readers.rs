@@ -232,6 +232,21 @@ fn go_on(job: &Job, state: SearchState, writer: &Writer) {
     }
 }
 
+/// A candidate of a record as an entry of a comparison, with the figures of the record.
+pub fn entry(label: &str, record: &Record, index: usize) -> Option<Entry> {
+    let path = &record.problem.resolved.task.path;
+    record.candidates.get(index).map(|candidate| Entry {
+        label: label.to_owned(),
+        candidate: candidate.clone(),
+        target_name: record.problem.name.clone(),
+        target: path.points.clone(),
+        unit: record.problem.unit,
+        measure: record.problem.resolved.measure(),
+        of_run: true,
+        untrue: Vec::new(),
+    })
+}
+
 fn reports(record: &Record) {
     table::candidates_table(record, Colour::Never);
     exact::exact_text(record, true, Colour::Never);
@@ -244,7 +259,7 @@ fn reports(record: &Record) {
         csv::curve_csv(record, i);
         svg::candidate_svg(record, i);
         terminal_plot(record, i, PLOT.0, PLOT.1, Glyphs::Braille);
-        entries.extend(Entry::from_record("label", record, i));
+        entries.extend(entry("label", record, i));
     }
     let comparison = compare(&entries, &[SortKey::Rms], None);
     comparison.table(Colour::Never);

@@ -1,6 +1,7 @@
 //! `compare`: ranks, front, differences, units, targets; what it prints and writes; records that are not true.
 
 use crate::common::root;
+use crate::corpora::readers::entry;
 use crate::report::records::{detail, ellipse, k18};
 use assert_cmd::Command;
 use linkwright::internals::files::linkage_file;
@@ -9,7 +10,7 @@ use linkwright::internals::numbers::arithmetic::streams::{below, stream, unit};
 use linkwright::internals::record::Record;
 use linkwright::internals::report::Colour;
 use linkwright::internals::report::compare::{
-    Entry, Point, SortKey, compare, front, in_one_unit, percent_above, scaled, times,
+    Entry, Point, SortKey, compare, front, in_one_unit, percent_above,
 };
 use linkwright::internals::task::spec::Measure;
 use std::fs;
@@ -39,7 +40,7 @@ fn run(folder: &Path, name: &str, extra: &[&str]) {
 
 fn entries(record: &Record) -> Vec<Entry> {
     (0..record.candidates.len())
-        .filter_map(|i| Entry::from_record(&format!("{}:{}", record.problem.name, i + 1), record, i))
+        .filter_map(|i| entry(&format!("{}:{}", record.problem.name, i + 1), record, i))
         .collect()
 }
 
@@ -182,8 +183,8 @@ fn per_cent_of_nothing_is_no_number() {
 
 #[test]
 fn lengths_are_brought_to_one_unit_and_that_changes_no_verdict() {
-    assert_eq!(times(Unit::In, Unit::Mm), 25.4);
-    assert_eq!((times(Unit::M, Unit::Cm), times(Unit::Cm, Unit::Cm)), (100.0, 1.0));
+    assert_eq!(Unit::In.factor_to(Unit::Mm), 25.4);
+    assert_eq!((Unit::M.factor_to(Unit::Cm), Unit::Cm.factor_to(Unit::Cm)), (100.0, 1.0));
     let mut record = k18();
     record.problem.unit = Some(Unit::In);
     let inches = entries(&record);
@@ -341,7 +342,7 @@ fn files_in_other_units_stand_beside_a_run_as_what_they_are() {
     run(folder.path(), "r", &["--set", "unit=mm"]);
     let path = folder.path().join("r/linkage-1.toml");
     let file = linkage_file::load(&path).expect("a linkage");
-    let inches = scaled(&file.linkage, times(Unit::Mm, Unit::In)).expect("in range");
+    let inches = file.linkage.scaled(Unit::Mm.factor_to(Unit::In)).expect("in range");
     let write = |name: &str, unit, linkage| {
         fs::write(folder.path().join(name), linkage_file::to_toml("twin", unit, linkage)).expect("room");
     };
@@ -366,7 +367,7 @@ fn a_target_without_a_unit_is_taken_to_be_in_that_of_the_first_linkage() {
     let target = root().join("problems/literature/k18.toml").display().to_string();
     let hoeken = root().join("problems/linkages/hoeken.toml");
     let file = linkage_file::load(&hoeken).expect("a linkage");
-    let centimetres = scaled(&file.linkage, 0.1).expect("in range");
+    let centimetres = file.linkage.scaled(0.1).expect("in range");
     for (name, unit, linkage) in [("mm", Unit::Mm, &file.linkage), ("cm", Unit::Cm, &centimetres)] {
         let path = folder.path().join(format!("{name}.toml"));
         fs::write(path, linkage_file::to_toml(name, Some(unit), linkage)).expect("room");

@@ -1,7 +1,7 @@
 //! What the fuzzer found, and what it starts from, through the readers: no panic.
 
 #[path = "../common/readers.rs"]
-mod readers;
+pub mod readers;
 
 use crate::common::root;
 use std::path::PathBuf;

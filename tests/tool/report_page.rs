@@ -3,7 +3,7 @@
 use crate::common::root;
 use crate::report::records::{candidate, detail, ellipse, k18, linkage, path, record, rocking, shapes};
 use linkwright::internals::files::generator::FileKind;
-use linkwright::internals::judge::practicality::{Build, Practicality, millimetre};
+use linkwright::internals::judge::practicality::{Build, Practicality};
 use linkwright::internals::mechanism::AssemblyMode;
 use linkwright::internals::record::*;
 use linkwright::internals::report::html::{Extent, report_html, report_with_drawings};
@@ -376,7 +376,7 @@ fn what_it_takes_to_build_the_best_and_the_buildable_one_is_told() {
     // The figures are those of `build`.
     let problem = Problem::new(record.problem.resolved.clone()).expect("a problem");
     let best = &record.candidates[0];
-    let hole = Build::usual_hole(&best.linkage, record.problem.unit.map(millimetre));
+    let hole = Build::usual_hole(&best.linkage, record.problem.unit);
     let found = Practicality::of_candidate(&problem, best, Build::new(hole, hole)).expect("it can be joined");
     let felt = found.sensitivity.expect("it has derivatives");
     assert!(section.contains(&format!("The worst dimension is {}.", felt.worst_dimension().name)));

@@ -6,7 +6,7 @@ use super::result::Given;
 use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::escaped;
 use crate::judge::practicality::Practicality;
-pub use crate::judge::practicality::{Build, millimetre, usual_tolerance};
+pub use crate::judge::practicality::{Build, usual_tolerance};
 use crate::mechanism::FourBar;
 use crate::mechanism::Unit;
 use crate::report::practicality::practicality_text;
@@ -16,7 +16,7 @@ use crate::task::Problem;
 /// Runs the command.
 pub fn run(options: &Options) -> Result<Ended, Ended> {
     let made = |linkage: &FourBar, unit: Option<Unit>| {
-        let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit.map(millimetre)));
+        let hole = options.hole.unwrap_or_else(|| Build::usual_hole(linkage, unit));
         Build::new(hole, options.margin.unwrap_or(hole))
     };
     let (title, linkage, unit, practicality) = match result::read(&options.result)? {

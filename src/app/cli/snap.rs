@@ -76,7 +76,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let written = write(options, &record, begun, search_s)?;
     terminal::answer(&format!("{}\n", subject.label));
     terminal::answer(&snap_text(&subject.candidate, &request, &snapped, subject.unit, terminal::colour()));
-    let hole = Build::usual_hole(&best.linkage, subject.unit.map(build::millimetre));
+    let hole = Build::usual_hole(&best.linkage, subject.unit);
     if let Some(found) = Practicality::of_candidate(&subject.problem, best, Build::new(hole, hole)) {
         let tolerance = build::usual_tolerance(&best.linkage, subject.unit);
         terminal::answer("\n");

@@ -37,11 +37,8 @@ pub enum CheckpointError {
         source: io::Error,
     },
     /// The file is larger than [`MAX_BYTES`].
-    #[error("{path} has more than {MAX_BYTES} bytes, the most that a checkpoint has; {REMEDY}")]
-    TooLarge {
-        /// Path of the file.
-        path: String,
-    },
+    #[error("{0} has more than {MAX_BYTES} bytes, the most that a checkpoint has; {REMEDY}")]
+    TooLarge(String),
     /// The file is not a checkpoint.
     #[error("{path}: this is not a whole linkwright checkpoint: {message}; {REMEDY}")]
     NotACheckpoint {
@@ -61,11 +58,8 @@ pub enum CheckpointError {
         us: String,
     },
     /// Something in it was changed after it was written.
-    #[error("{path} was changed after it was written (its checksum is wrong); {REMEDY}")]
-    Changed {
-        /// Path of the file.
-        path: String,
-    },
+    #[error("{0} was changed after it was written (its checksum is wrong); {REMEDY}")]
+    Changed(String),
     /// It belongs to another problem.
     #[error(
         "{path} is of another problem: the target, design, requirements, method or seed differ from those of \
@@ -176,7 +170,7 @@ impl Checkpoint {
         let shown = path.display().to_string();
         let bytes = match read_at_most(path, MAX_BYTES) {
             Ok(Some(bytes)) => bytes,
-            Ok(None) => return Err(CheckpointError::TooLarge { path: shown }),
+            Ok(None) => return Err(CheckpointError::TooLarge(shown)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(source) => return Err(CheckpointError::Io { path: shown, source }),
         };
@@ -230,7 +224,7 @@ pub fn parse(path: &str, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let Document { format, tool, digest, candidates, evaluations, checksum, state } = document;
     let header = Header { format, tool, digest, candidates, evaluations };
     if header.checksum(&state).as_ref() != Some(&checksum) {
-        return Err(CheckpointError::Changed { path: path() });
+        return Err(CheckpointError::Changed(path()));
     }
     Ok(Checkpoint { header, state })
 }

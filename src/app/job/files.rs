@@ -80,21 +80,14 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
         ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
-    let mut drawings = Vec::new();
-    for (i, candidate) in record.candidates.iter().enumerate() {
-        let n = i + 1;
-        let named = linkage_name(record, &n.to_string());
-        let toml = linkage_file::to_toml(&named, record.problem.unit, &candidate.linkage);
-        files.push((format!("linkage-{n}.toml"), toml.into_bytes()));
-        files.push((format!("curve-{n}.csv"), csv::curve_csv(record, i).into_bytes()));
-        drawings.push(svg::candidate_svg(record, i));
+    let ranked = record.candidates.iter().zip(1..).map(|(c, n): (_, usize)| (n.to_string(), c));
+    let buildable = record.buildable.iter().map(|c| (BUILDABLE.to_owned(), c));
+    for (which, c) in ranked.chain(buildable) {
+        let toml = linkage_file::to_toml(&linkage_name(record, &which), record.problem.unit, &c.linkage);
+        files.push((format!("linkage-{which}.toml"), toml.into_bytes()));
+        files.push((format!("curve-{which}.csv"), csv::candidate_curve_csv(c).into_bytes()));
     }
-    if let Some(candidate) = &record.buildable {
-        let named = linkage_name(record, BUILDABLE);
-        let toml = linkage_file::to_toml(&named, record.problem.unit, &candidate.linkage);
-        files.push((format!("linkage-{BUILDABLE}.toml"), toml.into_bytes()));
-        files.push((format!("curve-{BUILDABLE}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
-    }
+    let drawings: Vec<String> = (0..record.candidates.len()).map(|i| svg::candidate_svg(record, i)).collect();
     if record.candidates.len() > 1 {
         let sheet = contact_sheet::contact_sheet_svg(record);
         files.push(("contact-sheet.svg".into(), sheet.into_bytes()));

@@ -3,7 +3,7 @@
 use super::closest::{Closest, closest};
 use super::sweep::{Reach, Sweep};
 use crate::mechanism::plates::{Link, Placement, Plate};
-use crate::mechanism::{Complex, FourBar, Joints, length};
+use crate::mechanism::{Complex, FourBar, Joints, Unit, length};
 
 /// Accuracy to which least distances are proved, as a part of the longest link: far below the tolerance of a workshop.
 pub const MARGIN: f64 = 1e-4;
@@ -30,10 +30,11 @@ impl Build {
         Build { plate_radius: margin + 0.5 * hole, pin_radius: 0.5 * hole }
     }
 
-    /// Returns the default diameter of a hole: 4 mm (`millimetre`: a millimetre in the file's unit) or, if the unit is
-    /// not known, a fortieth of the longest link; smaller if two holes of a plate are near each other.
-    pub fn usual_hole(linkage: &FourBar, millimetre: Option<f64>) -> f64 {
-        let wanted = millimetre.map_or(HOLE_SHARE * linkage.longest_link(), |mm| HOLE_MM * mm);
+    /// Returns the default diameter of a hole: 4 mm or, if the unit of the lengths is not known, a fortieth of the
+    /// longest link; smaller if two holes of a plate are near each other.
+    pub fn usual_hole(linkage: &FourBar, unit: Option<Unit>) -> f64 {
+        let known = unit.map(|unit| HOLE_MM * Unit::Mm.factor_to(unit));
+        let wanted = known.unwrap_or(HOLE_SHARE * linkage.longest_link());
         let holes = [linkage.crank_side(), linkage.follower_side()];
         let nearest = linkage.links().into_iter().chain(holes.into_iter().filter(|d| *d > 0.0));
         wanted.min(HOLE_BESIDE * nearest.fold(f64::INFINITY, f64::min))

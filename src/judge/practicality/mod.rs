@@ -25,4 +25,4 @@ pub use clearance::{Build, Pin};
 pub use closest::Closest;
 pub use subject::{Practicality, crank_of};
 pub use sweep::Sweep;
-pub use usual::{millimetre, usual_tolerance};
+pub use usual::usual_tolerance;

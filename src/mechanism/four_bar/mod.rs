@@ -348,6 +348,24 @@ impl FourBar {
         )
     }
 
+    /// Returns the linkage with every length and coordinate multiplied by a factor.
+    ///
+    /// # Errors
+    /// As [`FourBar::new`], if a length leaves the allowed range.
+    pub fn scaled(&self, factor: f64) -> Result<Self, LinkageError> {
+        let p = self.parameters;
+        FourBar::new(NaturalCoordinates {
+            crank_pivot: p.crank_pivot.map(|x| x * factor),
+            follower_pivot: p.follower_pivot.map(|x| x * factor),
+            crank: p.crank * factor,
+            coupler: p.coupler * factor,
+            follower: p.follower * factor,
+            crank_side: p.crank_side * factor,
+            follower_side: p.follower_side * factor,
+            ..p
+        })
+    }
+
     /// Returns the nine parameters and two signs.
     pub fn natural_coordinates(&self) -> NaturalCoordinates {
         self.parameters

@@ -1,7 +1,8 @@
 //! A comparison as CSV and JSON, for spreadsheets and scripts: every number to the last digit.
 
-use super::{Comparison, Ranked, SortKey};
-use crate::mechanism::FourBar;
+use super::{Comparison, LeftOut, Ranked, SortKey};
+use crate::mechanism::{FourBar, Unit};
+use crate::record::Tool;
 use crate::report::csv::{Column, PARAMETERS, cells, figures, names, parameters, written};
 use crate::report::text::{cell, exact};
 use crate::report::words;
@@ -49,14 +50,8 @@ struct Json<'a> {
     front_of: [&'static str; 3],
     reference: Option<&'a str>,
     rows: Vec<Row<'a>>,
-    left_out: Vec<LeftOut<'a>>,
+    left_out: &'a [LeftOut],
     notes: Vec<String>,
-}
-
-#[derive(Serialize)]
-struct Tool {
-    name: &'static str,
-    version: &'static str,
 }
 
 #[derive(Serialize)]
@@ -82,12 +77,6 @@ struct Row<'a> {
     defects: &'a [Defect],
     unmet: Vec<&'a str>,
     recorded_differently: &'a [String],
-}
-
-#[derive(Serialize)]
-struct LeftOut<'a> {
-    label: &'a str,
-    why: &'a str,
 }
 
 /// The values for some keys, as an object in their order; a missing value is null.
@@ -118,7 +107,7 @@ impl<'a> Row<'a> {
             max_at: candidate.error.max_at,
             linkage_type: candidate.linkage_type.name(),
             transmission_over: words::over(candidate.transmission_deg.over),
-            unit: entry.unit.map(|unit| unit.label()),
+            unit: entry.unit.map(Unit::label),
             linkage: &candidate.linkage,
             crank_deg: &candidate.crank_deg,
             defects: &candidate.defects,
@@ -145,7 +134,7 @@ impl Comparison {
             let entry = &row.entry;
             let mut line = cells(&PLACE, row);
             line.extend(figures(&entry.candidate, &FIGURES));
-            line.push(exact(row.size));
+            line.push(number(row.figure_of(SortKey::Size)));
             line.extend(parameters(&entry.candidate.linkage));
             line.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
             line.push(cell(&entry.untrue.join("; ")));
@@ -160,18 +149,17 @@ impl Comparison {
 
     /// Returns the whole comparison as JSON. Later versions may add keys; none is renamed.
     pub fn json(&self) -> String {
-        let unit = self.rows.first().and_then(|row| row.entry.unit).filter(|_| self.same_unit());
         let json = Json {
             format: JSON_FORMAT,
-            tool: Tool { name: "linkwright", version: env!("CARGO_PKG_VERSION") },
+            tool: Tool::this(),
             sort: self.keys.iter().map(|key| key.name()).collect(),
-            unit: unit.map(|unit| unit.label()),
+            unit: self.unit().map(Unit::label),
             same_target: self.same_target(),
             same_unit: self.same_unit(),
             front_of: [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(SortKey::name),
             reference: self.reference_label(),
             rows: self.rows.iter().map(|row| Row::new(row, &self.keys)).collect(),
-            left_out: self.left_out.iter().map(|out| LeftOut { label: &out.label, why: &out.why }).collect(),
+            left_out: &self.left_out,
             notes: self.notes(),
         };
         // The keys are strings and no value can fail, so that it can always be written.

@@ -33,13 +33,7 @@ pub fn front(points: &[Point]) -> Vec<bool> {
     let mut order: Vec<(usize, [f64; 4])> =
         points.iter().enumerate().filter_map(|(i, point)| Some((i, costs(point)?))).collect();
     // A point that dominates another comes before it.
-    order.sort_by(|x, y| {
-        let pairs = x.1.iter().zip(&y.1);
-        pairs
-            .map(|(x, y)| x.partial_cmp(y).unwrap_or(Ordering::Equal))
-            .find(|o| o.is_ne())
-            .unwrap_or(Ordering::Equal)
-    });
+    order.sort_by(|x, y| x.1.partial_cmp(&y.1).unwrap_or(Ordering::Equal));
     let mut on_front = vec![false; points.len()];
     let mut best: Vec<[f64; 4]> = Vec::new();
     for (i, costs) in order {

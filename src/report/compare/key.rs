@@ -1,6 +1,7 @@
 //! The figures by which a comparison can be ranked.
 
 use crate::report::text::clean;
+use std::cmp::Ordering;
 use std::str::FromStr;
 
 /// A figure by which a comparison can be ranked.
@@ -41,21 +42,14 @@ impl SortKey {
 
     /// Returns the name on the command line: `to_curve`.
     pub fn name(self) -> &'static str {
-        match self {
-            SortKey::SumSq => "sum_sq",
-            SortKey::Rms => "rms",
-            SortKey::Max => "max",
-            SortKey::ToCurve => "to_curve",
-            SortKey::Transmission => "transmission",
-            SortKey::LinkRatio => "link_ratio",
-            SortKey::Size => "size",
-            SortKey::Objective => "objective",
-        }
+        const NAMES: [&str; SortKey::ALL.len()] =
+            ["sum_sq", "rms", "max", "to_curve", "transmission", "link_ratio", "size", "objective"];
+        NAMES[self as usize]
     }
 
-    /// Returns whether more is better.
-    pub fn greatest_first(self) -> bool {
-        self == SortKey::Transmission
+    /// Compares two figures, the better one first.
+    pub(super) fn order(self, x: f64, y: f64) -> Ordering {
+        if self == SortKey::Transmission { y.total_cmp(&x) } else { x.total_cmp(&y) }
     }
 }
 

@@ -6,7 +6,9 @@
 //! computed from levels.
 
 use super::{Entry, SortKey};
+use crate::mechanism::point;
 use crate::record::{EXACT_MEAN_SQ, MET_TOLERANCE};
+use crate::report::scene::Bounds;
 use crate::task::spec::Measure;
 
 /// Returns whether two figures of one kind are equal to a reader; `nothing` is the value below which they count as 0.
@@ -16,14 +18,8 @@ pub(super) fn equal(x: f64, y: f64, nothing: f64) -> bool {
 
 /// Returns the value below which an error of an entry is only rounding; the other figures have no such floor.
 pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
-    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for p in &entry.target {
-        for axis in 0..2 {
-            (low[axis], high[axis]) = (low[axis].min(p[axis]), high[axis].max(p[axis]));
-        }
-    }
-    let size_sq = (high[0] - low[0]).powi(2) + (high[1] - low[1]).powi(2);
-    let mean_sq = Some(EXACT_MEAN_SQ * size_sq).filter(|floor| floor.is_finite()).unwrap_or(0.0);
+    let size = Bounds::of(entry.target.iter().map(|p| point(*p))).diagonal();
+    let mean_sq = EXACT_MEAN_SQ * size.powi(2);
     match key {
         SortKey::SumSq => mean_sq * entry.target.len() as f64,
         SortKey::Rms | SortKey::Max | SortKey::ToCurve => mean_sq.sqrt(),
@@ -37,19 +33,15 @@ pub(super) fn nothing(entry: &Entry, key: SortKey) -> f64 {
 }
 
 /// Returns the level of each figure: the best figure that it is equal to.
-pub(super) fn levels(figures: &[Option<f64>], greatest_first: bool, nothing: f64) -> Vec<Option<f64>> {
-    let mut order: Vec<usize> = (0..figures.len()).filter(|&i| figures[i].is_some()).collect();
-    let value = |i: usize| figures[i].unwrap_or(f64::NAN);
-    order.sort_by(
-        |&i, &j| {
-            if greatest_first { value(j).total_cmp(&value(i)) } else { value(i).total_cmp(&value(j)) }
-        },
-    );
+pub(super) fn levels(figures: &[Option<f64>], key: SortKey, nothing: f64) -> Vec<Option<f64>> {
+    let mut order: Vec<(usize, f64)> =
+        figures.iter().enumerate().filter_map(|(i, figure)| Some((i, (*figure)?))).collect();
+    order.sort_by(|x, y| key.order(x.1, y.1));
     let mut levels = vec![None; figures.len()];
     let mut level = f64::NAN;
-    for i in order {
-        if !equal(level, value(i), nothing) {
-            level = value(i);
+    for (i, figure) in order {
+        if !equal(level, figure, nothing) {
+            level = figure;
         }
         // Adding 0 turns -0 into 0.
         levels[i] = Some(level + 0.0);
@@ -65,12 +57,15 @@ mod tests {
     fn figures_within_the_margin_of_the_best_of_them_are_one_level() {
         let all = [Some(35.0 + 3e-6), None, Some(35.0), Some(34.9), Some(35.0 + 1e-6), Some(-0.0), Some(0.0)];
         let best = Some(35.0 + 3e-6);
-        assert_eq!(levels(&all, true, 0.0), [best, None, best, Some(34.9), best, Some(0.0), Some(0.0)]);
+        assert_eq!(
+            levels(&all, SortKey::Transmission, 0.0),
+            [best, None, best, Some(34.9), best, Some(0.0), Some(0.0)]
+        );
         // A chain of neighbours ends at the first that is not equal to the best.
         let chain: Vec<Option<f64>> = (0..4).map(|i| Some(1.0 + 6e-8 * f64::from(i))).collect();
-        assert_eq!(levels(&chain, false, 0.0), [chain[0], chain[0], chain[2], chain[2]]);
+        assert_eq!(levels(&chain, SortKey::Rms, 0.0), [chain[0], chain[0], chain[2], chain[2]]);
         assert_eq!(
-            levels(&[Some(1e-30), Some(3e-29), Some(1e-9)], false, 1e-24),
+            levels(&[Some(1e-30), Some(3e-29), Some(1e-9)], SortKey::Rms, 1e-24),
             [Some(1e-30), Some(1e-30), Some(1e-9)]
         );
     }

@@ -10,8 +10,9 @@
 use super::scene::{Bounds, SAMPLES, circuits};
 use super::text::clean;
 use crate::mechanism::Unit;
-use crate::record::{Candidate, Record};
+use crate::record::Candidate;
 use crate::task::spec::Measure;
+use serde::Serialize;
 use std::cmp::Ordering;
 
 mod data;
@@ -28,7 +29,7 @@ mod unit;
 pub use data::JSON_FORMAT;
 pub use front::{Point, front};
 pub use key::{SortKey, UnknownKey};
-pub use unit::{in_one_unit, scaled, times, unit_remarks};
+pub use unit::{in_one_unit, unit_remarks};
 
 /// An entry of a comparison: a linkage with its figures on a target, from a record or evaluated on one.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,8 +42,6 @@ pub struct Entry {
     pub target_name: String,
     /// The target to which the errors are measured.
     pub target: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
     /// The unit of the lengths.
     pub unit: Option<Unit>,
     /// The measure by which the candidates of that problem are ranked.
@@ -54,27 +53,6 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Returns `record.candidates[index]`, if it exists, with the figures of the record.
-    pub fn from_record(label: &str, record: &Record, index: usize) -> Option<Entry> {
-        record.candidates.get(index).map(|candidate| Entry::of(label, record, candidate.clone()))
-    }
-
-    /// Returns a candidate measured on the problem of a record.
-    pub fn of(label: &str, record: &Record, candidate: Candidate) -> Entry {
-        let path = &record.problem.resolved.task.path;
-        Entry {
-            label: label.to_owned(),
-            candidate,
-            target_name: record.problem.name.clone(),
-            target: path.points.clone(),
-            closed: path.closed,
-            unit: record.problem.unit,
-            measure: record.problem.resolved.measure(),
-            of_run: true,
-            untrue: Vec::new(),
-        }
-    }
-
     /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
     /// degree apart); NaN if the links cannot be joined.
     pub fn size(&self) -> f64 {
@@ -107,6 +85,9 @@ impl Entry {
     }
 }
 
+/// The figures of an entry in the order of [`SortKey::ALL`]; `None` if one is not finite.
+type Figures = [Option<f64>; SortKey::ALL.len()];
+
 /// A ranked entry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranked {
@@ -117,28 +98,18 @@ pub struct Ranked {
     pub ranks: Vec<usize>,
     /// The entry.
     pub entry: Entry,
-    /// The figure of the first key; `None` if it is not finite.
-    pub figure: Option<f64>,
-    /// The difference between the figure and the best one, in per cent of the best; `None` if the best is 0 and this is
-    /// not.
+    /// The difference between the figure of the first key and the best one, in per cent of the best; `None` if the best
+    /// is 0 and this is not.
     pub behind_percent: Option<f64>,
     /// The difference between each figure and the reference's, in per cent of the reference's, in the order of
     /// [`SortKey::ALL`]: see [`percent_above`]. Empty without a reference.
     pub difference_percent: Vec<Option<f64>>,
     /// Whether it is on the Pareto front: see [`front()`]. Of rows with equal figures only the first is marked.
     pub on_front: bool,
-    /// The size: see [`Entry::size`].
-    pub size: f64,
-    figures: [Option<f64>; SortKey::ALL.len()],
-    levels: [Option<f64>; SortKey::ALL.len()],
+    figures: Figures,
 }
 
 impl Ranked {
-    /// Returns the best figure among the rows whose figures are equal to this one's within the margin of limits.
-    fn level_of(&self, key: SortKey) -> Option<f64> {
-        self.levels[key as usize]
-    }
-
     /// Returns a figure; `None` if it is not finite.
     pub fn figure_of(&self, key: SortKey) -> Option<f64> {
         self.figures[key as usize]
@@ -146,7 +117,7 @@ impl Ranked {
 }
 
 /// An input without figures.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
     /// The name of the input.
     pub label: String,
@@ -187,28 +158,7 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
 
 /// Compares two figures: the better one first, a missing one last.
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
-    match (x, y) {
-        (Some(x), Some(y)) => {
-            if key.greatest_first() {
-                y.total_cmp(&x)
-            } else {
-                x.total_cmp(&y)
-            }
-        }
-        (Some(_), None) => Ordering::Less,
-        (None, Some(_)) => Ordering::Greater,
-        (None, None) => Ordering::Equal,
-    }
-}
-
-/// Returns the rank of each: one more than the number of better ones.
-fn ranked<T>(sorted: &[T], equal: impl Fn(&T, &T) -> bool) -> Vec<usize> {
-    let mut ranks = Vec::with_capacity(sorted.len());
-    for i in 0..sorted.len() {
-        let shared = i > 0 && equal(&sorted[i - 1], &sorted[i]);
-        ranks.push(if shared { ranks[i - 1] } else { i + 1 });
-    }
-    ranks
+    x.zip(y).map_or_else(|| x.is_none().cmp(&y.is_none()), |(x, y)| key.order(x, y))
 }
 
 /// Returns the default key: the objective that all the entries' problems minimise, if it is the same for all and not
@@ -228,69 +178,64 @@ fn usual_key(entries: &[Entry]) -> SortKey {
 /// levels (`level`): figures within the margin of limits count as equal.
 pub fn compare(entries: &[Entry], keys: &[SortKey], reference: Option<usize>) -> Comparison {
     let keys = if keys.is_empty() { vec![usual_key(entries)] } else { keys.to_vec() };
-    let mut rows: Vec<(usize, Ranked)> = entries
-        .iter()
-        .map(|entry| {
-            let figures = SortKey::ALL.map(|key| Some(entry.figure(key)).filter(|f| f.is_finite()));
-            Ranked {
-                rank: 0,
-                ranks: vec![0; keys.len()],
-                entry: entry.clone(),
-                figure: figures[keys[0] as usize],
-                behind_percent: None,
-                difference_percent: Vec::new(),
-                on_front: false,
-                size: figures[SortKey::Size as usize].unwrap_or(f64::NAN),
-                figures,
-                levels: figures,
-            }
-        })
-        .enumerate()
-        .collect();
+    let figures_of =
+        |entry| SortKey::ALL.map(|key| Some(Entry::figure(entry, key)).filter(|f| f.is_finite()));
+    let figures: Vec<Figures> = entries.iter().map(figures_of).collect();
+    let mut levels = figures.clone();
     for key in SortKey::ALL {
-        let figures: Vec<Option<f64>> = rows.iter().map(|row| row.1.figure_of(key)).collect();
+        let of_key: Vec<_> = figures.iter().map(|figures| figures[key as usize]).collect();
         let nothing = entries.iter().map(|entry| level::nothing(entry, key)).fold(f64::INFINITY, f64::min);
-        let levels = level::levels(&figures, key.greatest_first(), nothing);
-        rows.iter_mut().zip(levels).for_each(|(row, level)| row.1.levels[key as usize] = level);
-    }
-    for (k, key) in keys.iter().enumerate() {
-        let by = |x: &Ranked, y: &Ranked| order(x.level_of(*key), y.level_of(*key), *key);
-        rows.sort_by(|x, y| by(&x.1, &y.1));
-        let ranks = ranked(&rows, |x, y| by(&x.1, &y.1).is_eq());
-        rows.iter_mut().zip(ranks).for_each(|(row, rank)| row.1.ranks[k] = rank);
-    }
-    let by_all = |x: &Ranked, y: &Ranked| {
-        let by = |key: &SortKey| order(x.level_of(*key), y.level_of(*key), *key);
-        keys.iter().map(by).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
-    };
-    rows.sort_by(|x, y| by_all(&x.1, &y.1).then(x.0.cmp(&y.0)));
-    let ranks = ranked(&rows, |x, y| by_all(&x.1, &y.1).is_eq());
-    let reference = reference.and_then(|index| rows.iter().position(|row| row.0 == index));
-    let mut rows: Vec<Ranked> = rows.into_iter().map(|row| row.1).collect();
-    let best = rows.first().and_then(|row| row.level_of(keys[0]));
-    let from = reference.map(|row| rows[row].figures);
-    for (row, rank) in rows.iter_mut().zip(ranks) {
-        row.rank = rank;
-        let level = row.level_of(keys[0]);
-        row.behind_percent =
-            level.zip(best).and_then(|(level, best)| percent_above(level, best)).map(f64::abs);
-        if let Some(from) = from {
-            let above = |(x, from): (&Option<f64>, &Option<f64>)| percent_above((*x)?, (*from)?);
-            row.difference_percent = row.figures.iter().zip(&from).map(above).collect();
+        for (levels, level) in levels.iter_mut().zip(level::levels(&of_key, key, nothing)) {
+            levels[key as usize] = level;
         }
     }
-    let mut comparison = Comparison { keys, rows, reference, left_out: Vec::new(), remarks: Vec::new() };
+    let mut ranks = vec![Vec::new(); entries.len()];
+    for key in &keys {
+        let mut sorted: Vec<_> = levels.iter().map(|levels| levels[*key as usize]).collect();
+        sorted.sort_by(|x, y| order(*x, *y, *key));
+        for (ranks, levels) in ranks.iter_mut().zip(&levels) {
+            let is_better = |other: &Option<f64>| order(*other, levels[*key as usize], *key).is_lt();
+            ranks.push(1 + sorted.partition_point(is_better));
+        }
+    }
+    let mut sorted: Vec<usize> = (0..entries.len()).collect();
+    sorted.sort_by_key(|i| &ranks[*i]);
+    let best = sorted.first().and_then(|first| levels[*first][keys[0] as usize]);
+    let from = reference.and_then(|reference| figures.get(reference));
+    let row = |&i: &usize| {
+        let behind =
+            levels[i][keys[0] as usize].zip(best).and_then(|(level, best)| percent_above(level, best));
+        let above = |(x, from): (&Option<f64>, &Option<f64>)| percent_above((*x)?, (*from)?);
+        Ranked {
+            rank: 1 + sorted.partition_point(|other| ranks[*other] < ranks[i]),
+            ranks: ranks[i].clone(),
+            entry: entries[i].clone(),
+            behind_percent: behind.map(f64::abs),
+            difference_percent: from
+                .iter()
+                .flat_map(|from| figures[i].iter().zip(*from))
+                .map(above)
+                .collect(),
+            on_front: false,
+            figures: figures[i],
+        }
+    };
+    let mut comparison = Comparison {
+        rows: sorted.iter().map(row).collect(),
+        reference: reference.and_then(|reference| sorted.iter().position(|i| *i == reference)),
+        keys,
+        left_out: Vec::new(),
+        remarks: Vec::new(),
+    };
     if comparison.same_target() && comparison.same_unit() {
-        let points = comparison.rows.iter().map(|row| front::Point {
-            accepted: row.entry.candidate.accepted,
-            error: row.level_of(SortKey::Rms),
-            angle: row.level_of(SortKey::Transmission),
-            size: row.level_of(SortKey::Size),
-        });
-        let points: Vec<Point> = points.collect();
-        let marks = front(&points);
-        for (i, row) in comparison.rows.iter_mut().enumerate() {
-            row.on_front = marks[i] && !points[..i].contains(&points[i]);
+        let point = |&i: &usize| {
+            let [error, angle, size] =
+                [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(|key| levels[i][key as usize]);
+            Point { accepted: entries[i].candidate.accepted, error, angle, size }
+        };
+        let points: Vec<Point> = sorted.iter().map(point).collect();
+        for (i, is_on_front) in front(&points).into_iter().enumerate() {
+            comparison.rows[i].on_front = is_on_front && !points[..i].contains(&points[i]);
         }
     }
     comparison
@@ -300,6 +245,11 @@ impl Comparison {
     /// Returns whether all errors are measured to the same target.
     pub fn same_target(&self) -> bool {
         self.rows.windows(2).all(|w| same_points(&w[0].entry.target, &w[1].entry.target))
+    }
+
+    /// Returns the unit of all lengths, if they have the same one.
+    fn unit(&self) -> Option<Unit> {
+        self.rows.first().and_then(|row| row.entry.unit).filter(|_| self.same_unit())
     }
 
     /// Returns whether all lengths have the same unit.
@@ -331,19 +281,14 @@ impl Comparison {
                 clean(&row.entry.untrue[0])
             ));
         }
-        if !self.same_target() {
-            notes.push(
-                "The targets differ: errors to different targets say little beside each other, and no front is marked."
-                    .to_owned(),
-            );
-        }
-        if !self.same_unit() {
-            notes.push(
-                "The units differ: lengths are as they stand in each result, and no front is marked."
-                    .to_owned(),
-            );
-        }
-        notes.extend(self.minimised().map(|(_, sentence)| sentence.to_owned()));
+        let targets = "The targets differ: errors to different targets say little beside each other, and no front is marked.";
+        let units = "The units differ: lengths are as they stand in each result, and no front is marked.";
+        let sentences = [
+            (!self.same_target()).then_some(targets),
+            (!self.same_unit()).then_some(units),
+            self.minimised().map(|(_, sentence)| sentence),
+        ];
+        notes.extend(sentences.into_iter().flatten().map(str::to_owned));
         notes.extend(self.remarks.iter().cloned());
         notes.extend(
             self.left_out.iter().map(|out| format!("Left out: {}: {}.", clean(&out.label), clean(&out.why))),

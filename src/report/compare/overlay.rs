@@ -4,7 +4,7 @@ use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::mechanism::{Complex, point};
 use crate::report::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px, text_width};
 use crate::report::scene::{Bounds, circuits};
-use crate::report::text::{clean, shortened, shortened_in_front, significant};
+use crate::report::text::{clean, shortened, shortened_in_front, wrapped};
 use crate::report::words::length_suffix;
 
 /// The width of the drawing.
@@ -130,7 +130,7 @@ impl Comparison {
             let figures = self.legend_figures(row);
             let room = column - 60.0 - text_width(&figures, 13.0);
             let name = shortened_in_front(&clean(&row.entry.label), (room / text_width("x", 13.0)) as usize);
-            let text = format!("{}{}  {name}  {figures}", row.rank, if row.on_front { "*" } else { "" });
+            let text = format!("{}  {name}  {figures}", tables::marked_rank(row));
             canvas.text(Spot::new(x + 42.0, y), Anchor::Start, &ink, &text);
         }
         y += LINE * half as f64;
@@ -144,9 +144,7 @@ impl Comparison {
             notes.push("* on the Pareto front of rms error, worst transmission angle and size".to_owned());
         }
         for note in &notes {
-            let lines =
-                crate::report::text::wrapped("", "", note, (1.06 * WIDTH / text_width("x", 13.0)) as usize);
-            for line in lines.lines() {
+            for line in wrapped("", "", note, (1.06 * WIDTH / text_width("x", 13.0)) as usize).lines() {
                 canvas.text(Spot::new(MARGIN, y + 6.0), Anchor::Start, &muted, line);
                 y += LINE - 2.0;
             }
@@ -167,7 +165,7 @@ impl Comparison {
 
     /// Returns the figures of the legend, such as `rms 0.0224 mm`.
     pub(super) fn legend_figures(&self, row: &Ranked) -> String {
-        let rms = significant(row.figure_of(SortKey::Rms).unwrap_or(f64::NAN), 3);
+        let rms = tables::shown(row, SortKey::Rms, 3);
         let accepted = if row.entry.candidate.accepted { "" } else { ", not accepted" };
         format!("rms {rms}{}{accepted}", length_suffix(row.entry.unit))
     }

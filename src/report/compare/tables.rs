@@ -2,7 +2,7 @@
 
 use super::{Comparison, Ranked, SortKey};
 use crate::mechanism::FourBar;
-use crate::report::csv::PARAMETERS;
+use crate::report::csv::{Column, PARAMETERS};
 use crate::report::grid::Align::{Left, Right};
 use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
 use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
@@ -21,6 +21,26 @@ pub(super) fn signed_percent(percent: Option<f64>) -> String {
         Some(percent) => format!("{} %", significant(percent, 3)),
         None => NO_NUMBER.to_owned(),
     }
+}
+
+/// Returns a figure with its unit of angle; `-` if it is missing.
+pub(super) fn shown(row: &Ranked, key: SortKey, digits: usize) -> String {
+    let degrees = if key == SortKey::Transmission { "°" } else { "" };
+    let figure = row.figure_of(key);
+    figure.map_or(NO_NUMBER.to_owned(), |figure| format!("{}{degrees}", significant(figure, digits)))
+}
+
+/// Returns the difference from the best: `best`, `12.3 %`, or `-` without a number.
+pub(super) fn behind(row: &Ranked) -> String {
+    match row.behind_percent {
+        Some(0.0) => "best".to_owned(),
+        percent => signed_percent(percent).trim_start_matches('+').to_owned(),
+    }
+}
+
+/// Returns the rank, with a star if the row is on the Pareto front.
+pub(super) fn marked_rank(row: &Ranked) -> String {
+    format!("{}{}", row.rank, if row.on_front { "*" } else { "" })
 }
 
 /// Returns the keys in words: `sum_sq, then transmission`.
@@ -79,28 +99,16 @@ impl Comparison {
             (Right, &SHOWN),
             (Left, &["accepted"]),
         ]);
+        let first = self.first_figure();
         for row in &self.rows {
-            let figure = |key, digits| significant(row.figure_of(key).unwrap_or(f64::NAN), digits);
-            let behind = match row.behind_percent {
-                Some(0.0) => "best".to_owned(),
-                Some(percent) => format!("{} %", significant(percent, 3)),
-                None => NO_NUMBER.to_owned(),
-            };
+            let figure = |key| plain(shown(row, key, if key == first { 4 } else { 3 }));
             let accepted = row.entry.candidate.accepted;
             let untrue = if row.entry.untrue.is_empty() { "" } else { "!" };
-            grid.row([
-                (format!("{}{}{untrue}", row.rank, if row.on_front { "*" } else { "" }), Ink::Strong),
-                plain(named(row, label)),
-                plain(behind),
-                plain(figure(self.first_figure(), 4)),
-                plain(figure(SortKey::Rms, 3)),
-                plain(figure(SortKey::Max, 3)),
-                plain(figure(SortKey::ToCurve, 3)),
-                plain(format!("{}°", figure(SortKey::Transmission, 3))),
-                plain(figure(SortKey::LinkRatio, 3)),
-                plain(figure(SortKey::Size, 3)),
-                verdict(if accepted { "yes" } else { "no" }, accepted),
-            ]);
+            let rank = (format!("{}{untrue}", marked_rank(row)), Ink::Strong);
+            let mut cells = vec![rank, plain(named(row, label)), plain(behind(row))];
+            cells.extend(self.shown_figures().map(figure));
+            cells.push(verdict(if accepted { "yes" } else { "no" }, accepted));
+            grid.row(cells);
         }
         grid.render(colour)
     }
@@ -137,20 +145,25 @@ impl Comparison {
         for row in &self.rows {
             let linkage = &row.entry.candidate.linkage;
             let kind = row.entry.candidate.linkage_type.name();
-            let numbers = parameters(linkage, |x| significant(x, 4)).map(|(_, shown)| plain(shown));
-            grid.row([(row.rank.to_string(), Ink::Strong), plain(kind)].into_iter().chain(numbers));
+            let shown = |column| plain(parameter(column, linkage, |x| significant(x, 4)).1);
+            grid.row(
+                [(row.rank.to_string(), Ink::Strong), plain(kind)]
+                    .into_iter()
+                    .chain(PARAMETERS.iter().map(shown)),
+            );
         }
         grid.render(colour)
     }
 }
 
-/// Returns the parameters of a linkage, each with its text; signs are `+1` or `-1`.
-pub(super) fn parameters(linkage: &FourBar, length: impl Fn(f64) -> String) -> [(f64, String); 11] {
-    PARAMETERS.map(|(name, of)| {
-        let value = of(linkage);
-        let is_sign = name.starts_with('t');
-        (value, if is_sign { format!("{value:+}") } else { length(value) })
-    })
+/// Returns a parameter of a linkage with its text; signs are `+1` or `-1`.
+pub(super) fn parameter(
+    (name, of): &Column<FourBar, f64>,
+    linkage: &FourBar,
+    length: impl Fn(f64) -> String,
+) -> (f64, String) {
+    let value = of(linkage);
+    (value, if name.starts_with('t') { format!("{value:+}") } else { length(value) })
 }
 
 fn named(row: &Ranked, label: usize) -> String {

@@ -1,56 +1,20 @@
 //! Conversion of the lengths of several results to one unit.
 
 use super::Entry;
-use crate::mechanism::Unit;
-use crate::mechanism::{FourBar, LinkageError};
+use crate::mechanism::{LinkageError, Unit};
 use crate::report::text::clean;
 use crate::task::spec::Measure;
-
-fn millimetres(unit: Unit) -> f64 {
-    match unit {
-        Unit::Mm => 1.0,
-        Unit::Cm => 10.0,
-        Unit::M => 1000.0,
-        Unit::In => 25.4,
-    }
-}
-
-/// Returns the factor that converts a length in `from` to one in `to`: exactly 1 if they are the same.
-pub fn times(from: Unit, to: Unit) -> f64 {
-    millimetres(from) / millimetres(to)
-}
-
-/// Returns the linkage with every length and coordinate multiplied by a factor.
-///
-/// # Errors
-/// As [`FourBar::new`], if a length leaves the allowed range.
-pub fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, LinkageError> {
-    let mut parameters = linkage.natural_coordinates();
-    for pivot in [&mut parameters.crank_pivot, &mut parameters.follower_pivot] {
-        *pivot = pivot.map(|x| x * factor);
-    }
-    for length in [
-        &mut parameters.crank,
-        &mut parameters.coupler,
-        &mut parameters.follower,
-        &mut parameters.crank_side,
-        &mut parameters.follower_side,
-    ] {
-        *length *= factor;
-    }
-    FourBar::new(parameters)
-}
 
 impl Entry {
     /// Returns the entry with its lengths and errors in another unit; unchanged if it has no unit.
     fn converted(&self, to: Unit) -> Result<Entry, LinkageError> {
         let mut entry = self.clone();
         let Some(from) = self.unit.filter(|from| *from != to) else { return Ok(entry) };
-        let factor = times(from, to);
+        let factor = from.factor_to(to);
         entry.unit = Some(to);
         entry.target.iter_mut().flatten().for_each(|x| *x *= factor);
         let candidate = &mut entry.candidate;
-        candidate.linkage = scaled(&candidate.linkage, factor)?;
+        candidate.linkage = candidate.linkage.scaled(factor)?;
         candidate.grashof_margin *= factor;
         let error = &mut candidate.error;
         error.sum_sq *= factor * factor;
@@ -97,7 +61,7 @@ pub fn unit_remarks(units: &[(String, Option<Unit>)], to: Unit) -> Vec<String> {
         }
     };
     let mut remarks = Vec::new();
-    for from in [Unit::Mm, Unit::Cm, Unit::M, Unit::In].into_iter().filter(|from| *from != to) {
+    for from in Unit::ALL.into_iter().filter(|from| *from != to) {
         if let Some(labels) = labels(Some(from)) {
             remarks.push(format!("Lengths converted from {} to {}: {labels}.", from.label(), to.label()));
         }

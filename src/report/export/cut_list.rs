@@ -1,9 +1,9 @@
 //! The cut list: the sizes of the plates and the places of their holes.
 
-use super::model::Model;
-use crate::mechanism::plates::{Placement, Plate};
+use super::model::{Model, hole_distances};
+use crate::mechanism::plates::{Link, Placement, Plate};
 use crate::report::csv::written;
-use crate::report::text::cell;
+use crate::report::text::{cell, exact};
 
 /// The columns; there is one row for each plate and pair of its holes.
 const COLUMNS: [&str; 10] = [
@@ -18,18 +18,6 @@ const COLUMNS: [&str; 10] = [
     "thickness_mm",
     "area_mm2",
 ];
-
-/// Returns the names of each pair of distinct holes with their distance in millimetres.
-fn distances(plate: &Plate) -> Vec<(String, String, f64)> {
-    let holes = plate.distinct_holes();
-    let mut pairs = Vec::new();
-    for (i, (from, at)) in holes.iter().enumerate() {
-        for (to, there) in &holes[i + 1..] {
-            pairs.push((from.clone(), to.clone(), (there - at).norm()));
-        }
-    }
-    pairs
-}
 
 /// Returns the length and width of the piece of stock: along the line of the first two holes, and across it.
 fn size(plate: &Plate) -> [f64; 2] {
@@ -48,16 +36,14 @@ fn number(value: f64) -> String {
 }
 
 /// Returns the number of pins that join the plates, and whether P has a hole of its own.
-fn pins(model: &Model<'_>) -> (usize, bool) {
-    let linkage = &model.linkage;
-    let joined = |holes: &[(String, crate::mechanism::Complex)]| {
-        holes.iter().any(|(name, _)| name.contains('P') && name.len() > 1)
+fn pins(plates: &[(Plate, Placement)]) -> (usize, bool) {
+    let holes = |link| {
+        let plate = plates.iter().filter(move |(plate, _)| plate.link == link);
+        plate.flat_map(|(plate, _)| plate.distinct_holes())
     };
-    let coupler =
-        Plate::of(linkage, crate::mechanism::plates::Link::Coupler, 0.5 * model.hole + model.margin);
-    let ground = Plate::of(linkage, crate::mechanism::plates::Link::Ground, 0.5 * model.hole + model.margin);
+    let is_joined = |(name, _): (String, _)| name.contains('P') && name.len() > 1;
     // Coincident pivots A and B share one pin.
-    (2 + ground.distinct_holes().len(), !joined(&coupler.distinct_holes()))
+    (2 + holes(Link::Ground).count(), !holes(Link::Coupler).any(is_joined))
 }
 
 /// Returns the list as text.
@@ -75,7 +61,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     ));
     for (plate, _) in plates {
         let [length, width] = size(plate);
-        let pairs = distances(plate);
+        let pairs = hole_distances(plate);
         let mut holes: Vec<String> =
             pairs.iter().map(|(from, to, apart)| format!("{from} to {to} {}", number(*apart))).collect();
         if holes.is_empty() {
@@ -90,7 +76,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
             holes.join(", ")
         ));
     }
-    let (pins, tracer) = pins(model);
+    let (pins, tracer) = pins(plates);
     out.push_str(&format!(
         "\n{} plates, {pins} pins of {} mm through at least two plates ({} mm)",
         plates.len(),
@@ -105,7 +91,7 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
 pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let rows = plates.iter().flat_map(|(plate, _)| {
         let holes = plate.distinct_holes();
-        let mut pairs = distances(plate);
+        let mut pairs = hole_distances(plate);
         if pairs.is_empty() {
             pairs = holes.iter().map(|(name, _)| (name.clone(), name.clone(), 0.0)).collect();
         }
@@ -115,7 +101,7 @@ pub(super) fn csv(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         pairs.into_iter().map(move |(from, to, apart)| {
             let mut row = vec![plate.link.name().to_owned(), count.to_string(), cell(&from), cell(&to)];
             let numbers = [apart, model.hole, length, width, model.thickness, area];
-            row.extend(numbers.into_iter().map(crate::report::text::exact));
+            row.extend(numbers.into_iter().map(exact));
             row
         })
     });

@@ -3,7 +3,7 @@
 use super::dxf::Drawing;
 use super::model::Model;
 use crate::files::generator::mark;
-use crate::mechanism::plates::{Link, Placement, Plate};
+use crate::mechanism::plates::{Placement, Plate};
 use crate::mechanism::{Complex, Joints};
 use crate::report::scene::all_joints;
 use crate::report::text::exact;
@@ -38,22 +38,17 @@ fn straight(points: &[Complex]) -> Vec<(Complex, f64)> {
 }
 
 /// Returns the name of a plate's layer.
-fn layer(link: Link) -> &'static str {
-    match link {
-        Link::Ground => "GROUND",
-        Link::Crank => "CRANK",
-        Link::Coupler => "COUPLER",
-        Link::Follower => "FOLLOWER",
-    }
+fn layer(plate: &Plate) -> String {
+    plate.link.name().to_uppercase()
 }
 
 /// Draws each plate on its own layer: one closed contour, holes as true circles, both offset by half the kerf.
 pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
     let colours = [8, 1, 5, 3];
-    let layers: Vec<(&str, u8)> = plates.iter().map(|(plate, _)| layer(plate.link)).zip(colours).collect();
+    let layers: Vec<(String, u8)> = plates.iter().map(|(plate, _)| layer(plate)).zip(colours).collect();
     let mut drawing = Drawing::new(&layers);
     for (plate, at) in plates {
-        let layer = layer(plate.link);
+        let layer = &layer(plate);
         let edges = model.cut(plate).outline();
         let contour: Vec<(Complex, f64)> =
             edges.iter().map(|edge| (at.of(edge.from()), edge.bulge())).collect();

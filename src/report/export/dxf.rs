@@ -5,7 +5,7 @@
 
 use crate::mechanism::Complex;
 use crate::report::scene::Bounds;
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 /// Handles of the fixed objects; those of entities and layers follow from [`FIRST_FREE`].
 const MODEL_SPACE: u32 = 0x1F;
@@ -14,7 +14,7 @@ const FIRST_FREE: u32 = 0x100;
 
 /// A drawing under construction.
 pub(super) struct Drawing {
-    layers: Vec<(&'static str, u8)>,
+    layers: Vec<(String, u8)>,
     entities: Tags,
     next: u32,
     bounds: Bounds,
@@ -25,7 +25,7 @@ pub(super) struct Drawing {
 struct Tags(String);
 
 impl Tags {
-    fn text(&mut self, code: u16, value: &str) {
+    fn text(&mut self, code: u16, value: impl Display) {
         let _ = writeln!(self.0, "{code:>3}\n{value}");
     }
 
@@ -35,15 +35,11 @@ impl Tags {
 
     fn number(&mut self, code: u16, value: f64) {
         // Never with an exponent; the shortest text that reads back as the same number; -0 is written as 0.
-        self.text(code, &format!("{}", value + 0.0));
-    }
-
-    fn whole(&mut self, code: u16, value: i64) {
-        self.text(code, &value.to_string());
+        self.text(code, value + 0.0);
     }
 
     fn handle(&mut self, code: u16, value: u32) {
-        self.text(code, &format!("{value:X}"));
+        self.text(code, format_args!("{value:X}"));
     }
 
     /// Writes a point at codes 10, 20, 30 (or 11, 21, 31).
@@ -53,12 +49,21 @@ impl Tags {
         self.number(code + 20, 0.0);
     }
 
-    /// Writes a table's entry with its classes.
-    fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
+    /// Writes the beginning of an object: its kind, its handle and that of its owner.
+    fn object(&mut self, kind: &str, handle: u32, owner: u32) {
         self.text(0, kind);
         self.handle(if kind == "DIMSTYLE" { 105 } else { 5 }, handle);
         self.handle(330, owner);
+    }
+
+    /// Writes a table's entry with its classes.
+    fn entry(&mut self, kind: &str, handle: u32, owner: u32, class: &str, name: &str) {
+        self.object(kind, handle, owner);
         self.texts(&[(100, "AcDbSymbolTableRecord"), (100, class), (2, name)]);
+        // No flags; records of blocks have none.
+        if kind != "BLOCK_RECORD" {
+            self.text(70, 0);
+        }
     }
 
     fn table(&mut self, kind: &str, handle: u32, count: usize) {
@@ -66,7 +71,7 @@ impl Tags {
         self.handle(5, handle);
         self.handle(330, 0);
         self.text(100, "AcDbSymbolTable");
-        self.whole(70, count as i64);
+        self.text(70, count);
     }
 
     fn section(&mut self, name: &str) {
@@ -76,9 +81,9 @@ impl Tags {
 
 impl Drawing {
     /// Returns an empty drawing with layers, each with a name and a colour (AutoCAD's index).
-    pub(super) fn new(layers: &[(&'static str, u8)]) -> Self {
+    pub(super) fn new(layers: &[(impl ToString, u8)]) -> Self {
         Drawing {
-            layers: layers.to_vec(),
+            layers: layers.iter().map(|(name, colour)| (name.to_string(), *colour)).collect(),
             entities: Tags::default(),
             next: FIRST_FREE + layers.len() as u32,
             bounds: Bounds::default(),
@@ -86,10 +91,8 @@ impl Drawing {
     }
 
     fn entity(&mut self, kind: &str, layer: &str, class: &str) {
-        self.entities.text(0, kind);
-        self.entities.handle(5, self.next);
+        self.entities.object(kind, self.next, MODEL_SPACE);
         self.next += 1;
-        self.entities.handle(330, MODEL_SPACE);
         self.entities.texts(&[(100, "AcDbEntity"), (8, layer), (100, class)]);
     }
 
@@ -122,8 +125,8 @@ impl Drawing {
     /// Draws a polyline of vertices, each with the bulge of the segment after it.
     pub(super) fn polyline(&mut self, layer: &str, vertices: &[(Complex, f64)], closed: bool) {
         self.entity("LWPOLYLINE", layer, "AcDbPolyline");
-        self.entities.whole(90, vertices.len() as i64);
-        self.entities.whole(70, i64::from(closed));
+        self.entities.text(90, vertices.len());
+        self.entities.text(70, u8::from(closed));
         for (at, bulge) in vertices {
             self.entities.number(10, at.re);
             self.entities.number(20, at.im);
@@ -138,7 +141,7 @@ impl Drawing {
     pub(super) fn document(self, remarks: &[String]) -> String {
         let mut out = Tags::default();
         for remark in remarks {
-            out.text(999, &ascii(remark));
+            out.text(999, ascii(remark));
         }
         self.header(&mut out);
         self.tables(&mut out);
@@ -151,13 +154,8 @@ impl Drawing {
         out.0
     }
 
-    /// Returns the corners of the box of all entities; `None` for an empty drawing.
-    fn corners(&self) -> Option<[Complex; 2]> {
-        Some(self.bounds.corners()).filter(|[low, high]| low.re <= high.re)
-    }
-
     fn header(&self, out: &mut Tags) {
-        let [low, high] = self.corners().unwrap_or_default();
+        let [low, high] = self.bounds.corners();
         out.section("HEADER");
         out.texts(&[(9, "$ACADVER"), (1, "AC1015"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252")]);
         for (name, at) in [("$EXTMIN", low), ("$EXTMAX", high)] {
@@ -167,7 +165,7 @@ impl Drawing {
         // Millimetres; metric line types; points as small crosses of 1% of the screen.
         for (name, value) in [("$INSUNITS", 4), ("$MEASUREMENT", 1), ("$PDMODE", 3)] {
             out.text(9, name);
-            out.whole(70, value);
+            out.text(70, value);
         }
         out.text(9, "$HANDSEED");
         out.handle(5, self.next);
@@ -186,32 +184,30 @@ impl Drawing {
             [(0x14, "ByBlock", ""), (0x15, "ByLayer", ""), (0x16, "Continuous", "Solid line")]
         {
             out.entry("LTYPE", handle, 0x5, "AcDbLinetypeTableRecord", name);
-            out.whole(70, 0);
             out.text(3, about);
-            out.whole(72, 65);
-            out.whole(73, 0);
+            out.text(72, 65);
+            out.text(73, 0);
             out.number(40, 0.0);
         }
         out.text(0, "ENDTAB");
         out.table("LAYER", 0x2, self.layers.len() + 1);
         let own = self.layers.iter().enumerate();
-        let layers =
-            own.map(|(i, (name, colour))| (FIRST_FREE + i as u32, *name, *colour)).chain([(0x10, "0", 7)]);
+        let layers = own
+            .map(|(i, (name, colour))| (FIRST_FREE + i as u32, name.as_str(), *colour))
+            .chain([(0x10, "0", 7)]);
         for (handle, name, colour) in layers {
             out.entry("LAYER", handle, 0x2, "AcDbLayerTableRecord", name);
-            out.whole(70, 0);
-            out.whole(62, i64::from(colour));
+            out.text(62, colour);
             out.text(6, "Continuous");
             out.handle(390, 0xF);
         }
         out.text(0, "ENDTAB");
         out.table("STYLE", 0x3, 1);
         out.entry("STYLE", 0x11, 0x3, "AcDbTextStyleTableRecord", "Standard");
-        out.whole(70, 0);
         for (code, value) in [(40, 0.0), (41, 1.0), (50, 0.0)] {
             out.number(code, value);
         }
-        out.whole(71, 0);
+        out.text(71, 0);
         out.number(42, 2.5);
         out.texts(&[(3, "txt"), (4, ""), (0, "ENDTAB")]);
         for (kind, handle) in [("VIEW", 0x6), ("UCS", 0x7)] {
@@ -220,12 +216,10 @@ impl Drawing {
         }
         out.table("APPID", 0x9, 1);
         out.entry("APPID", 0x12, 0x9, "AcDbRegAppTableRecord", "ACAD");
-        out.whole(70, 0);
         out.text(0, "ENDTAB");
         out.table("DIMSTYLE", 0xA, 1);
         out.text(100, "AcDbDimStyleTable");
         out.entry("DIMSTYLE", 0x27, 0xA, "AcDbDimStyleTableRecord", "Standard");
-        out.whole(70, 0);
         out.text(0, "ENDTAB");
         out.table("BLOCK_RECORD", 0x1, 2);
         for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
@@ -236,16 +230,12 @@ impl Drawing {
 
     /// Writes the view with which a program opens the drawing: all of it.
     fn view(&self, out: &mut Tags) {
-        let (centre, height) = self.corners().map_or((Complex::default(), 1.0), |[low, high]| {
-            let size = high - low;
-            ((low + high) * 0.5, 1.1 * size.im.max(size.re / 1.5).max(1e-6))
-        });
+        let height = 1.1 * self.bounds.height().max(self.bounds.width() / 1.5).max(1e-6);
         out.entry("VPORT", 0x29, 0x8, "AcDbViewportTableRecord", "*Active");
-        out.whole(70, 0);
         let pairs = [
             (10, Complex::default()),
             (11, Complex::new(1.0, 1.0)),
-            (12, centre),
+            (12, self.bounds.centre()),
             (13, Complex::default()),
             (14, Complex::new(10.0, 10.0)),
             (15, Complex::new(10.0, 10.0)),
@@ -268,15 +258,12 @@ impl Drawing {
 fn blocks(out: &mut Tags) {
     out.section("BLOCKS");
     for (name, owner, handle) in [("*Model_Space", MODEL_SPACE, 0x20), ("*Paper_Space", PAPER_SPACE, 0x1C)] {
-        out.text(0, "BLOCK");
-        out.handle(5, handle);
-        out.handle(330, owner);
+        out.object("BLOCK", handle, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockBegin"), (2, name)]);
-        out.whole(70, 0);
+        out.text(70, 0);
         out.point(10, Complex::default());
-        out.texts(&[(3, name), (1, ""), (0, "ENDBLK")]);
-        out.handle(5, handle + 1);
-        out.handle(330, owner);
+        out.texts(&[(3, name), (1, "")]);
+        out.object("ENDBLK", handle + 1, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockEnd")]);
     }
     out.text(0, "ENDSEC");
@@ -284,47 +271,27 @@ fn blocks(out: &mut Tags) {
 
 fn objects(out: &mut Tags) {
     out.section("OBJECTS");
-    let dictionary = |out: &mut Tags, handle: u32, owner: u32, entries: &[(&str, u32)]| {
-        out.text(0, "DICTIONARY");
-        out.handle(5, handle);
-        out.handle(330, owner);
-        out.text(100, "AcDbDictionary");
-        out.whole(281, 1);
+    let dictionary = |out: &mut Tags, kind: &str, handle: u32, owner: u32, entries: &[(&str, u32)]| {
+        out.object(kind, handle, owner);
+        out.texts(&[(100, "AcDbDictionary"), (281, "1")]);
         for (name, entry) in entries {
             out.text(3, name);
             out.handle(350, *entry);
         }
     };
-    dictionary(out, 0xC, 0, &[("ACAD_GROUP", 0xD), ("ACAD_PLOTSTYLENAME", 0xE)]);
-    dictionary(out, 0xD, 0xC, &[]);
-    out.text(0, "ACDBDICTIONARYWDFLT");
-    out.handle(5, 0xE);
-    out.handle(330, 0xC);
-    out.text(100, "AcDbDictionary");
-    out.whole(281, 1);
-    out.text(3, "Normal");
-    out.handle(350, 0xF);
+    dictionary(out, "DICTIONARY", 0xC, 0, &[("ACAD_GROUP", 0xD), ("ACAD_PLOTSTYLENAME", 0xE)]);
+    dictionary(out, "DICTIONARY", 0xD, 0xC, &[]);
+    dictionary(out, "ACDBDICTIONARYWDFLT", 0xE, 0xC, &[("Normal", 0xF)]);
     out.text(100, "AcDbDictionaryWithDefault");
     out.handle(340, 0xF);
-    out.text(0, "ACDBPLACEHOLDER");
-    out.handle(5, 0xF);
-    out.handle(330, 0xE);
+    out.object("ACDBPLACEHOLDER", 0xF, 0xE);
     out.text(0, "ENDSEC");
 }
 
 /// Returns text on one line as DXF of 2000 writes it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.
 fn ascii(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    let mut units = [0u16; 2];
-    for c in text.chars() {
-        match c {
-            ' '..='~' => out.push(c),
-            other => {
-                for unit in other.encode_utf16(&mut units) {
-                    let _ = write!(out, "\\U+{unit:04X}");
-                }
-            }
-        }
-    }
-    out
+    let escaped = |c: char| -> String {
+        c.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\U+{unit:04X}")).collect()
+    };
+    text.chars().map(|c| if matches!(c, ' '..='~') { c.to_string() } else { escaped(c) }).collect()
 }

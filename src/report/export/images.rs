@@ -5,7 +5,9 @@ use super::settings::{Refusal, Settings};
 use crate::files::generator;
 use crate::mechanism::{Complex, CouplerCurve, Joints};
 use crate::report::scene::{Bounds, all_joints};
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::fmt::Display;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
 type Rgb = [u8; 3];
@@ -24,8 +26,8 @@ const DELAY: u16 = 4;
 /// The margin around the drawing, as a fraction of its longer side.
 const ROOM: f64 = 0.06;
 
-fn failed(what: &str) -> Refusal {
-    Refusal::new(format!("the picture cannot be written: {what}"), "choose another size_px")
+fn failed(why: impl Display) -> Refusal {
+    Refusal::new(format!("the picture cannot be written: {why}"), "choose another size_px")
 }
 
 /// Draws a still picture as PNG.
@@ -34,7 +36,7 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     let sheet = Sheet::around(model, &[joints], settings.size_px.unwrap_or(STILL_PX));
     let mut picture = sheet.background(model)?;
     sheet.linkage(&mut picture, model, &joints);
-    let bytes = picture.encode_png().map_err(|e| failed(&e.to_string()))?;
+    let bytes = picture.encode_png().map_err(failed)?;
     Ok(with_software(bytes))
 }
 
@@ -86,21 +88,22 @@ pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
     let flat: Vec<u8> = palette.iter().flatten().copied().collect();
     let (width, height) = (sheet.width as u16, sheet.height as u16);
     let mut bytes = Vec::new();
-    let mut encoder =
-        gif::Encoder::new(&mut bytes, width, height, &flat).map_err(|e| failed(&e.to_string()))?;
-    encoder.set_repeat(gif::Repeat::Infinite).map_err(|e| failed(&e.to_string()))?;
+    let mut encoder = gif::Encoder::new(&mut bytes, width, height, &flat).map_err(failed)?;
+    encoder.set_repeat(gif::Repeat::Infinite).map_err(failed)?;
     let comment: gif::AnyExtension = gif::Extension::Comment.into();
-    let marked = encoder.write_raw_extension(comment, &[generator::mark().as_bytes()]);
-    marked.map_err(|e| failed(&e.to_string()))?;
-    let mut nearest = Nearest::new(palette);
+    encoder.write_raw_extension(comment, &[generator::mark().as_bytes()]).map_err(failed)?;
+    let mut known = BTreeMap::new();
+    let mut index = |colour: Rgb| match colour {
+        PAPER => 0,
+        _ => *known.entry(colour).or_insert_with(|| nearest(&palette, colour)),
+    };
     for joints in &poses {
         let mut picture = background.clone();
         sheet.linkage(&mut picture, model, joints);
-        let pixels: Vec<u8> =
-            picture.data().chunks_exact(4).map(|p| nearest.of([p[0], p[1], p[2]])).collect();
+        let pixels: Vec<u8> = picture.data().chunks_exact(4).map(|p| index([p[0], p[1], p[2]])).collect();
         let mut frame = gif::Frame::from_indexed_pixels(width, height, pixels, None);
         frame.delay = DELAY;
-        encoder.write_frame(&frame).map_err(|e| failed(&e.to_string()))?;
+        encoder.write_frame(&frame).map_err(failed)?;
     }
     drop(encoder);
     Ok(bytes)
@@ -223,30 +226,13 @@ fn palette() -> Vec<Rgb> {
     colours
 }
 
-/// A search for the nearest colours of a palette, which remembers earlier results.
-struct Nearest {
-    palette: Vec<Rgb>,
-    known: std::collections::BTreeMap<Rgb, u8>,
-}
-
-impl Nearest {
-    fn new(palette: Vec<Rgb>) -> Self {
-        Nearest { palette, known: std::collections::BTreeMap::new() }
-    }
-
-    fn of(&mut self, colour: Rgb) -> u8 {
-        if colour == PAPER {
-            return 0;
-        }
-        let palette = &self.palette;
-        *self.known.entry(colour).or_insert_with(|| {
-            let distance = |other: &Rgb| -> i32 {
-                other.iter().zip(colour).map(|(x, y)| (i32::from(*x) - i32::from(y)).pow(2)).sum()
-            };
-            let best = palette.iter().enumerate().min_by_key(|(_, other)| distance(other));
-            best.map_or(0, |(i, _)| i as u8)
-        })
-    }
+/// Returns the place of the nearest colour in a palette.
+fn nearest(palette: &[Rgb], colour: Rgb) -> u8 {
+    let distance = |other: &Rgb| -> i32 {
+        other.iter().zip(colour).map(|(x, y)| (i32::from(*x) - i32::from(y)).pow(2)).sum()
+    };
+    let best = palette.iter().enumerate().min_by_key(|(_, other)| distance(other));
+    best.map_or(0, |(i, _)| i as u8)
 }
 
 #[cfg(test)]

@@ -4,8 +4,10 @@
 //! the sides are on the polygons' edges, so that each edge of the body belongs to two triangles that run through it in
 //! opposite directions. [`Mesh::is_closed`] checks that for every body.
 
+use super::model::Model;
 use crate::mechanism::plates::{Edge, Placement, Plate};
 use crate::mechanism::{Complex, cross};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
@@ -24,25 +26,14 @@ const PHASES: [f64; 4] = [0.291, 0.137, 0.413, 0.067];
 const STAGGER: f64 = 0.019;
 
 impl Mesh {
-    /// Returns the mesh of a plate of a thickness with round holes, with its lower side at z = 0; `chord` is the
-    /// largest distance between arcs and their polygons. `None` if no closed body was found (holes that leave the
-    /// plate).
-    pub(super) fn of(
-        (plate, at): (&Plate, &Placement),
-        hole: f64,
-        thickness: f64,
-        chord: f64,
-    ) -> Option<Self> {
-        PHASES.iter().find_map(|phase| Mesh::with_phase((plate, at), hole, thickness, chord, *phase))
+    /// Returns the mesh of a placed plate with round holes, with its lower side at z = 0. `None` if no closed body was
+    /// found (holes that leave the plate).
+    pub(super) fn of(model: &Model<'_>, plate: &Plate, place: &Placement) -> Option<Self> {
+        PHASES.iter().find_map(|phase| Mesh::with_phase(model, plate, place, *phase))
     }
 
-    fn with_phase(
-        (plate, place): (&Plate, &Placement),
-        hole: f64,
-        thickness: f64,
-        chord: f64,
-        phase: f64,
-    ) -> Option<Self> {
+    fn with_phase(model: &Model<'_>, plate: &Plate, place: &Placement, phase: f64) -> Option<Self> {
+        let Model { hole, thickness, chord, .. } = *model;
         let mut rings = vec![polygon(&plate.outline(), plate.radius, chord)];
         for (k, (_, centre)) in plate.distinct_holes().into_iter().enumerate() {
             let n = sides(0.5 * hole, chord);
@@ -51,12 +42,9 @@ impl Mesh {
             rings.push((0..n).map(|i| centre + turn(i)).collect());
         }
         let flat: Vec<[f64; 2]> = rings.iter().flatten().map(|p| [p.re, p.im]).collect();
-        let mut starts = Vec::new();
-        let mut total = 0;
-        for ring in &rings {
-            starts.push(total);
-            total += ring.len();
-        }
+        let total = flat.len();
+        let starts: Vec<usize> =
+            rings.iter().scan(0, |start, ring| Some(std::mem::replace(start, *start + ring.len()))).collect();
         let mut corners: Vec<usize> = Vec::new();
         earcut::Earcut::new().earcut(flat.iter().copied(), &starts[1..], &mut corners);
 
@@ -97,12 +85,8 @@ impl Mesh {
 
     /// Returns the unit normal of a triangle; zeros for one without area.
     pub(super) fn normal(&self, triangle: [usize; 3]) -> [f64; 3] {
-        let [p, q, r] = triangle.map(|i| self.vertices[i].map(f64::from));
-        let u = [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
-        let v = [r[0] - p[0], r[1] - p[1], r[2] - p[2]];
-        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-        let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length > 0.0 { n.map(|x| x / length) } else { [0.0; 3] }
+        let [p, q, r] = triangle.map(|i| Vector3::from(self.vertices[i].map(f64::from)));
+        (q - p).cross(&(r - p)).try_normalize(0.0).map_or([0.0; 3], Into::into)
     }
 }
 

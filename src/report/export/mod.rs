@@ -33,9 +33,10 @@ pub use format::{Format, UnknownFormat};
 pub use settings::{Refusal, Settings};
 pub use subject::Subject;
 
-use crate::files::generator;
+use crate::files::linkage_file;
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
+use crate::record::Tool;
 use crate::report::analysis_csv::analysis_csv;
 use model::Model;
 
@@ -90,10 +91,10 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
     let mut notes = Vec::new();
     let text = match format {
         Format::Csv => {
-            let speed_rad_s = settings.omega_rad_s.unwrap_or(1.0);
-            if settings.omega_rad_s.is_none() {
+            let speed_rad_s = settings.omega_rad_s.unwrap_or_else(|| {
                 notes.push("omega_rad_s = 1: velocities are those at 1 rad/s".to_owned());
-            }
+                1.0
+            });
             let request = Request {
                 name: subject.name.clone(),
                 unit,
@@ -105,19 +106,18 @@ fn own_unit(subject: &Subject, format: Format, settings: &Settings) -> Result<Ex
             };
             analysis_csv(&analyze(&request))
         }
-        Format::Toml => crate::files::linkage_file::to_toml(&subject.legal_name(), unit, &linkage),
+        Format::Toml => linkage_file::to_toml(&subject.legal_name(), unit, &linkage),
         _ => {
-            let mut object = serde_json::Map::new();
-            object.insert("format".into(), crate::files::linkage_file::FORMAT.into());
-            let version = env!("CARGO_PKG_VERSION");
-            object.insert("tool".into(), serde_json::json!({"name": generator::NAME, "version": version}));
-            object.insert("name".into(), subject.legal_name().into());
+            let mut object = serde_json::json!({
+                "format": linkage_file::FORMAT,
+                "tool": Tool::this(),
+                "name": subject.legal_name(),
+                "linkage": linkage,
+            });
             if let Some(unit) = unit {
-                object.insert("unit".into(), unit.label().into());
+                object["unit"] = unit.label().into();
             }
-            // Nine finite numbers and two signs can always be written as JSON.
-            object.insert("linkage".into(), serde_json::to_value(linkage).unwrap_or_default());
-            format!("{:#}\n", serde_json::Value::Object(object))
+            format!("{object:#}\n")
         }
     };
     Ok(Exported { bytes: text.into_bytes(), notes })

@@ -5,7 +5,6 @@ use super::{Format, Subject};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::{Placement, Plate};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, Joints, point};
-use crate::report::compare::times;
 use crate::report::scene::{circuits_through, middle_position};
 use crate::report::text::{brief, exact};
 
@@ -49,7 +48,7 @@ impl<'a> Model<'a> {
         if unit.is_none() {
             assumed.push(("unit", "no unit is given: 1 in the file is 1 mm".to_owned()));
         }
-        let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| times(unit, Unit::Mm));
+        let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
         let linkage = scaled(&subject.linkage, mm_per_unit)?;
         check_size(&linkage, settings)?;
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
@@ -150,9 +149,7 @@ impl<'a> Model<'a> {
                             let other = brief(other.to_degrees(), 4);
                             format!("choose another crank_deg, such as {other}, or leave it out")
                         }
-                        Err(_) => {
-                            "its plates can be exported: svg-plates, dxf-plates, stl, cut-list".to_owned()
-                        }
+                        Err(refusal) => refusal.help,
                     },
                 )
             });
@@ -217,7 +214,7 @@ pub(super) fn unit_of(subject: &Subject, settings: &Settings) -> Result<Option<U
 
 /// Returns a linkage with all lengths multiplied by a factor.
 pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal> {
-    crate::report::compare::scaled(linkage, factor).map_err(|e| {
+    linkage.scaled(factor).map_err(|e| {
         Refusal::new(
             format!("scaled {} times, this is no linkage: {e}", exact(factor)),
             "choose another scale",
@@ -255,21 +252,27 @@ fn too_far(settings: &Settings) -> Refusal {
     )
 }
 
-/// Returns the distance of the nearest two distinct holes of one plate, and their names.
-fn nearest_holes(linkage: &FourBar) -> (f64, String) {
-    let mut nearest = (f64::INFINITY, String::new());
-    for plate in Plate::all(linkage, 0.0) {
-        let holes = plate.distinct_holes();
-        for (i, (name, at)) in holes.iter().enumerate() {
-            for (other, there) in &holes[..i] {
-                let distance = (at - there).norm();
-                if distance < nearest.0 {
-                    nearest = (distance, format!("{other} and {name} of the {}", plate.link.name()));
-                }
-            }
+/// Returns the names of each pair of distinct holes of a plate with their distance.
+pub(super) fn hole_distances(plate: &Plate) -> Vec<(String, String, f64)> {
+    let holes = plate.distinct_holes();
+    let mut pairs = Vec::new();
+    for (i, (from, at)) in holes.iter().enumerate() {
+        for (to, there) in &holes[i + 1..] {
+            pairs.push((from.clone(), to.clone(), (there - at).norm()));
         }
     }
-    nearest
+    pairs
+}
+
+/// Returns the distance of the nearest two distinct holes of one plate, and their names.
+fn nearest_holes(linkage: &FourBar) -> (f64, String) {
+    let named = |plate: Plate| {
+        hole_distances(&plate)
+            .into_iter()
+            .map(move |(from, to, apart)| (apart, format!("{from} and {to} of the {}", plate.link.name())))
+    };
+    let all = Plate::all(linkage, 0.0).into_iter().flat_map(named);
+    all.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or((f64::INFINITY, String::new()))
 }
 
 /// Returns the largest number of two significant digits that is not larger than a value.

@@ -114,8 +114,7 @@ impl Settings {
             "size_px" => self.size_px = Some(count(key, value, 100..=4000)?),
             "frames" => self.frames = Some(count(key, value, 2..=360)?),
             "unit" => {
-                let units = [Unit::Mm, Unit::Cm, Unit::M, Unit::In];
-                let found = units.into_iter().find(|unit| unit.label() == value);
+                let found = Unit::ALL.into_iter().find(|unit| unit.label() == value);
                 self.unit = Some(found.ok_or_else(|| {
                     (format!("`unit` is no unit of length: {value}"), "choose mm, cm, m or in".to_owned())
                 })?);

@@ -13,7 +13,7 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> Result
     let mut out = String::new();
     for (plate, at) in plates {
         let name = plate.link.name();
-        let mesh = Mesh::of((plate, at), model.hole, model.thickness, model.chord).ok_or_else(|| {
+        let mesh = Mesh::of(model, plate, at).ok_or_else(|| {
             Refusal::new(
                 format!("the {name} cannot be made a closed body with these sizes"),
                 "choose a smaller hole_mm, or a larger margin_mm or chord_mm",

@@ -5,7 +5,6 @@ use crate::mechanism::plates::{Edge, Placement, Plate};
 use crate::mechanism::{Complex, Joints};
 use crate::report::scene::{Bounds, all_joints};
 use crate::report::text::xml;
-use std::fmt::Write;
 
 const LINKS: &str = "#34495e";
 const CURVE: &str = "#c0392b";
@@ -32,7 +31,11 @@ impl Page {
 
     /// Returns the coordinates `x y` on the page.
     fn at(&self, p: Complex) -> String {
-        format!("{} {}", mm(p.re - self.low.re), mm(self.high.im - p.im))
+        self.spot(p).join(" ")
+    }
+
+    fn spot(&self, p: Complex) -> [String; 2] {
+        [mm(p.re - self.low.re), mm(self.high.im - p.im)]
     }
 
     fn push(&mut self, line: &str) {
@@ -41,58 +44,55 @@ impl Page {
     }
 
     fn path(&mut self, points: &[Complex], closed: bool, attributes: &str) {
-        let mut data = String::new();
-        for (i, p) in points.iter().enumerate() {
-            data.push_str(if i == 0 { "M" } else { "L" });
-            data.push_str(&self.at(*p));
-        }
-        data.push_str(if closed { "Z" } else { "" });
-        self.push(&format!(r#"<path {attributes} d="{data}"/>"#));
+        let points: Vec<String> = points.iter().map(|p| self.at(*p)).collect();
+        let close = if closed { "Z" } else { "" };
+        self.push(&format!(r#"<path {attributes} d="M{}{close}"/>"#, points.join("L")));
     }
 
     fn outline(&mut self, edges: &[Edge]) {
-        let mut data = String::new();
-        for (i, edge) in edges.iter().enumerate() {
-            if i == 0 {
-                let _ = write!(data, "M{}", self.at(edge.from()));
+        let start = edges.first().map(|edge| format!("M{}", self.at(edge.from())));
+        let step = |edge: &Edge| match *edge {
+            Edge::Line { to, .. } => format!("L{}", self.at(to)),
+            // At most half a turn, counter-clockwise, which it also looks like after y is turned down.
+            Edge::Arc { from, to, centre, .. } => {
+                let r = mm((from - centre).norm());
+                format!("A{r} {r} 0 0 0 {}", self.at(to))
             }
-            match *edge {
-                Edge::Line { to, .. } => {
-                    let _ = write!(data, "L{}", self.at(to));
-                }
-                // At most half a turn, counter-clockwise, which it also looks like after y is turned down.
-                Edge::Arc { from, to, centre, .. } => {
-                    let r = mm((from - centre).norm());
-                    let _ = write!(data, "A{r} {r} 0 0 0 {}", self.at(to));
-                }
-            }
-        }
+        };
+        let data: String = start.into_iter().chain(edges.iter().map(step)).collect();
         self.push(&format!(r#"<path d="{data}Z"/>"#));
     }
 
     fn circle(&mut self, id: &str, centre: Complex, radius: f64) {
         let id = if id.is_empty() { String::new() } else { format!(r#"id="{id}" "#) };
-        let (x, y) = (mm(centre.re - self.low.re), mm(self.high.im - centre.im));
+        let [x, y] = self.spot(centre);
         self.push(&format!(r#"<circle {id}cx="{x}" cy="{y}" r="{}"/>"#, mm(radius)));
     }
 
-    fn text(&mut self, at: Complex, text: &str) {
-        let (x, y) = (mm(at.re - self.low.re), mm(self.high.im - at.im));
-        self.push(&format!(r#"<text x="{x}" y="{y}">{}</text>"#, xml(text)));
+    /// Draws texts in letters of a height, each at its place.
+    fn labels(&mut self, letter: f64, attributes: &str, texts: impl IntoIterator<Item = (Complex, String)>) {
+        let height = mm(letter);
+        self.push(&format!(
+            r#"<g id="labels" font-family="sans-serif" font-size="{height}" fill="{LINKS}"{attributes}>"#
+        ));
+        for (at, text) in texts {
+            let [x, y] = self.spot(at);
+            self.push(&format!(r#"<text x="{x}" y="{y}">{}</text>"#, xml(&text)));
+        }
+        self.push("</g>");
     }
 
     /// Returns the whole document; foreign text is escaped here.
     fn document(self, title: &str, description: &str) -> String {
         let size = self.size();
-        let (width, height) = (mm(size.re), mm(size.im));
         format!(
             concat!(
                 r#"<svg xmlns="http://www.w3.org/2000/svg" version="1.1" "#,
                 r#"width="{w}mm" height="{h}mm" viewBox="0 0 {w} {h}">"#,
                 "\n<!-- {m} -->\n<title>{t}</title>\n<desc>{d}</desc>\n{b}</svg>\n"
             ),
-            w = width,
-            h = height,
+            w = mm(size.re),
+            h = mm(size.im),
             m = crate::files::generator::mark(),
             t = xml(title),
             d = xml(description),
@@ -136,7 +136,8 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
     }
     page.push("</g>");
     page.push(&group("joints", &line(LINKS, &thin)));
-    for (name, at) in [("A", a), ("B", b), ("C", c), ("D", d), ("P", p)] {
+    let named = [("A", a), ("B", b), ("C", c), ("D", d), ("P", p)];
+    for (name, at) in named {
         page.circle(name, at, 0.5 * model.hole);
     }
     page.push("</g>");
@@ -147,15 +148,9 @@ pub(super) fn drawing(model: &Model<'_>, joints: &Joints) -> String {
         }
         page.push("</g>");
     }
-    page.push(&format!(
-        r#"<g id="labels" font-family="sans-serif" font-size="{}" fill="{LINKS}">"#,
-        mm(letter)
-    ));
-    let aside = Complex::new(0.5 * model.hole + 0.2 * letter, 0.5 * model.hole + 0.2 * letter);
-    for (name, at) in [("A", a), ("B", b), ("C", c), ("D", d), ("P", p)] {
-        page.text(at + aside, name);
-    }
-    page.push("</g>");
+    let aside = 0.5 * model.hole + 0.2 * letter;
+    let label = |(name, at): (&str, Complex)| (at + Complex::new(aside, aside), name.to_owned());
+    page.labels(letter, "", named.map(label));
     page.document(&model.subject.title(), &model.heading())
 }
 
@@ -177,17 +172,11 @@ pub(super) fn plates(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String
         page.push("</g>");
     }
     let letter = (0.6 * model.margin).min(0.05 * size.re.max(size.im));
-    page.push(&format!(
-        r#"<g id="labels" font-family="sans-serif" font-size="{}" fill="{LINKS}" text-anchor="middle">"#,
-        mm(letter)
-    ));
-    for (plate, at) in plates {
-        for (joints, hole) in plate.distinct_holes() {
-            let above = Complex::new(0.0, 0.5 * model.hole + 0.25 * letter);
-            page.text(at.of(hole) + above, &joints);
-        }
-    }
-    page.push("</g>");
+    let above = Complex::new(0.0, 0.5 * model.hole + 0.25 * letter);
+    let holes = plates.iter().flat_map(|(plate, at)| {
+        plate.distinct_holes().into_iter().map(|(joints, hole)| (at.of(hole) + above, joints))
+    });
+    page.labels(letter, r#" text-anchor="middle""#, holes);
     let heading = format!("{}, plates cut with a kerf of {} mm", model.heading(), mm(model.kerf));
     page.document(&model.subject.title(), &heading)
 }

@@ -2,7 +2,7 @@
 
 use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
 use super::page::{paragraph, still};
-use super::table::{Cell, Row, minus, scrolling};
+use super::table::{Cell, Column, minus, tabulated};
 use super::{dimensions, mobility, page, requirements};
 use crate::record::{Alternative, Candidate, Record};
 use crate::report::text::{clean, significant};
@@ -97,25 +97,21 @@ fn alternatives(c: &Candidate, key: &str) -> Markup {
     if c.alternatives.is_empty() {
         return Markup::default();
     }
-    let row = |(i, a): (usize, &Alternative)| {
+    let verdict = |a: &Alternative| {
         let not_met: Vec<String> = a.not_met.iter().take(4).map(|name| clean(name)).collect();
-        let verdict = if a.accepted { "accepted".to_owned() } else { format!("not: {}", not_met.join(", ")) };
-        Row {
-            key: Some(format!("{key}a{}", i + 1)),
-            name: Cell::words(format!("cognate {}", i + 1)),
-            cells: vec![
-                Cell::words(a.linkage_type.name()),
-                Cell::degrees(a.transmission_worst_deg),
-                Cell::figure(a.link_ratio, 3),
-                Cell::verdict(verdict, a.accepted),
-            ],
-        }
+        if a.accepted { "accepted".to_owned() } else { format!("not: {}", not_met.join(", ")) }
     };
-    let rows = c.alternatives.iter().take(MOST_ALTERNATIVES).enumerate().map(row);
-    let columns = [("", false), ("type", false), ("transmission", true), ("ratio", true), ("verdict", false)];
+    let columns: [Column<&Alternative>; 4] = [
+        ("type", false, &|a| Cell::words(a.linkage_type.name())),
+        ("transmission", true, &|a| Cell::degrees(a.transmission_worst_deg)),
+        ("ratio", true, &|a| Cell::figure(a.link_ratio, 3)),
+        ("verdict", false, &|a| Cell::verdict(verdict(a), a.accepted)),
+    ];
+    let shown = c.alternatives.iter().take(MOST_ALTERNATIVES).zip(1..);
+    let rows = shown.map(|(a, i)| (Some(format!("{key}a{i}")), Cell::words(format!("cognate {i}")), a));
     html! {
         h3 { "The same curve by other linkages" }
-        (scrolling("Cognates", "wide tight", &columns, rows))
+        (tabulated(("Cognates", "wide tight"), ("", false), &columns, rows))
         (dimensions::of_alternatives(c))
     }
 }

@@ -71,33 +71,25 @@ impl<'a> Data<'a> {
     pub(super) fn new(record: &'a Record, first: usize) -> Self {
         let path = &record.problem.resolved.task.path;
         let chosen = chosen(record);
-        let of = |key, name, linkage, crank_deg, t1_at, worst| {
-            Mechanism::new(key, name, (linkage, crank_deg, t1_at), worst, &chosen)
+        let of_candidate = |key, name, c: &'a Candidate| {
+            Mechanism::new(key, name, (&c.linkage, &c.crank_deg, &c.t1_at), Some(c.error.max_at), &chosen)
         };
         let mut mechanisms = Vec::new();
-        for (i, c) in record.candidates.iter().enumerate() {
-            let name = format!("candidate {}", i + 1);
-            mechanisms.push(of(
-                candidate_key(i),
-                name,
-                &c.linkage,
-                &c.crank_deg,
-                &c.t1_at,
-                Some(c.error.max_at),
-            ));
-            for (j, a) in c.alternatives.iter().take(MOST_ALTERNATIVES).enumerate() {
-                let name = format!("cognate {} of candidate {}", j + 1, i + 1);
-                let key = format!("{}a{}", candidate_key(i), j + 1);
-                mechanisms.push(of(key, name, &a.linkage, &a.crank_deg, &a.t1_at, Some(c.error.max_at)));
+        for (c, i) in record.candidates.iter().zip(1..) {
+            mechanisms.push(of_candidate(format!("c{i}"), format!("candidate {i}"), c));
+            for (a, j) in c.alternatives.iter().take(MOST_ALTERNATIVES).zip(1..) {
+                let (key, name) = (format!("c{i}a{j}"), format!("cognate {j} of candidate {i}"));
+                let passed = (&a.linkage, a.crank_deg.as_slice(), a.t1_at.as_slice());
+                mechanisms.push(Mechanism::new(key, name, passed, Some(c.error.max_at), &chosen));
             }
         }
-        if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
-            let (key, name) = (BUILDABLE_KEY.to_owned(), "the buildable answer".to_owned());
-            mechanisms.push(of(key, name, &c.linkage, &c.crank_deg, &c.t1_at, Some(c.error.max_at)));
-        }
-        for (i, x) in record.exact.iter().flat_map(|exact| &exact.linkages).take(MOST_EXACT).enumerate() {
-            let name = format!("exact linkage {}", i + 1);
-            mechanisms.push(of(format!("x{}", i + 1), name, &x.linkage, &x.crank_deg, &x.t1_at, None));
+        let buildable = record.buildable.as_ref().filter(|c| c.rank == 0);
+        mechanisms.extend(
+            buildable.map(|c| of_candidate(BUILDABLE_KEY.to_owned(), "the buildable answer".to_owned(), c)),
+        );
+        for (x, i) in record.exact.iter().flat_map(|exact| &exact.linkages).take(MOST_EXACT).zip(1..) {
+            let (key, name) = (format!("x{i}"), format!("exact linkage {i}"));
+            mechanisms.push(Mechanism::new(key, name, (&x.linkage, &x.crank_deg, &x.t1_at), None, &chosen));
         }
         let pick =
             |values: &Vec<f64>| chosen.iter().map(|i| values.get(*i).copied().unwrap_or(0.0)).collect();
@@ -110,10 +102,9 @@ impl<'a> Data<'a> {
                 tolerance: path.tolerance.as_ref().map(pick),
             },
             transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
-            first: if first < record.candidates.len() {
-                candidate_key(first)
-            } else {
-                BUILDABLE_KEY.to_owned()
+            first: match record.candidates.get(first) {
+                Some(_) => candidate_key(first),
+                None => BUILDABLE_KEY.to_owned(),
             },
             mechanisms,
         }
@@ -154,16 +145,12 @@ fn chosen(record: &Record) -> Vec<usize> {
     if n <= MOST_POINTS {
         return (0..n).filter(usable).collect();
     }
-    let worst = record.candidates.iter().map(worst_of).filter(|i| *i < n);
+    let worst = record.candidates.iter().map(|c| c.error.max_at).filter(|i| *i < n);
     let mut chosen: Vec<usize> = (0..MOST_POINTS).map(|i| i * n / MOST_POINTS).chain(worst).collect();
     chosen.push(n - 1);
     chosen.sort_unstable();
     chosen.dedup();
     chosen.into_iter().filter(usable).collect()
-}
-
-fn worst_of(candidate: &Candidate) -> usize {
-    candidate.error.max_at
 }
 
 /// Returns the number of points on the page and of all points, if these differ.

@@ -2,7 +2,7 @@
 
 use super::data::MOST_EXACT;
 use super::page::{paragraph, section};
-use super::table::{Cell, Row, scrolling};
+use super::table::{Cell, Column, tabulated};
 use crate::record::{ExactLinkage, Record};
 use crate::report::exact::{ability, defects, others, said};
 use crate::report::text::{grouped, significant};
@@ -24,24 +24,25 @@ pub(super) fn exact(record: &Record) -> Markup {
 
 fn table(record: &Record, linkages: &[ExactLinkage]) -> Markup {
     let unit = words::unit_suffix(record);
-    let columns = [
-        ("#", true),
-        ("candidate", true),
-        ("the curve can be", false),
-        ("type", false),
-        ("defects", false),
-        ("transmission", true),
-        ("link ratio", true),
-        ("proved within", true),
-        ("verdict", false),
+    let columns: [Column<&ExactLinkage>; 8] = [
+        ("candidate", true, &|x| match x.rank {
+            0 => Cell::words(""),
+            rank => Cell::number(rank as f64, format!("#{rank}")),
+        }),
+        ("the curve can be", false, &|x| Cell::words(ability(x))),
+        ("type", false, &|x| Cell::words(x.linkage_type.name())),
+        ("defects", false, &|x| Cell::words(defects(x))),
+        ("transmission", true, &|x| Cell::degrees(x.transmission_worst_deg)),
+        ("link ratio", true, &|x| Cell::figure(x.link_ratio, 3)),
+        ("proved within", true, &|x| match x.certified {
+            None => Cell::words("no proof"),
+            Some(proof) => Cell::number(proof.radius, format!("{}{unit}", significant(proof.radius, 1))),
+        }),
+        ("verdict", false, &|x| Cell::verdict(verdict(x), x.accepted)),
     ];
-    let shown = linkages.iter().take(MOST_EXACT).enumerate();
-    let rows = shown.map(|(i, linkage)| Row {
-        key: Some(format!("x{}", i + 1)),
-        name: Cell::number((i + 1) as f64, (i + 1).to_string()),
-        cells: cells(linkage, &unit),
-    });
-    scrolling("Exact linkages", "sortable wide tight", &columns, rows)
+    let shown = linkages.iter().take(MOST_EXACT).zip(1..);
+    let rows = shown.map(|(x, i)| (Some(format!("x{i}")), Cell::number(f64::from(i), i.to_string()), x));
+    tabulated(("Exact linkages", "sortable wide tight"), ("#", true), &columns, rows)
 }
 
 fn notes(linkages: usize) -> String {
@@ -56,28 +57,10 @@ fn notes(linkages: usize) -> String {
     notes
 }
 
-fn cells(linkage: &ExactLinkage, unit: &str) -> Vec<Cell> {
-    let others = others(linkage);
-    let verdict = match (linkage.accepted, others.as_slice()) {
+fn verdict(linkage: &ExactLinkage) -> String {
+    match (linkage.accepted, others(linkage).as_slice()) {
         (true, _) => "accepted".to_owned(),
         (false, []) => "no".to_owned(),
         (false, list) => format!("no: {}", list[..list.len().min(3)].join(", ")),
-    };
-    let rank = match linkage.rank {
-        0 => Cell::words(""),
-        rank => Cell::number(rank as f64, format!("#{rank}")),
-    };
-    let radius = linkage.certified.map_or(Cell::words("no proof"), |c| {
-        Cell::number(c.radius, format!("{}{unit}", significant(c.radius, 1)))
-    });
-    vec![
-        rank,
-        Cell::words(ability(linkage)),
-        Cell::words(linkage.linkage_type.name()),
-        Cell::words(defects(linkage)),
-        Cell::degrees(linkage.transmission_worst_deg),
-        Cell::figure(linkage.link_ratio, 3),
-        radius,
-        Cell::verdict(verdict, linkage.accepted),
-    ]
+    }
 }

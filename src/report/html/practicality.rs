@@ -2,10 +2,10 @@
 
 use super::Extent;
 use super::page::{list, paragraph, section};
-use super::table::{Cell, Row, scrolling};
+use super::table::{Cell, Column, scrolling, tabulated};
 use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::sensitivity::Sensitivity;
-use crate::judge::practicality::{Build, Practicality, millimetre, usual_tolerance};
+use crate::judge::practicality::{Build, Practicality, usual_tolerance};
 use crate::record::{Candidate, Record};
 use crate::report::Colour;
 use crate::report::practicality::{Words, degrees, held, objection, shift};
@@ -41,7 +41,7 @@ const NOTES: &str = "linkwright build RESULT says the same of other candidates, 
 
 fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> {
     let unit = record.problem.unit;
-    let hole = Build::usual_hole(&c.linkage, unit.map(millimetre));
+    let hole = Build::usual_hole(&c.linkage, unit);
     let found = Practicality::of_candidate(problem, c, Build::new(hole, hole))?;
     let words = Words { unit, colour: Colour::Never };
     let title = match c.rank {
@@ -66,21 +66,20 @@ fn subject(record: &Record, problem: &Problem, c: &Candidate) -> Option<Markup> 
 
 /// Returns the table of the least distances between joints.
 fn joints(distances: &[PivotDistance], hole: f64) -> Markup {
-    let rows = distances.iter().filter(|d| !d.fixed).map(|d| Row {
-        key: None,
-        name: Cell::words(d.between.join("-")),
-        cells: vec![
-            Cell::figure(d.closest.value, DIGITS),
-            Cell::number(d.closest.crank_angle.to_degrees(), degrees(d.closest.crank_angle)),
-            match objection(d, hole) {
-                "" => Cell::words(""),
-                note => Cell::verdict(note, false),
-            },
-        ],
-    });
-    let columns = [("joints", false), ("least distance", true), ("at crank", true), ("", false)];
+    let columns: [Column<&PivotDistance>; 3] = [
+        ("least distance", true, &|d| Cell::figure(d.closest.value, DIGITS)),
+        ("at crank", true, &|d| {
+            Cell::number(d.closest.crank_angle.to_degrees(), degrees(d.closest.crank_angle))
+        }),
+        ("", false, &|d| match objection(d, hole) {
+            "" => Cell::words(""),
+            note => Cell::verdict(note, false),
+        }),
+    ];
+    let moving = distances.iter().filter(|d| !d.fixed);
+    let rows = moving.map(|d| (None, Cell::words(d.between.join("-")), d));
     html! {
-        (scrolling("Least distances of joints", "tight", &columns, rows))
+        (tabulated(("Least distances of joints", "tight"), ("joints", false), &columns, rows))
         (paragraph("notes", &held(distances)))
     }
 }

@@ -53,23 +53,28 @@ impl Render for Cell {
     }
 }
 
-/// A row: the key of the mechanism that it shows, if there is one, its name and its cells.
-pub(super) struct Row {
-    pub(super) key: Option<String>,
-    pub(super) name: Cell,
-    pub(super) cells: Vec<Cell>,
-}
+/// A column: its heading, whether it holds numbers, which are right-aligned, and the cell of a row.
+pub(super) type Column<'a, T> = (&'a str, bool, &'a dyn Fn(&T) -> Cell);
 
-impl Render for Row {
-    fn render(&self) -> Markup {
-        let Cell { text, value, class } = &self.name;
+/// Returns a table in a region that scrolls. `first` is the heading of the first column; a row begins with the key of
+/// the mechanism that it shows, if there is one, and its name.
+pub(super) fn tabulated<T>(
+    (name, class): (&str, &str),
+    first: (&str, bool),
+    columns: &[Column<T>],
+    rows: impl IntoIterator<Item = (Option<String>, Cell, T)>,
+) -> Markup {
+    let heads: Vec<_> =
+        std::iter::once(first).chain(columns.iter().map(|column| (column.0, column.1))).collect();
+    let rows = rows.into_iter().map(|(key, Cell { text, value, class }, of)| {
         html! {
-            tr data-key=[&self.key] {
+            tr data-key=[key] {
                 th scope="row" class=[class] data-v=[value.map(|v| format!("{v:?}"))] { (text) }
-                @for cell in &self.cells { (cell) }
+                @for (_, _, cell) in columns { (cell(&of)) }
             }
         }
-    }
+    });
+    scrolling(name, class, &heads, rows)
 }
 
 /// Returns the text with a true minus sign.
@@ -109,31 +114,34 @@ pub(super) fn candidates(record: &Record) -> Markup {
     }
     let measure = record.problem.resolved.measure();
     let ranks = words::minimised(measure);
-    let columns = [
-        ("#", true),
-        ("rms error", true),
-        ("largest", true),
-        (if measure == Measure::LargestPart { "deviation at point" } else { "at point" }, true),
-        (ranks.map_or("sum of squares", |(head, _)| head), true),
-        ("to curve", true),
-        ("type", false),
-        ("transmission", true),
-        ("over", false),
-        ("link ratio", true),
-        ("longest link", true),
-        ("defects", false),
-        ("verdict", false),
+    let worst_at = |c: &&Candidate| crate::report::table::worst_at(record, c);
+    let columns: [Column<&Candidate>; 12] = [
+        ("rms error", true, &|c| Cell::figure(c.error.rms, 4)),
+        ("largest", true, &|c| Cell::figure(c.error.max, 4)),
+        (if measure == Measure::LargestPart { "deviation at point" } else { "at point" }, true, &|c| {
+            Cell::number(worst_at(c) as f64, worst_at(c).to_string())
+        }),
+        (ranks.map_or("sum of squares", |(head, _)| head), true, &|c| {
+            Cell::figure(if measure == Measure::Sum { c.error.sum_sq } else { c.error.objective }, 5)
+        }),
+        ("to curve", true, &|c| Cell::figure(c.error.to_curve.rms, 4)),
+        ("type", false, &|c| Cell::words(c.linkage_type.name())),
+        ("transmission", true, &|c| Cell::degrees(c.transmission_deg.worst)),
+        ("over", false, &|c| Cell::words(over(c.transmission_deg.over))),
+        ("link ratio", true, &|c| Cell::figure(c.link_ratio, 3)),
+        ("longest link", true, &|c| Cell::figure(c.linkage.longest_link(), 4)),
+        ("defects", false, &|c| Cell::words(defects(c))),
+        ("verdict", false, &|c| Cell::verdict(verdict(record, c), c.accepted)),
     ];
     let ranked =
         record.candidates.iter().enumerate().map(|(i, c)| (c, candidate_key(i), (i + 1).to_string()));
     // After all others when sorted by rank.
     let buildable = record.buildable.as_ref().filter(|c| c.rank == 0);
     let buildable = buildable.map(|c| (c, BUILDABLE_KEY.to_owned(), "buildable".to_owned()));
-    let rows = ranked.chain(buildable).enumerate().map(|(i, (c, key, name))| Row {
-        key: Some(key),
-        name: Cell::number(i as f64 + 1.0, name),
-        cells: cells(record, c),
-    });
+    let rows = ranked
+        .chain(buildable)
+        .enumerate()
+        .map(|(i, (c, key, name))| (Some(key), Cell::number(i as f64 + 1.0, name), c));
     let lengths = match words::unit_suffix(record).trim() {
         "" => String::new(),
         "in" => "Lengths in inches. ".to_owned(),
@@ -144,36 +152,24 @@ pub(super) fn candidates(record: &Record) -> Markup {
                  90°, over the crank's full turn or the part used. link ratio: longest to shortest link. Points count from 0.";
     let said = words::fewer(record).into_iter().chain(crate::report::beside::mirrored(record));
     let inside = html! {
-        (scrolling("Candidates", "candidates wide tight", &columns, rows))
+        (tabulated(("Candidates", "candidates wide tight"), ("#", true), &columns, rows))
         (paragraph("notes", &format!("{lengths}{first}{notes}")))
         @for sentence in said { (paragraph("notes", &sentence)) }
     };
     section("candidates", "Candidates side by side", inside)
 }
 
-fn cells(record: &Record, c: &Candidate) -> Vec<Cell> {
-    let plain = record.problem.resolved.measure() == Measure::Sum;
-    let objective = if plain { c.error.sum_sq } else { c.error.objective };
-    let worst_at = crate::report::table::worst_at(record, c);
-    let over = match c.transmission_deg.over {
+fn over(over: TransmissionOver) -> &'static str {
+    match over {
         TransmissionOver::Cycle => "full turn",
         TransmissionOver::Used => "part used",
-    };
-    let defects = if c.defects.is_empty() { "none".to_owned() } else { words::defect_names(c) };
-    let verdict =
-        if c.accepted { "accepted".to_owned() } else { words::verdict(record, c).replacen("no:", "not:", 1) };
-    vec![
-        Cell::figure(c.error.rms, 4),
-        Cell::figure(c.error.max, 4),
-        Cell::number(worst_at as f64, worst_at.to_string()),
-        Cell::figure(objective, 5),
-        Cell::figure(c.error.to_curve.rms, 4),
-        Cell::words(c.linkage_type.name()),
-        Cell::degrees(c.transmission_deg.worst),
-        Cell::words(over),
-        Cell::figure(c.link_ratio, 3),
-        Cell::figure(c.linkage.longest_link(), 4),
-        Cell::words(defects),
-        Cell::verdict(verdict, c.accepted),
-    ]
+    }
+}
+
+fn defects(c: &Candidate) -> String {
+    if c.defects.is_empty() { "none".to_owned() } else { words::defect_names(c) }
+}
+
+fn verdict(record: &Record, c: &Candidate) -> String {
+    if c.accepted { "accepted".to_owned() } else { words::verdict(record, c).replacen("no:", "not:", 1) }
 }

@@ -2,6 +2,7 @@
 
 pub mod records;
 
+use crate::corpora::readers::entry;
 use linkwright::internals::mechanism::AssemblyMode;
 use linkwright::internals::mechanism::Unit;
 use linkwright::internals::record::{
@@ -24,8 +25,7 @@ fn all_records() -> Vec<Record> {
 
 /// Everything that is made of a record, as text.
 fn everything(record: &Record) -> Vec<(&'static str, String)> {
-    let entries: Vec<Entry> =
-        (0..3).filter_map(|i| Entry::from_record(&record.problem.name, record, i)).collect();
+    let entries: Vec<Entry> = (0..3).filter_map(|i| entry(&record.problem.name, record, i)).collect();
     let comparison = compare(&entries, &[SortKey::Max], None);
     let name = record.problem.name.as_str();
     let files = [BatchRow { name, outcome: Ok(record) }, BatchRow { name, outcome: Err(name) }];
@@ -473,8 +473,7 @@ fn the_curve_csv_gives_positions_of_the_linkage_to_the_last_digit() {
 #[test]
 fn a_comparison_ranks_by_its_key() {
     let record = k18();
-    let entries: Vec<Entry> =
-        (0..4).filter_map(|i| Entry::from_record(&format!("k18:{}", i + 1), &record, i)).collect();
+    let entries: Vec<Entry> = (0..4).filter_map(|i| entry(&format!("k18:{}", i + 1), &record, i)).collect();
     let labels = |key| {
         compare(&entries, &[key], None)
             .rows
@@ -491,27 +490,25 @@ fn a_comparison_ranks_by_its_key() {
     assert_eq!(by_sum.rows[1].behind_percent, Some(100.0 * (second - best) / best));
     assert!(by_sum.same_target() && by_sum.same_unit());
     assert_eq!(table_of(&by_sum.csv()).1[2]["label"], "k18:3");
-    assert!(Entry::from_record("none", &record, 4).is_none());
+    assert!(entry("none", &record, 4).is_none());
 }
 
 #[test]
 fn equal_figures_share_a_rank_and_missing_ones_come_last() {
     let record = k18();
-    let mut entries: Vec<Entry> =
-        [0, 0, 1].iter().filter_map(|i| Entry::from_record("x", &record, *i)).collect();
+    let mut entries: Vec<Entry> = [0, 0, 1].iter().filter_map(|i| entry("x", &record, *i)).collect();
     entries[0].candidate.error.rms = f64::NAN;
     entries.push(entries[1].clone());
     let rows = compare(&entries, &[SortKey::Rms], None).rows;
     assert_eq!(rows.iter().map(|row| row.rank).collect::<Vec<_>>(), [1, 1, 3, 4]);
-    assert_eq!((rows[3].figure, rows[3].behind_percent), (None, None));
+    assert_eq!((rows[3].figure_of(SortKey::Rms), rows[3].behind_percent), (None, None));
 }
 
 #[test]
 fn different_targets_and_units_are_said_to_differ() {
     let mut other = ellipse();
     other.problem.unit = Some(Unit::In);
-    let entries: Vec<Entry> =
-        [k18(), other].iter().filter_map(|record| Entry::from_record("x", record, 0)).collect();
+    let entries: Vec<Entry> = [k18(), other].iter().filter_map(|record| entry("x", record, 0)).collect();
     let text = compare(&entries, &[SortKey::default()], None).table(Colour::Never);
     assert!(text.contains("The targets differ") && text.contains("The units differ"), "{text}");
 }

@@ -5,7 +5,7 @@
 //! file that has no name any more, while a third creates a new one. So a lock counts only if the locked file is the one
 //! that the path leads to, and only that file is removed.
 
-use super::{FolderError, LOCK};
+use super::{FolderError, LOCK, about};
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -28,15 +28,15 @@ impl Lock {
         let path = folder.join(LOCK);
         for _ in 0..TRIES {
             let opened = File::options().create(true).truncate(false).write(true).open(&path);
-            let file = opened.map_err(|e| FolderError::io(&path, e))?;
+            let file = opened.map_err(about(&path))?;
             match file.try_lock() {
                 Ok(()) if stands_at(&file, &path) => return Ok(Lock { path, file }),
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => break,
-                Err(TryLockError::Error(e)) => return Err(FolderError::io(&path, e)),
+                Err(TryLockError::Error(e)) => return Err(about(&path)(e)),
             }
         }
-        Err(FolderError::Locked { path: folder.display().to_string() })
+        Err(FolderError::Locked(folder.display().to_string()))
     }
 
     /// Returns whether another run has the folder now.

@@ -19,7 +19,7 @@ pub use output_file::{OutputFile, Replace, check_files, write_files};
 pub use together::put_together;
 
 use lock::Lock;
-use replacement::{Failure, Wait};
+use replacement::Wait;
 
 const LOCK: &str = ".lock";
 /// The name of the file with the record.
@@ -48,11 +48,8 @@ pub enum FolderError {
         source: io::Error,
     },
     /// The path of the results folder leads to a file.
-    #[error("{path} is a file; give a folder for the results with --out")]
-    NotAFolder {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is a file; give a folder for the results with --out")]
+    NotAFolder(String),
     /// The folder contains something that linkwright did not write.
     #[error(
         "{path} holds {foreign}, which linkwright did not write; give another folder with --out or move it away"
@@ -74,35 +71,20 @@ pub enum FolderError {
         kind: &'static str,
     },
     /// A file that a person named for writing is also read by the same command.
-    #[error("{path} is an input of this command; name another file, or replace it with --force")]
-    OwnInput {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is an input of this command; name another file, or replace it with --force")]
+    OwnInput(String),
     /// A file that is to be created exists already.
-    #[error("{path} exists already; choose another name, or replace it with --force")]
-    Exists {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} exists already; choose another name, or replace it with --force")]
+    Exists(String),
     /// Two files were to be written to one path.
-    #[error("{path} is named twice: each file needs a place of its own")]
-    NamedTwice {
-        /// The path of the file.
-        path: String,
-    },
+    #[error("{0} is named twice: each file needs a place of its own")]
+    NamedTwice(String),
     /// Another run uses the folder.
-    #[error("{path} is in use by another run; wait for it to end or give another folder with --out")]
-    Locked {
-        /// The path of the folder.
-        path: String,
-    },
+    #[error("{0} is in use by another run; wait for it to end or give another folder with --out")]
+    Locked(String),
     /// The folder holds no record.
-    #[error("{path}: there is no such record; name the folder of a result, such as results/my-path")]
-    NoRecord {
-        /// The path of the file that was looked for.
-        path: String,
-    },
+    #[error("{0}: there is no such record; name the folder of a result, such as results/my-path")]
+    NoRecord(String),
     /// The file is not a valid record.
     #[error("{path}:{line}:{column}: this is not a linkwright record: {message}")]
     NotARecord {
@@ -153,17 +135,9 @@ fn remedy(error: &io::Error) -> &'static str {
     }
 }
 
-impl FolderError {
-    /// Returns the error for a failure of the system (a full disk, a read-only folder).
-    fn io(path: &Path, source: io::Error) -> Self {
-        FolderError::Io { path: path.display().to_string(), source }
-    }
-}
-
-impl From<Failure> for FolderError {
-    fn from((path, source): Failure) -> Self {
-        FolderError::io(&path, source)
-    }
+/// Returns the error for a failure of the system (a full disk, a read-only folder) at a path.
+fn about(path: &Path) -> impl FnOnce(io::Error) -> FolderError + '_ {
+    move |source| FolderError::Io { path: path.display().to_string(), source }
 }
 
 /// A results folder that is locked for this run until it is dropped.
@@ -261,26 +235,21 @@ impl ResultsFolder {
         let shown = || path.display().to_string();
         let created = match fs::metadata(path) {
             Ok(found) if found.is_dir() => Vec::new(),
-            Ok(_) => return Err(FolderError::NotAFolder { path: shown() }),
+            Ok(_) => return Err(FolderError::NotAFolder(shown())),
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
                 let missing = path.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists());
                 let missing: Vec<PathBuf> = missing.map(Path::to_path_buf).collect();
-                disk::create_folders(path).map_err(|e| FolderError::io(path, e))?;
+                disk::create_folders(path).map_err(about(path))?;
                 missing
             }
-            Err(e) => return Err(FolderError::io(path, e)),
+            Err(e) => return Err(about(path)(e)),
         };
-        let mut names = Vec::new();
-        for entry in fs::read_dir(path).map_err(|e| FolderError::io(path, e))? {
-            let entry = entry.map_err(|e| FolderError::io(path, e))?;
-            names.push(entry.file_name().to_string_lossy().into_owned());
-        }
-        names.sort();
+        let names = replacement::names(path)?;
         if let Some(foreign) = foreign(path, &names) {
             // Half of another run's result, while it is moved to its place, looks foreign too.
             let in_use = Lock::is_taken(path);
             return Err(if in_use {
-                FolderError::Locked { path: shown() }
+                FolderError::Locked(shown())
             } else {
                 FolderError::Foreign { path: shown(), foreign }
             });
@@ -315,7 +284,7 @@ impl ResultsFolder {
     pub fn remove_checkpoint(&self) -> Result<(), FolderError> {
         let path = self.path.join(CHECKPOINT);
         match fs::remove_file(&path) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(FolderError::io(&path, e)),
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(about(&path)(e)),
             _ => Ok(()),
         }
     }
@@ -339,19 +308,19 @@ impl ResultsFolder {
     /// As [`ResultsFolder::replace`].
     pub fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
         if !self.lock.stands() {
-            disk::create_folders(&self.path).map_err(|e| FolderError::io(&self.path, e))?;
+            disk::create_folders(&self.path).map_err(about(&self.path))?;
             self.lock = Lock::take(&self.path)?;
         }
-        Ok(replacement::write(&self.path, files, self.kept())?)
+        replacement::write(&self.path, files, self.kept())
     }
 
     fn sync(&self) -> Result<(), FolderError> {
-        Ok(replacement::sync(&self.path)?)
+        replacement::sync(&self.path)
     }
 
     /// Waits until the names in the folder are on the disk.
     fn sync_names(&self) -> Result<(), FolderError> {
-        disk::sync_folder(&self.path).map_err(|e| FolderError::io(&self.path, e))
+        disk::sync_folder(&self.path).map_err(about(&self.path))
     }
 
     fn put(&mut self, names: Wait) -> Result<(), FolderError> {
@@ -373,7 +342,7 @@ impl ResultsFolder {
 /// [`FolderError::Io`] with the file; the old file is kept.
 pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
     let target = folder.join(name);
-    output_file::over(&target, bytes).map_err(|e| FolderError::io(&target, e))
+    output_file::over(&target, bytes).map_err(about(&target))
 }
 
 /// Saves the files of a result that cannot be written to its folder in a new folder among the system's temporary files.
@@ -383,7 +352,7 @@ pub fn replace_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Folde
 pub fn rescue(files: &[(String, Vec<u8>)]) -> Result<PathBuf, FolderError> {
     let place = std::env::temp_dir();
     let folder = tempfile::Builder::new().prefix("linkwright-rescued-").tempdir_in(&place);
-    let folder = folder.map_err(|e| FolderError::io(&place, e))?;
+    let folder = folder.map_err(about(&place))?;
     for (name, bytes) in files {
         replace_file(folder.path(), name, bytes)?;
     }
@@ -420,18 +389,16 @@ pub fn read_record(path: &Path) -> Result<Record, FolderError> {
 
 fn read_record_file(file: &Path) -> Result<Record, FolderError> {
     let path = file.display().to_string();
-    let bytes = match fs::metadata(file) {
-        Ok(metadata) => metadata.len(),
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Err(FolderError::NoRecord { path }),
-        Err(e) => return Err(FolderError::io(file, e)),
-    };
-    if bytes > MAX_RECORD_BYTES {
-        return Err(FolderError::TooLarge { path, bytes });
+    match read_at_most(file, MAX_RECORD_BYTES) {
+        Ok(Some(text)) => parse_record(&path, &text),
+        Ok(None) => {
+            // A pipe states no length.
+            let stated = fs::metadata(file).map_or(0, |found| found.len());
+            Err(FolderError::TooLarge { path, bytes: stated.max(MAX_RECORD_BYTES + 1) })
+        }
+        Err(e) if e.kind() == io::ErrorKind::NotFound => Err(FolderError::NoRecord(path)),
+        Err(e) => Err(about(file)(e)),
     }
-    let text = read_at_most(file, MAX_RECORD_BYTES).map_err(|e| FolderError::io(file, e))?;
-    let text =
-        text.ok_or_else(|| FolderError::TooLarge { path: path.clone(), bytes: MAX_RECORD_BYTES + 1 })?;
-    parse_record(&path, &text)
 }
 
 /// Reads a file of at most `most` bytes; `None` if it has more. A pipe or a device states no length, so bytes are counted

@@ -1,6 +1,6 @@
 //! Output files that a person named, each written as a whole or not at all.
 
-use super::{FolderError, TEMPORARY, disk};
+use super::{FolderError, TEMPORARY, about, disk};
 use crate::files::generator;
 use crate::files::generator::FileKind;
 use std::fs::{self, File};
@@ -42,7 +42,7 @@ pub fn check_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
         let there = may_replace(file, replace)?;
         // A stream may be written to twice.
         if there != There::Stream && files[..i].iter().any(|other| is_same(other.path, file.path)) {
-            return Err(FolderError::NamedTwice { path: file.path.display().to_string() });
+            return Err(FolderError::NamedTwice(file.path.display().to_string()));
         }
     }
     Ok(())
@@ -60,9 +60,8 @@ pub fn write_files(files: &[OutputFile<'_>], replace: Replace<'_>) -> Result<(),
     let mut made = Vec::new();
     for file in files {
         // Checked once more: another program may have written it in between.
-        let written = may_replace(file, replace).and_then(|there| {
-            write(file, there, replace).map_err(|e| FolderError::io(file.path, e)).map(|()| there)
-        });
+        let written = may_replace(file, replace)
+            .and_then(|there| write(file, there, replace).map_err(about(file.path)).map(|()| there));
         match written {
             Ok(There::Nothing) => made.push(file.path),
             Ok(_) => {}
@@ -95,21 +94,21 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     let shown = || file.path.display().to_string();
     let found = match fs::metadata(file.path) {
         Ok(found) if found.is_dir() => {
-            return Err(FolderError::io(file.path, io::ErrorKind::IsADirectory.into()));
+            return Err(about(file.path)(io::ErrorKind::IsADirectory.into()));
         }
         Ok(found) if !found.is_file() => return Ok(There::Stream),
         Ok(found) => found,
         // A link to nothing is noticed when a new file is to take its name.
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(There::Nothing),
-        Err(e) => return Err(FolderError::io(file.path, e)),
+        Err(e) => return Err(about(file.path)(e)),
     };
     let inputs = match replace {
         Replace::Anything => return Ok(There::File),
-        Replace::Nothing => return Err(FolderError::Exists { path: shown() }),
+        Replace::Nothing => return Err(FolderError::Exists(shown())),
         Replace::Ours(inputs) => inputs,
     };
     if inputs.iter().any(|input| is_same(input, file.path)) {
-        return Err(FolderError::OwnInput { path: shown() });
+        return Err(FolderError::OwnInput(shown()));
     }
     // An empty file holds nothing that could be lost.
     if found.len() == 0 {
@@ -117,21 +116,23 @@ fn may_replace(file: &OutputFile<'_>, replace: Replace<'_>) -> Result<There, Fol
     }
     let mut existing = Vec::new();
     let read = File::open(file.path).and_then(|f| f.take(generator::MAX_BYTES).read_to_end(&mut existing));
-    read.map_err(|e| FolderError::io(file.path, e))?;
+    read.map_err(about(file.path))?;
     if file.kind.is_written_by_us(&existing, file.bytes) {
         return Ok(There::File);
     }
     Err(FolderError::NotOurs { path: shown(), kind: file.kind.described() })
 }
 
+/// Returns the folder in which a path lies.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Returns whether two paths lead to one file, which need not exist yet.
 fn is_same(one: &Path, other: &Path) -> bool {
     let real = |path: &Path| {
-        path.canonicalize().ok().or_else(|| {
-            let folder =
-                path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            Some(folder.canonicalize().ok()?.join(path.file_name()?))
-        })
+        let there = path.canonicalize().ok();
+        there.or_else(|| Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?)))
     };
     match (real(one), real(other)) {
         (Some(one), Some(other)) => one == other,
@@ -170,7 +171,6 @@ pub(super) fn over(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// Creates a temporary file beside a path, with these bytes.
 fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY);
     #[cfg(unix)]
@@ -179,7 +179,7 @@ fn temporary(path: &Path, bytes: &[u8]) -> io::Result<NamedTempFile> {
         // Readable like any new file: the permissions that the user's mask allows.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder_of(path))?;
     disk::fill(file.as_file_mut(), bytes)?;
     disk::sync(file.as_file())?;
     Ok(file)

@@ -8,7 +8,7 @@
 //!
 //! The next run that takes the folder completes the replacement in the last two cases.
 
-use super::{TEMPORARY, disk, is_ours};
+use super::{FolderError, TEMPORARY, about, disk, is_ours};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,20 +17,12 @@ const NEW: &str = ".linkwright-new";
 const WHOLE: &str = ".linkwright-whole";
 const MOVING: &str = ".linkwright-moving";
 
-/// An error and the path that it is about.
-pub(super) type Failure = (PathBuf, io::Error);
-
-fn about(path: &Path) -> impl FnOnce(io::Error) -> Failure + use<> {
-    let path = path.to_path_buf();
-    move |error| (path, error)
-}
-
 /// Writes `files` beside the contents of the folder, after completing an earlier interrupted replacement. The files
 /// need not be on the disk yet when this returns.
 ///
 /// # Errors
 /// The file that could not be written; the old result is kept.
-pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -> Result<(), Failure> {
+pub(super) fn write(folder: &Path, files: &[(String, Vec<u8>)], kept: &[&str]) -> Result<(), FolderError> {
     if [NEW, WHOLE, MOVING].iter().any(|name| is_folder(&folder.join(name))) {
         finish(folder, kept)?;
     }
@@ -59,7 +51,7 @@ pub(super) enum Wait {
 ///
 /// # Errors
 /// The file for which that failed; the old result is kept.
-pub(super) fn sync(folder: &Path) -> Result<(), Failure> {
+pub(super) fn sync(folder: &Path) -> Result<(), FolderError> {
     let new = folder.join(NEW);
     let synced = || {
         for name in names(&new)? {
@@ -75,7 +67,7 @@ pub(super) fn sync(folder: &Path) -> Result<(), Failure> {
 /// # Errors
 /// The old result is kept; or a file could not be moved, and the next run that takes the folder completes the
 /// replacement.
-pub(super) fn put(folder: &Path, kept: &[&str], names: Wait) -> Result<(), Failure> {
+pub(super) fn put(folder: &Path, kept: &[&str], names: Wait) -> Result<(), FolderError> {
     let whole = folder.join(WHOLE);
     disk::rename(&folder.join(NEW), &whole).map_err(about(&whole)).inspect_err(|_| forget(folder))?;
     move_in(folder, kept, names)
@@ -93,18 +85,18 @@ fn forget(folder: &Path) {
 ///
 /// # Errors
 /// The path that could not be moved or removed.
-pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), Failure> {
+pub(super) fn finish(folder: &Path, kept: &[&str]) -> Result<(), FolderError> {
     move_in(folder, kept, Wait::Now)?;
     take_away(folder, |name| !name.starts_with(TEMPORARY))
 }
 
 /// Completes a replacement whose files are all written.
-fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), Failure> {
+fn move_in(folder: &Path, kept: &[&str], wait: Wait) -> Result<(), FolderError> {
     let (whole, moving) = (folder.join(WHOLE), folder.join(MOVING));
     for name in [WHOLE, MOVING] {
         if let Some(foreign) = not_of_ours(folder, name) {
             let why = format!("{foreign} is not of linkwright's");
-            return Err((folder.join(name), io::Error::new(io::ErrorKind::AlreadyExists, why)));
+            return Err(about(&folder.join(name))(io::Error::new(io::ErrorKind::AlreadyExists, why)));
         }
     }
     if is_folder(&whole) {
@@ -174,7 +166,7 @@ fn is_file(path: &Path) -> bool {
 }
 
 /// Returns the names in a folder, sorted.
-pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
+pub(super) fn names(folder: &Path) -> Result<Vec<String>, FolderError> {
     let listed = fs::read_dir(folder).and_then(|entries| {
         entries.map(|entry| entry.map(|e| e.file_name().to_string_lossy().into_owned())).collect()
     });
@@ -184,7 +176,7 @@ pub(super) fn names(folder: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// Removes the files that runs write, except for those that `stays` keeps.
-fn take_away(folder: &Path, stays: impl Fn(&str) -> bool) -> Result<(), Failure> {
+fn take_away(folder: &Path, stays: impl Fn(&str) -> bool) -> Result<(), FolderError> {
     for name in names(folder)?.iter().filter(|name| is_ours(name) && !stays(name)) {
         let path = folder.join(name);
         // It was put there after the folder was checked: it is kept, and if it is in the way of a new file, an error

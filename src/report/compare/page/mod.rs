@@ -10,12 +10,36 @@ use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
 use crate::report::csv::PARAMETERS;
 use crate::report::html::page::Page;
-use crate::report::text::{NO_NUMBER, brief, clean, exact, significant};
+use crate::report::text::{brief, clean, exact};
 use crate::report::words::{defect_names, length_suffix};
 use maud::{Markup, PreEscaped, html};
 
-/// The heading of a column: its text, and a longer text for screen readers if there is one.
-type Head<'a> = (&'a str, Option<&'static str>);
+/// A function that returns the cell of a row, which is given with its place.
+type CellOf<'a> = dyn Fn(usize, &Ranked) -> Cell + 'a;
+
+/// A column of a table that can be sorted.
+struct Column<'a> {
+    head: &'a str,
+    /// A longer heading for screen readers.
+    said: Option<&'a str>,
+    cell: Box<CellOf<'a>>,
+}
+
+impl<'a> Column<'a> {
+    fn new(head: &'a str, cell: impl Fn(usize, &Ranked) -> Cell + 'a) -> Self {
+        Column { head, said: None, cell: Box::new(cell) }
+    }
+
+    /// Returns a column with a figure.
+    fn figure(head: &'a str, key: SortKey, digits: usize) -> Self {
+        Column::new(head, move |_, row| Cell::of(row.figure_of(key), tables::shown(row, key, digits)))
+    }
+
+    /// Returns the column with a longer heading for screen readers.
+    fn said(self, said: &'a str) -> Self {
+        Column { said: Some(said), ..self }
+    }
+}
 
 impl Comparison {
     /// Returns the page. Labels and names are plain text in it, whatever characters they contain.
@@ -112,29 +136,33 @@ impl Comparison {
     }
 
     fn figure_section(&self) -> Markup {
-        let unit =
-            length_suffix(self.rows.first().and_then(|row| row.entry.unit).filter(|_| self.same_unit()));
-        let unit = if unit.is_empty() { String::new() } else { format!(" Lengths are in{unit}.") };
+        let unit = length_suffix(self.unit());
+        let unit = if unit.is_empty() { unit } else { format!(" Lengths are in{unit}.") };
         let front = self.front_words().map_or(String::new(), |words| format!("★ {words}."));
         let ranks: Vec<String> = match self.keys.as_slice() {
             [_] => Vec::new(),
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
-        let mut heads: Vec<Head> = vec![
-            ("behind", Some("behind the best, per cent")),
-            (self.sum_head(), None),
-            ("rms", None),
-            ("max", None),
-            ("at", Some("at which point")),
-            ("to curve", None),
-            ("transm.", Some("worst transmission angle")),
+        let mut columns = vec![
+            Column::new("behind", |_, row| Cell::of(row.behind_percent, tables::behind(row)))
+                .said("behind the best, per cent"),
+            Column::figure(self.sum_head(), self.first_figure(), 4),
+            Column::figure("rms", SortKey::Rms, 4),
+            Column::figure("max", SortKey::Max, 4),
+            Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said("at which point"),
+            Column::figure("to curve", SortKey::ToCurve, 4),
+            Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
+            Column::figure("link ratio", SortKey::LinkRatio, 3),
+            Column::figure("size", SortKey::Size, 4),
+            Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name())),
+            Column::new("accepted", |_, row| Cell::word(&verdict(&row.entry.candidate))),
         ];
-        heads.extend(plain_heads(&["link ratio", "size", "type", "accepted"]));
-        heads.extend(ranks.iter().map(|rank| (rank.as_str(), None)));
+        let rank = |(k, head)| Column::new(head, move |_, row| Cell::whole(row.ranks[k]));
+        columns.extend(ranks.iter().map(String::as_str).enumerate().map(rank));
         html! {
             section id="figures" {
                 h2 { "Figures" }
-                (self.sorted("Figures", &heads, |_, row| self.figure_cells(row)))
+                (self.sorted("Figures", &columns))
                 p.sub { (front) (unit) }
             }
         }
@@ -142,40 +170,39 @@ impl Comparison {
 
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
-        let heads =
-            plain_heads(&[self.sum_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"]);
-        let cells = |i: usize, row: &Ranked| {
-            let is_reference = self.reference == Some(i);
-            let cells = self.shown_figures().map(|key| {
+        let heads = [self.sum_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"];
+        let column = |(head, key): (_, SortKey)| {
+            Column::new(head, move |place, row| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();
-                let shown =
-                    if is_reference { "reference".to_owned() } else { tables::signed_percent(percent) };
-                Cell::of(percent, shown)
-            });
-            cells.into()
+                let is_reference = self.reference == Some(place);
+                let shown = || tables::signed_percent(percent);
+                Cell::of(percent, if is_reference { "reference".to_owned() } else { shown() })
+            })
         };
+        let columns: Vec<Column> = heads.into_iter().zip(self.shown_figures()).map(column).collect();
         Some(html! {
             section id="differences" {
                 h2 { "Above " (clean(reference)) ", per cent of it" }
-                (self.sorted("Differences", &heads, cells))
+                (self.sorted("Differences", &columns))
                 p.sub { "Where the reference's figure is 0 there is no percentage of it." }
             }
         })
     }
 
     fn parameter_section(&self) -> Markup {
-        let mut heads = plain_heads(&["type"]);
-        heads.extend(PARAMETERS.map(|(name, _)| (name, None)));
-        let cells = |_: usize, row: &Ranked| {
-            let candidate = &row.entry.candidate;
-            let numbers = tables::parameters(&candidate.linkage, |x| brief(x, 6));
-            let numbers = numbers.map(|(value, shown)| Cell::of(Some(value), shown));
-            [Cell::word(candidate.linkage_type.name())].into_iter().chain(numbers).collect()
-        };
+        let mut columns =
+            vec![Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name()))];
+        columns.extend(PARAMETERS.iter().map(|parameter| {
+            Column::new(parameter.0, |_, row| {
+                let (value, shown) =
+                    tables::parameter(parameter, &row.entry.candidate.linkage, |x| brief(x, 6));
+                Cell::of(Some(value), shown)
+            })
+        }));
         html! {
             section id="parameters" {
                 h2 { "Parameters" }
-                (self.sorted("Parameters", &heads, cells))
+                (self.sorted("Parameters", &columns))
                 p.sub {
                     "A, B fixed pivots; a crank, b coupler, c follower, d and e from its pins C and D to the coupler \
                      point; t1 and t2 say on which side D and the coupler point lie."
@@ -188,46 +215,15 @@ impl Comparison {
         self.minimised().map_or("sum of squares", |(head, _)| head)
     }
 
-    fn figure_cells(&self, row: &Ranked) -> Vec<Cell> {
-        let candidate = &row.entry.candidate;
-        let number = |key, digits| {
-            let value = row.figure_of(key);
-            Cell::of(value, significant(value.unwrap_or(f64::NAN), digits))
-        };
-        let whole = |value: usize| Cell::of(Some(value as f64), value.to_string());
-        let behind = match row.behind_percent {
-            Some(0.0) => "best".to_owned(),
-            percent => tables::signed_percent(percent).trim_start_matches('+').to_owned(),
-        };
-        let angle = row.figure_of(SortKey::Transmission);
-        let shown = angle.map_or(NO_NUMBER.to_owned(), |angle| format!("{}°", significant(angle, 3)));
-        let mut cells = vec![
-            Cell::of(row.behind_percent, behind),
-            number(self.first_figure(), 4),
-            number(SortKey::Rms, 4),
-            number(SortKey::Max, 4),
-            whole(candidate.error.max_at),
-            number(SortKey::ToCurve, 4),
-            Cell::of(angle, shown),
-            number(SortKey::LinkRatio, 3),
-            number(SortKey::Size, 4),
-            Cell::word(candidate.linkage_type.name()),
-            Cell::word(&verdict(candidate)),
-        ];
-        if self.keys.len() > 1 {
-            cells.extend(row.ranks.iter().map(|rank| whole(*rank)));
-        }
-        cells
-    }
-
     /// Returns a table whose first columns are rank and label; each heading is a button that sorts.
-    fn sorted(&self, name: &str, heads: &[Head], cells: impl Fn(usize, &Ranked) -> Vec<Cell>) -> Markup {
-        let first: [Head; 2] = [("#", Some("rank")), ("linkage", None)];
+    fn sorted(&self, name: &str, columns: &[Column]) -> Markup {
+        let heads = [("#", Some("rank")), ("linkage", None)];
+        let heads = heads.into_iter().chain(columns.iter().map(|column| (column.head, column.said)));
         html! {
             div.scroll role="region" tabindex="0" aria-label={ (name) ", scrolls sideways" } {
                 table {
                     thead { tr {
-                        @for (i, (shown, said)) in first.iter().chain(heads).enumerate() {
+                        @for (i, (shown, said)) in heads.enumerate() {
                             th scope="col" aria-sort=[(i == 0).then_some("ascending")] {
                                 button type="button" title=[said] aria-label=[said] { (shown) }
                             }
@@ -243,9 +239,10 @@ impl Comparison {
                                         " " span title="the record is not true" { "⚠" }
                                     }
                                 }
-                                @for cell in cells(place, row) {
-                                    td class=[cell.word.then_some("word")] data-value=[cell.value()] {
-                                        (clean(&cell.shown))
+                                @for column in columns {
+                                    @let Cell { shown, value } = (column.cell)(place, row);
+                                    td class=[value.is_none().then_some("word")] data-value=[value] {
+                                        (clean(&shown))
                                     }
                                 }
                             }
@@ -280,27 +277,22 @@ fn verdict(candidate: &Candidate) -> String {
 /// A cell of a table.
 struct Cell {
     shown: String,
-    /// The number by which it is sorted; words by themselves, missing numbers last.
-    number: Option<f64>,
-    word: bool,
+    /// The number by which it is sorted, empty if it is missing; words (`None`) are sorted by themselves.
+    value: Option<String>,
 }
 
 impl Cell {
     fn of(number: Option<f64>, shown: String) -> Cell {
-        Cell { shown, number, word: false }
+        Cell { shown, value: Some(number.map_or(String::new(), exact)) }
+    }
+
+    fn whole(number: usize) -> Cell {
+        Cell::of(Some(number as f64), number.to_string())
     }
 
     fn word(word: &str) -> Cell {
-        Cell { shown: word.to_owned(), number: None, word: true }
+        Cell { shown: word.to_owned(), value: None }
     }
-
-    fn value(&self) -> Option<String> {
-        (!self.word).then(|| self.number.map_or(String::new(), exact))
-    }
-}
-
-fn plain_heads<'a>(heads: &[&'a str]) -> Vec<Head<'a>> {
-    heads.iter().map(|head| (*head, None)).collect()
 }
 
 fn star(row: &Ranked) -> Markup {
