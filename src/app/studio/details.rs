@@ -151,13 +151,32 @@ pub enum Form {
 
 /// A file to hand out.
 pub(super) struct Handed {
-    /// What stands after the dot of its name.
+    /// The ending of its name, after the dot.
     pub(super) ending: &'static str,
+    /// Whether it is to be saved; else it is shown.
+    pub(super) saved: bool,
     /// Its bytes.
     pub(super) bytes: Vec<u8>,
 }
 
 impl Handed {
+    /// Returns a file that is to be saved.
+    fn saved(ending: &'static str, bytes: impl Into<Vec<u8>>) -> Handed {
+        Handed { ending, saved: true, bytes: bytes.into() }
+    }
+
+    /// Returns a text that is shown.
+    pub(super) fn shown(ending: &'static str, text: String) -> Handed {
+        Handed { saved: false, ..Handed::saved(ending, text) }
+    }
+
+    /// Returns a file of a result, under the ending of its name if results have such files.
+    pub(super) fn named(name: &str, bytes: Vec<u8>) -> Handed {
+        let given = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+        let ending = ["json", "csv", "svg", "toml", "html"].into_iter().find(|ending| *ending == given);
+        Handed::saved(ending.unwrap_or("bin"), bytes)
+    }
+
     /// Its media type.
     pub(super) fn media_type(&self) -> &'static str {
         match self.ending {
@@ -332,20 +351,19 @@ impl Sources<'_> {
         }
         let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
         let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
-        let text = |ending, text: String| Ok(Handed { ending, bytes: text.into_bytes() });
-        match ask.format.as_str() {
-            "html" => text("html", html::report_html(&record, index)),
-            "sheet" => text("svg", svg::candidate_svg(&record, index)),
-            "points" => text("csv", csv::candidate_curve_csv(candidate)),
+        Ok(match ask.format.as_str() {
+            "html" => Handed::saved("html", html::report_html(&record, index)),
+            "sheet" => Handed::saved("svg", svg::candidate_svg(&record, index)),
+            "points" => Handed::saved("csv", csv::candidate_curve_csv(candidate)),
             other => {
                 let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
                 let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
                 let subject = Subject::of_candidate(&record, candidate);
                 let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
-                Ok(Handed { ending: ending_of(format), bytes })
+                Handed::saved(ending_of(format), bytes)
             }
-        }
+        })
     }
 
     /// Linkages side by side.
@@ -369,13 +387,12 @@ impl Sources<'_> {
             given.push((Path::new(""), Given::Run(Box::new(run))));
         }
         let comparison = compared(&given, None, &keys, None)?;
-        let (ending, text) = match ask.form {
-            Form::Json => ("json", comparison.json()),
-            Form::Html => ("html", comparison.html()),
-            Form::Csv => ("csv", comparison.csv()),
-            Form::Svg => ("svg", comparison.svg()),
-        };
-        Ok(Handed { ending, bytes: text.into_bytes() })
+        Ok(match ask.form {
+            Form::Json => Handed::shown("json", comparison.json()),
+            Form::Html => Handed::saved("html", comparison.html()),
+            Form::Csv => Handed::saved("csv", comparison.csv()),
+            Form::Svg => Handed::saved("svg", comparison.svg()),
+        })
     }
 }
 

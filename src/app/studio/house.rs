@@ -1,18 +1,23 @@
-//! What all requests share, and the answers that they have in common.
+//! The state that all requests share, and the form of their answers.
 
+use super::asked::AskError;
+use super::details::{DetailsError, Sources};
 use super::guard::Guard;
-use super::jobs::Jobs;
+use super::jobs::{Jobs, Refusal};
+use super::shelf::ShelfError;
 use super::tab::Searches;
+use crate::files::name::NameError;
+use crate::mechanism::LinkageError;
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use std::fmt::Display;
+use std::error::Error;
 use std::sync::Arc;
 use tokio::sync::{Semaphore, watch};
 
-/// What all requests share.
+/// The state that all requests share.
 pub(super) struct House {
     pub(super) guard: Arc<Guard>,
-    /// What the page begins with, as JSON; `null`: with what it remembers.
+    /// The edit that the page begins with, as JSON; `null`: the page begins with the one that it remembers.
     pub(super) beginning: String,
     pub(super) searches: Arc<Searches>,
     pub(super) jobs: Arc<Jobs>,
@@ -22,10 +27,69 @@ pub(super) struct House {
     pub(super) closing: watch::Sender<bool>,
 }
 
-pub(super) fn json(text: String) -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+impl House {
+    /// Returns the places in which linkages are looked up.
+    pub(super) fn sources(&self) -> Sources<'_> {
+        Sources { shelf: self.jobs.shelf(), finished: self.searches.finished() }
+    }
 }
 
-pub(super) fn refused(why: impl Display) -> Response {
-    (StatusCode::UNPROCESSABLE_ENTITY, format!("{why}\n")).into_response()
+/// The answer to a request, or its refusal.
+pub(super) type Answered<T> = Result<T, Refused>;
+
+/// A refusal: the status, and the reason as a line of text.
+pub(super) struct Refused(pub(super) StatusCode, pub(super) String);
+
+impl IntoResponse for Refused {
+    fn into_response(self) -> Response {
+        (self.0, self.1 + "\n").into_response()
+    }
+}
+
+/// An error that refuses a request.
+pub(super) trait Refusing: Error {
+    /// Returns the status of the answer.
+    fn status(&self) -> StatusCode {
+        StatusCode::UNPROCESSABLE_ENTITY
+    }
+}
+
+impl<E: Refusing> From<E> for Refused {
+    fn from(why: E) -> Self {
+        Refused(why.status(), why.to_string())
+    }
+}
+
+impl Refusing for AskError {}
+impl Refusing for DetailsError {}
+impl Refusing for LinkageError {}
+impl Refusing for NameError {}
+
+impl Refusing for ShelfError {
+    fn status(&self) -> StatusCode {
+        match self {
+            ShelfError::Absent(_) => StatusCode::NOT_FOUND,
+            ShelfError::Link(_) | ShelfError::Folder(_) => StatusCode::UNPROCESSABLE_ENTITY,
+        }
+    }
+}
+
+impl Refusing for Refusal {
+    fn status(&self) -> StatusCode {
+        match self {
+            Refusal::Absent(_) | Refusal::NotRunning(_) | Refusal::Name(_) => StatusCode::NOT_FOUND,
+            Refusal::Taken(_)
+            | Refusal::OtherResult { .. }
+            | Refusal::Unreadable(_)
+            | Refusal::Running(_)
+            | Refusal::InUse(_) => StatusCode::CONFLICT,
+            Refusal::Ask(_) => StatusCode::UNPROCESSABLE_ENTITY,
+            Refusal::Closing | Refusal::TooMany | Refusal::NotBegun(_) => StatusCode::SERVICE_UNAVAILABLE,
+        }
+    }
+}
+
+/// Returns an answer with its media type.
+pub(super) fn content(media_type: &'static str, bytes: impl IntoResponse) -> Response {
+    ([(header::CONTENT_TYPE, media_type)], bytes).into_response()
 }

@@ -1,8 +1,9 @@
 //! What is said of jobs, as JSON; the schemas are made from these types.
 
 use super::messages::{Ask, Shown};
+use crate::files::problem_file::ProblemFile;
 use crate::mechanism::Unit;
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, ProblemRecord, Record};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -199,4 +200,19 @@ pub struct Opened {
     pub candidates: Vec<Shown>,
     /// The names of the result's files.
     pub files: Vec<String>,
+}
+
+impl Opened {
+    /// Opens a record; `files` are the names of its result's files.
+    pub(super) fn new(record: Record, files: Vec<String>) -> Opened {
+        let candidates = record.candidates.iter().map(Shown::from).collect();
+        let ProblemRecord { name, source, unit, resolved: spec, .. } = record.problem;
+        let (points, closed) = (spec.task.path.points.clone(), spec.task.path.closed);
+        let file = ProblemFile { name, source, unit, spec, expect: None, warnings: Vec::new() };
+        let (ask, why_not) = match Ask::of(&file) {
+            Ok(ask) => (Some(ask), None),
+            Err(why) => (None, Some(why.to_string())),
+        };
+        Opened { ask, why_not, name: file.name, unit, points, closed, candidates, files }
+    }
 }

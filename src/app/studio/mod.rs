@@ -7,10 +7,10 @@
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
 //! jobs.rs         long searches that are saved; shelf.rs: what the folder of results holds; listing.rs: both shown
 //! details.rs      one linkage: what the report says of it, files, comparisons
-//! api.rs          requests of other programs; openapi.rs: the same described
 //! status.rs       how a search ended, in words
-//! server.rs       routes, the page, the WebSocket
-//! house.rs        what all requests share
+//! routes.rs       every request that is answered; openapi.rs: the same described
+//! server.rs       the server, the page, the WebSocket
+//! house.rs        the state that all requests share, the form of their answers
 //! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
 //! connection.rs   how many connections there may be, and for how long a silent one stays
 //! page/           the page, its style and its script: built from studio/
@@ -20,7 +20,6 @@
 //! as points. It does no mathematics: what follows the hand is [`live`](crate::synthesis::live), what is searched is
 //! [`run`](mod@crate::app::job::run), what is saved is saved by [`save`](crate::app::job::save), as on the command line.
 
-mod api;
 mod asked;
 mod connection;
 mod details;
@@ -32,6 +31,7 @@ mod listing;
 pub mod messages;
 pub mod openapi;
 pub mod reading;
+mod routes;
 mod server;
 mod shelf;
 mod status;

@@ -1,15 +1,12 @@
 //! Routes, the page, the WebSocket.
 
-use super::api;
 use super::connection::Limited;
 use super::guard::{Guard, LIVE, MOST_BYTES, guarded};
-use super::house::{House, json, refused};
+use super::house::{House, content};
 use super::jobs::Jobs;
-use super::messages::{Ask, LinkageAsk, Text, schemas};
-use super::reading;
+use super::messages::Ask;
+use super::routes::{AT_ONCE, routes};
 use super::tab::{Mailbox, Told, work};
-use crate::files::{linkage_file, name};
-use crate::mechanism::FourBar;
 use axum::Router;
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
@@ -17,7 +14,6 @@ use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
 use axum::middleware::{Next, from_fn, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::Path;
@@ -86,7 +82,7 @@ impl Studio {
             beginning: serde_json::to_string(&beginning).map_err(io::Error::other)?,
             searches: Arc::default(),
             jobs: Arc::new(Jobs::new(results)),
-            work: Arc::new(Semaphore::new(api::AT_ONCE)),
+            work: Arc::new(Semaphore::new(AT_ONCE)),
             tabs: Arc::new(Semaphore::new(MOST_TABS)),
             closing: watch::Sender::new(false),
         };
@@ -111,7 +107,7 @@ impl Studio {
     pub fn serve(self, end: &AtomicBool) -> Result<(), StudioError> {
         let Studio { runtime, listener, house, .. } = self;
         let (closing, jobs) = (house.closing.clone(), Arc::clone(&house.jobs));
-        let app = routes(house);
+        let app = router(house);
         let served = runtime.block_on(async {
             let mut goodbye = closing.subscribe();
             let server = axum::serve(Limited::new(listener), app).with_graceful_shutdown(async move {
@@ -138,22 +134,11 @@ impl Studio {
     }
 }
 
-fn routes(house: Arc<House>) -> Router {
+fn router(house: Arc<House>) -> Router {
     let guard = Arc::clone(&house.guard);
-    let inside = Router::new()
-        .route("/app.js", get(|| file("text/javascript; charset=utf-8", include_str!("page/app.js"))))
-        .route("/style.css", get(|| file("text/css; charset=utf-8", include_str!("page/style.css"))))
-        .route("/beginning.json", get(beginning))
-        .route("/schemas.json", get(|| async { json(schemas().to_string()) }))
-        .route("/problem.toml", post(problem))
-        .route("/linkage.toml", post(linkage))
-        .route("/read", post(read))
-        .route(LIVE, get(live))
-        .merge(api::routes())
-        .layer(from_fn_with_state(Arc::clone(&house), known));
-    Router::new()
-        .route("/", get(page))
-        .merge(inside)
+    let routed = routes().into_iter().fold(Router::new(), |all, one| all.route(one.path, one.handler));
+    routed
+        .layer(from_fn_with_state(Arc::clone(&house), known))
         .fallback(|| async { (StatusCode::NOT_FOUND, "there is no such page\n") })
         .layer(DefaultBodyLimit::max(MOST_BYTES))
         .layer(from_fn_with_state(guard, guarded))
@@ -169,23 +154,20 @@ async fn no_upgrade_elsewhere(request: Request, next: Next) -> Response {
     next.run(request).await
 }
 
-/// Lets in who brings the cookie.
+/// Lets in whoever brings the cookie; the page itself lets in whoever brings the token.
 async fn known(State(house): State<Arc<House>>, request: Request, next: Next) -> Response {
-    if house.guard.knows(request.headers()) { next.run(request).await } else { stranger() }
+    let known = request.uri().path() == "/" || house.guard.knows(request.headers());
+    if known { next.run(request).await } else { stranger() }
 }
 
 fn stranger() -> Response {
     let why = "Open the address that linkwright printed: it holds a token that lets one browser in, once.\n\
                For another one end the studio and start it again.\n";
-    (StatusCode::FORBIDDEN, [(header::CONTENT_TYPE, "text/plain; charset=utf-8")], why).into_response()
-}
-
-async fn file(kind: &'static str, text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, kind)], text).into_response()
+    (StatusCode::FORBIDDEN, why).into_response()
 }
 
 /// The page; with the token in the address, the cookie and the way to the address without it.
-async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> Response {
+pub(super) async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> Response {
     let token = uri.query().and_then(|query| query.strip_prefix("token="));
     match token {
         Some(token) if house.guard.admits(token) => {
@@ -195,57 +177,12 @@ async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> 
         _ if !house.guard.knows(&headers) => stranger(),
         // The same address once more, from a browser that is known.
         Some(_) => (StatusCode::SEE_OTHER, [(header::LOCATION, "/")]).into_response(),
-        None => file("text/html; charset=utf-8", include_str!("page/index.html")).await,
-    }
-}
-
-async fn beginning(State(house): State<Arc<House>>) -> Response {
-    json(house.beginning.clone())
-}
-
-fn toml(text: String) -> Response {
-    ([(header::CONTENT_TYPE, "application/toml; charset=utf-8")], text).into_response()
-}
-
-/// The problem file of an edit.
-async fn problem(body: Bytes) -> Response {
-    match serde_json::from_slice::<Ask>(&body) {
-        Err(e) => refused(format!("this is no edit: {e}")),
-        Ok(ask) => ask.problem_with_text().map_or_else(refused, |(_, text)| toml(text)),
-    }
-}
-
-/// A target or a problem of a text that was pasted or dropped.
-async fn read(body: Bytes) -> Response {
-    let text: Text = match serde_json::from_slice(&body) {
-        Err(e) => return refused(format!("this is no text with its kind: {e}")),
-        Ok(text) => text,
-    };
-    // A drawing may take its time: the tabs' messages do not wait for it.
-    match tokio::task::spawn_blocking(move || reading::read(&text)).await {
-        Ok(Ok(reading)) => serde_json::to_string(&reading).map_or_else(refused, json),
-        Ok(Err(why)) => refused(why),
-        Err(_) => refused("this text cannot be read: please report it as a bug of linkwright"),
-    }
-}
-
-/// The linkage file of a linkage.
-async fn linkage(body: Bytes) -> Response {
-    let ask: LinkageAsk = match serde_json::from_slice(&body) {
-        Err(e) => return refused(format!("this is no linkage: {e}")),
-        Ok(ask) => ask,
-    };
-    if let Err(e) = name::check(&ask.name) {
-        return refused(e);
-    }
-    match FourBar::new(ask.linkage) {
-        Err(e) => refused(e),
-        Ok(linkage) => toml(linkage_file::to_toml(&ask.name, ask.unit, &linkage)),
+        None => content("text/html; charset=utf-8", include_str!("page/index.html")),
     }
 }
 
 /// A tab's WebSocket.
-async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgrade) -> Response {
+pub(super) async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgrade) -> Response {
     let Ok(place) = Arc::clone(&house.tabs).try_acquire_owned() else {
         let why = format!("{MOST_TABS} tabs are open: close one\n");
         return (StatusCode::SERVICE_UNAVAILABLE, why).into_response();

@@ -25,8 +25,8 @@ const REST: Duration = Duration::from_millis(150);
 /// Progress is told at most so often.
 const TELL_EVERY: Duration = Duration::from_millis(120);
 
-/// What is said where a thread has panicked.
-const BUG: &str = "this is a bug of linkwright: please report it";
+/// The message after a thread has panicked.
+pub(super) const BUG: &str = "this is a bug of linkwright: please report it";
 
 /// What a tab is told: the latest answer as JSON.
 pub(super) type Told = Option<Arc<str>>;
