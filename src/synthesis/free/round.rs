@@ -1,12 +1,11 @@
 //! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
 //! ends.
 
-use super::End;
 use super::moves::{along_a_difference, near};
 use super::required::{led_back, strayed, worth_spending};
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
-use crate::record::Evaluations;
+use crate::record::{Candidate, Evaluations};
 use crate::synthesis::Context;
 use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
@@ -15,9 +14,10 @@ use crate::synthesis::constants::free::{
     BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED,
     SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
 };
-use crate::synthesis::multistart::{Effort, LONG_FIT, by_merit, judged, polish, promise};
+use crate::synthesis::multistart::{Effort, LONG_FIT, by_merit, polish, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
 use crate::synthesis::starts::Starts;
+use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -340,28 +340,26 @@ fn finish(
     } else {
         (merit, start)
     };
-    let mut end = End { start, merit, verdict: None };
-    let mut exact = false;
+    let mut end = End { start, merit, judged: false, verdict: None };
     if setup.single && merit <= setup.exact {
-        let verdict = judged(setup.problem, &end.start);
-        exact = verdict.as_ref().is_some_and(|c| c.accepted && searched(setup.problem, c) <= setup.exact);
-        end.verdict = Some(verdict);
+        end.judge(setup.problem);
     }
+    let is_exact = |c: &Candidate| c.accepted && searched(setup.problem, c) <= setup.exact;
+    let exact = end.verdict.as_ref().is_some_and(is_exact);
     Some(Finished { explored, end, exact })
 }
 
-/// Returns the ends of rounds on the explored points that can still matter and are not among the `finished` (merits on
-/// the explored points and on all), each once, best first.
+/// Returns the ends of rounds on the explored points that can still matter and have not been finished in earlier batches
+/// of the stage, each once, best first.
 pub(super) fn unfinished<'a>(
     setup: &Setup<'_>,
     rounds: &'a [Round],
-    bar: f64,
-    finished: &[(f64, f64)],
+    stage: &StageState,
 ) -> Vec<(f64, &'a Start)> {
-    let best = rounds.iter().map(Round::explored).fold(bar, f64::min);
+    let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min);
     let mut out: Vec<(f64, &Start)> = Vec::new();
     for (merit, start) in rounds.iter().flat_map(|round| &round.leaders) {
-        let met = finished.iter().any(|(explored, _)| is_same(*explored, *merit))
+        let met = stage.finished.iter().any(|(explored, _)| is_same(explored.0, *merit))
             || out.iter().any(|(other, _)| is_same(*other, *merit));
         if !met && setup.is_worth_finishing(*merit, best) {
             out.push((*merit, start));
