@@ -55,55 +55,84 @@ fn options(problem: &Problem, effort: Effort, max_evaluations: u64) -> LmOptions
     }
 }
 
+/// Runs fits within an allowance of evaluations and counts their cost.
+pub(super) struct Spender<'a> {
+    context: Context<'a>,
+    /// The evaluations used.
+    pub(super) cost: Evaluations,
+    allowance: u64,
+}
+
+impl<'a> Spender<'a> {
+    /// Creates a spender that has used nothing of its allowance.
+    pub(super) fn new(context: Context<'a>, allowance: u64) -> Self {
+        Spender { context, cost: Evaluations::default(), allowance }
+    }
+
+    /// Returns the evaluations left.
+    pub(super) fn left(&self) -> u64 {
+        self.allowance.saturating_sub(self.cost.objective)
+    }
+
+    /// Returns whether no further fit begins: nothing is left, or the search should end.
+    pub(super) fn is_at_its_end(&self) -> bool {
+        self.left() == 0 || self.context.stopped()
+    }
+
+    /// Counts evaluations on the points of a problem.
+    pub(super) fn spend(&mut self, problem: &Problem, evaluations: u64) {
+        self.cost += self.context.of(problem).cost(evaluations);
+    }
+
+    /// Fits from a start with at most `most` of the evaluations left, and returns the end with its merit; `None` if it
+    /// is given up, or no fit may begin.
+    pub(super) fn fit(
+        &mut self,
+        problem: &Problem,
+        start: Start,
+        effort: Effort,
+        most: u64,
+    ) -> Option<(f64, Start)> {
+        if self.is_at_its_end() {
+            return None;
+        }
+        let fit = polish(self.context.of(problem), start, effort, self.left().min(most));
+        self.spend(problem, fit.evaluations);
+        fit.end.map(|end| (fit.merit, end))
+    }
+
+    /// As [`Spender::fit`] with all that is left; if that is nothing, returns the start with its merit as it is.
+    fn fit_or_keep(&mut self, (merit, start): (f64, Start), effort: Effort) -> Option<(f64, Start)> {
+        if self.left() == 0 && !self.context.stopped() {
+            return Some((merit, start));
+        }
+        self.fit(self.context.problem, start, effort, u64::MAX)
+    }
+}
+
 /// Runs round `index` of the seed with at most `allowance` evaluations.
 pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u64) -> RoundOutcome {
     let problem = context.problem;
+    let mut spender = Spender::new(context, allowance);
     let mut outcome = RoundOutcome::default();
-    let mut draws = stream(problem.spec().solve.seed, index);
+    let mut stream = stream(problem.spec().solve.seed, index);
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
-    for _ in 0..SCREEN {
-        if outcome.evaluations.objective >= allowance || context.stopped() {
-            break;
-        }
+    while outcome.draws < SCREEN as u64 && !spender.is_at_its_end() {
         outcome.draws += 1;
-        let Some(mut start) = starts.draw(&mut draws) else { continue };
-        outcome.evaluations += context.cost(1);
-        if let Some(promise) = promise(problem, &mut start) {
-            screened.push((promise, start));
-        }
+        let Some(mut start) = starts.draw(&mut stream) else { continue };
+        spender.spend(problem, 1);
+        screened.extend(promise(problem, &mut start).map(|promise| (promise, start)));
     }
     by_merit(&mut screened, SHORT);
-    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
-    for (promised, start) in screened {
-        if context.stopped() {
-            return outcome;
-        }
-        let left = allowance - outcome.evaluations.objective;
-        if left == 0 {
-            // No evaluations are left for a fit: the start as it is.
-            fitted.push((promised, start));
-            continue;
-        }
-        let fit = polish(context, start, SHORT_FIT, left);
-        outcome.evaluations += context.cost(fit.evaluations);
-        fitted.extend(fit.end.map(|start| (fit.merit, start)));
-    }
+    let mut fitted: Vec<(f64, Start)> =
+        screened.into_iter().filter_map(|start| spender.fit_or_keep(start, SHORT_FIT)).collect();
     by_merit(&mut fitted, LONG);
     let judging = context.judging();
-    for (_, start) in fitted {
-        if context.stopped() {
-            return outcome;
-        }
-        let left = allowance - outcome.evaluations.objective;
-        if left == 0 {
-            outcome.found.extend(judged(problem, &start));
-            continue;
-        }
-        let fit = polish(context, start, LONG_FIT, left);
-        outcome.evaluations += context.cost(fit.evaluations);
-        let end = fit.end.filter(|_| judging.may_go_on());
-        outcome.found.extend(end.and_then(|end| judged(problem, &end)));
+    for start in fitted {
+        let end = spender.fit_or_keep(start, LONG_FIT).filter(|_| judging.may_go_on());
+        outcome.found.extend(end.and_then(|(_, end)| judged(problem, &end)));
     }
+    outcome.evaluations = spender.cost;
     outcome
 }
 

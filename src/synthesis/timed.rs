@@ -4,7 +4,7 @@
 //! on both assemblies, fits the `SHORT` most promising for a few steps and the best `LONG` of them to convergence
 //! ([`crate::task::forms::projection`]). An end that meets every bound and requirement is taken as it is. One that does
 //! not, and has a lower objective than the best that does, is a lower bound for its basin: it is polished in the
-//! physical parameters under all requirements ([`polish`]).
+//! physical parameters under all requirements ([`super::multistart::polish`]).
 //!
 //! If such ends occur, requirements are active, and later waves also fit under all requirements from the first step on:
 //! from the screened draws of least cost and violation, and in rounds of [`super::multistart`], in turn.
@@ -22,7 +22,7 @@ use super::constants::timed::{
     POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
-use super::multistart::{LONG_FIT, SHORT_FIT, by_merit, judged, polish, promise, round};
+use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
 use super::polish::{basins_wanted, promising};
 use super::starts::{Starts, draw_ratios, drawn_types};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
@@ -31,7 +31,7 @@ use crate::judge::rank::{exact_cost, searched, sort};
 use crate::mechanism::{AssemblyMode, CouplerSide, LinkageType};
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
-use crate::record::{Candidate, Repeats};
+use crate::record::{Candidate, Evaluations, Repeats};
 use crate::task::forms::design_space::DesignSpace;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
@@ -58,7 +58,7 @@ struct BatchOutcome {
     ends: Vec<End>,
     /// Ends of a round in the physical parameters, judged.
     judged: Vec<Candidate>,
-    evaluations: u64,
+    evaluations: Evaluations,
     draws: u64,
     polished: bool,
     /// Whether an end that violates a bound or a requirement was better than all that meet them.
@@ -174,7 +174,7 @@ impl Strategy for Timed<'_> {
     fn run(&mut self, _: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let (first, bar, binding) = (self.at.wave * WAVE, self.at.belief.best(), self.at.binding);
         let run = |i, allowance| self.search.batch(first + i, allowance, bar, binding);
-        let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations);
+        let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations.objective);
         ((wave, binding), ample)
     }
 
@@ -186,7 +186,7 @@ impl Strategy for Timed<'_> {
             self.at.binding |= batch.binding;
             self.at.draws += batch.draws;
             self.at.polished |= batch.polished;
-            self.at.evaluations += context.cost(batch.evaluations);
+            self.at.evaluations += batch.evaluations;
             for end in batch.ends {
                 self.read_end(end, &judging);
             }
@@ -296,22 +296,23 @@ impl<'a> Search<'a> {
             return out;
         }
         let batch = Batch::new(draws);
-        out.evaluations = readings * batch.len() as u64;
+        let mut spender = Spender::new(self.context, allowance);
+        spender.spend(self.problem, readings * batch.len() as u64);
         let Some(screened) = self.screened(&batch) else { return BatchOutcome::default() };
         let forms = self.forms.iter();
         let fits = forms.map(|(_, form)| ProjectedFit::new(form, AssemblyMode::Plus)).collect();
-        let mut fitting = Fitting { search: self, fits, allowance, out };
+        let mut fitting = Fitting { search: self, fits, spender, out };
         let ends = fitting.reduced(&screened, &batch);
         fitting.divide(ends, bar);
         if thorough && index.is_multiple_of(2) {
-            let round = round(self.context, &self.starts, index, fitting.left());
-            fitting.out.evaluations += round.evaluations.objective;
+            let round = round(self.context, &self.starts, index, fitting.spender.left());
+            fitting.spender.cost += round.evaluations;
             fitting.out.polished = true;
             fitting.out.judged = round.found;
         } else if thorough {
             fitting.constrained(&screened, &batch);
         }
-        let mut out = fitting.out;
+        let mut out = BatchOutcome { evaluations: fitting.spender.cost, ..fitting.out };
         out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
         out
     }
@@ -374,22 +375,21 @@ struct Fitting<'a> {
     search: &'a Search<'a>,
     /// One fit per form.
     fits: Vec<ProjectedFit<'a>>,
-    allowance: u64,
+    spender: Spender<'a>,
     out: BatchOutcome,
 }
 
 impl Fitting<'_> {
-    fn left(&self) -> u64 {
-        self.allowance - self.out.evaluations
-    }
-
-    fn stopped(&self) -> bool {
-        self.search.context.stopped()
+    /// Returns the start and the violation of unknowns of the reduced form ([`Search::physical`]).
+    fn physical(&mut self, x: &Reduced, form: usize, assembly: AssemblyMode) -> Option<(Start, f64)> {
+        let fit = &mut self.fits[form];
+        fit.set_assembly(assembly);
+        self.search.physical(&fit.solution(x)?, self.search.forms[form].0, assembly)
     }
 
     /// Fits in the reduced form with at most `most` evaluations.
     fn fit(&mut self, (x, form, assembly): (Reduced, usize, AssemblyMode), most: u32) -> Option<ReducedEnd> {
-        let left = u32::try_from(self.left()).unwrap_or(u32::MAX);
+        let left = u32::try_from(self.spender.left()).unwrap_or(u32::MAX);
         if left == 0 {
             return None;
         }
@@ -405,7 +405,7 @@ impl Fitting<'_> {
         fit.set_assembly(assembly);
         let stop = || search.context.stopped();
         let end = solve(fit, x, search.forms[form].1.bounds(), &options, &stop);
-        self.out.evaluations += u64::from(end.evaluations);
+        self.spender.spend(search.problem, u64::from(end.evaluations));
         end.cost.is_finite().then_some((end.cost, end.x, form, assembly))
     }
 
@@ -421,7 +421,7 @@ impl Fitting<'_> {
         short.sort_by(|x, y| x.0.total_cmp(&y.0));
         let mut long: Vec<ReducedEnd> = Vec::with_capacity(LONG);
         for (cost, x, form, assembly) in short.into_iter().take(LONG) {
-            if self.stopped() {
+            if search.context.stopped() {
                 // Taken as it is: the best so far.
                 long.push((cost, x, form, assembly));
                 break;
@@ -440,10 +440,7 @@ impl Fitting<'_> {
         let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
         let mut broken: Vec<(f64, End)> = Vec::new();
         for (cost, x, form, assembly) in ends {
-            self.fits[form].set_assembly(assembly);
-            let Some(solution) = self.fits[form].solution(&x) else { continue };
-            let physical = search.physical(&solution, search.forms[form].0, assembly);
-            let Some((start, lack)) = physical else { continue };
+            let Some((start, lack)) = self.physical(&x, form, assembly) else { continue };
             let end = End { start, cost };
             if lack != 0.0 {
                 broken.push((cost + scale * lack * lack, end));
@@ -452,13 +449,13 @@ impl Fitting<'_> {
             }
         }
         broken.sort_by(|x, y| x.0.total_cmp(&y.0));
-        if self.stopped() && self.out.ends.is_empty() {
+        if search.context.stopped() && self.out.ends.is_empty() {
             self.out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
         }
         let mut polishes = 0;
         for (_, end) in broken {
             let bar = self.out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
-            if polishes >= POLISHES || self.left() == 0 || self.stopped() {
+            if polishes >= POLISHES || self.spender.is_at_its_end() {
                 break;
             }
             if end.cost >= bar * (1.0 - SAME_OPTIMUM) {
@@ -472,48 +469,35 @@ impl Fitting<'_> {
 
     /// Fits to convergence under all requirements and adds the end.
     fn polished(&mut self, start: Start) {
-        let fitted = polish(self.search.context, start, LONG_FIT, self.left());
-        self.out.evaluations += fitted.evaluations;
+        let fitted = self.spender.fit(self.search.problem, start, LONG_FIT, u64::MAX);
         self.out.polished = true;
-        self.out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
+        self.out.ends.extend(fitted.map(|(cost, start)| End { start, cost }));
     }
 
     /// Fits under all requirements from the first step on, from the draws of least cost and violation.
     fn constrained(&mut self, screened: &[Screened], batch: &Batch) {
         let search = self.search;
+        let problem = search.problem;
         let mut starts = Vec::new();
         for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
             let x = &batch.draws()[i];
-            if self.stopped() {
+            if self.spender.is_at_its_end() {
                 break;
             }
-            if self.out.evaluations >= self.allowance || !search.stays_closed(form, x) {
+            if !search.stays_closed(form, x) {
                 continue;
             }
-            self.out.evaluations += 1;
-            self.fits[form].set_assembly(assembly);
-            let Some(solution) = self.fits[form].solution(x) else { continue };
+            self.spender.spend(problem, 1);
+            let Some((mut start, _)) = self.physical(x, form, assembly) else { continue };
             // The promise of the start as the fit takes it: clamped to the bounds.
-            let physical = search.physical(&solution, search.forms[form].0, assembly);
-            if let Some((mut start, _)) = physical
-                && let Some(promise) = promise(search.problem, &mut start)
-            {
-                starts.push((promise, start));
-            }
+            starts.extend(promise(problem, &mut start).map(|promise| (promise, start)));
         }
         by_merit(&mut starts, CONSTRAINED_SHORT);
-        let mut short = Vec::new();
-        for (_, start) in starts {
-            if self.out.evaluations >= self.allowance || self.stopped() {
-                break;
-            }
-            let fitted = polish(search.context, start, SHORT_FIT, self.left());
-            self.out.evaluations += fitted.evaluations;
-            short.extend(fitted.end.map(|start| (fitted.merit, start)));
-        }
+        let fit = |(_, start)| self.spender.fit(problem, start, SHORT_FIT, u64::MAX);
+        let mut short: Vec<(f64, Start)> = starts.into_iter().filter_map(fit).collect();
         by_merit(&mut short, CONSTRAINED_LONG);
         for (_, start) in short {
-            if self.out.evaluations >= self.allowance || self.stopped() {
+            if self.spender.is_at_its_end() {
                 break;
             }
             self.polished(start);

@@ -14,7 +14,7 @@ use crate::synthesis::constants::free::{
     BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED,
     SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
 };
-use crate::synthesis::multistart::{Effort, LONG_FIT, by_merit, polish, promise};
+use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
 use crate::synthesis::starts::Starts;
 use crate::synthesis::states::{End, StageState};
@@ -105,30 +105,7 @@ pub(super) struct Finished {
     pub(super) exact: bool,
 }
 
-/// Runs fits within an allowance and counts their cost.
-struct Spender<'a> {
-    context: Context<'a>,
-    cost: Evaluations,
-    allowance: u64,
-}
-
 impl Spender<'_> {
-    fn left(&self) -> u64 {
-        self.allowance.saturating_sub(self.cost.objective)
-    }
-
-    /// Fits from a start with at most `most` of the evaluations left.
-    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort, most: u64) -> Option<(f64, Start)> {
-        let left = self.left().min(most);
-        if left == 0 || self.context.stopped() {
-            return None;
-        }
-        let context = self.context.of(problem);
-        let fit = polish(context, start, effort, left);
-        self.cost += context.cost(fit.evaluations);
-        fit.end.map(|end| (fit.merit, end))
-    }
-
     /// Reassigns the points of an end to their best places on its curve and fits it again, as long as that gains.
     fn at_best_places(
         &mut self,
@@ -195,10 +172,8 @@ fn drawn(
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
         count += 1;
         let Some(mut start) = start else { return };
-        spender.cost += spender.context.of(explored).cost(1);
-        if let Some(promise) = promise(explored, &mut start) {
-            drawn.push((promise, start));
-        }
+        spender.spend(explored, 1);
+        drawn.extend(promise(explored, &mut start).map(|promise| (promise, start)));
     };
     // Of three independent rounds two take matches, as long as there are any.
     let turn = of_search as usize / 2;
@@ -262,7 +237,7 @@ pub(super) fn round(
         finished: Vec::new(),
         independent: known.is_independent(index),
     };
-    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
+    let mut spender = Spender::new(context, allowance);
     let beaten = || found.load(Ordering::Relaxed) < of_search;
     if beaten() {
         return round;
@@ -382,7 +357,7 @@ pub(super) fn finished(
     allowance: u64,
     found: &AtomicU64,
 ) -> (Option<Finished>, Evaluations) {
-    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
+    let mut spender = Spender::new(context, allowance);
     if found.load(Ordering::Relaxed) < index {
         return (None, spender.cost);
     }
