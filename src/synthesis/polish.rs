@@ -14,7 +14,6 @@ use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
 use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
-use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::forms::design_space::DESIGN;
 use crate::task::forms::start::Start;
@@ -126,7 +125,7 @@ fn convex(
     let stop = || context.stopped();
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return (Fitted::NONE, f64::INFINITY) };
-        let result = run(&fit, goal, start, (), &options, &stop);
+        let result = solve(&fit, goal, start.design, (), &options, &stop);
         ended(size, start.setting, result, |()| Vec::new())
     } else {
         let fit = TorusFit::new(problem, start.setting);
@@ -134,19 +133,9 @@ fn convex(
         if !fit.settle(&start.design, &mut positions) {
             return (Fitted::NONE, f64::INFINITY);
         }
-        ended(size, start.setting, run(&fit, goal, start, positions, &options, &stop), |positions| positions)
+        let result = solve(&fit, goal, start.design, positions, &options, &stop);
+        ended(size, start.setting, result, |positions| positions)
     }
-}
-
-fn run<P: BlockLeastSquares<DESIGN>>(
-    fit: &P,
-    goal: &Goal<'_>,
-    start: &Start,
-    state: P::State,
-    options: &ConvexOptions<DESIGN>,
-    stop: &dyn Fn() -> bool,
-) -> ConvexResult<DESIGN, P::State> {
-    solve(fit, goal, start.design, state, options, stop)
 }
 
 fn ended<S>(
