@@ -114,13 +114,7 @@ fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     require.transmission_deg_min = Some(require.transmission_deg_min.map_or(least, |deg| deg.max(least)));
     require.link_ratio_max = require.link_ratio_max.min(GREATEST_LINK_RATIO);
     if require.types.is_empty() {
-        require.types = vec![
-            LinkageType::CrankRocker,
-            LinkageType::RockerCrank,
-            LinkageType::DoubleCrank,
-            LinkageType::DoubleRocker,
-            LinkageType::TripleRocker,
-        ];
+        require.types.extend(LinkageType::ALL.into_iter().filter(|kind| *kind != LinkageType::ChangePoint));
     }
     spec
 }
