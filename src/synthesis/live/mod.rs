@@ -25,11 +25,6 @@ pub struct Session {
 }
 
 impl Session {
-    /// Creates a session without candidates.
-    pub fn new() -> Self {
-        Session::default()
-    }
-
     /// Returns the candidates, better first, ranked from 1.
     pub fn candidates(&self) -> &[Candidate] {
         &self.kept
@@ -134,7 +129,7 @@ mod tests {
         let cancel = AtomicBool::new(false);
         let budget = Budget::new(&cancel, None);
         let before = egg(24, 0, 0.0);
-        let mut session = Session::new();
+        let mut session = Session::default();
         session.join(&before, searched(&before));
         let stale = session.candidates()[0].clone();
         for step in 1..=10 {
@@ -175,7 +170,7 @@ mod tests {
         let found = searched(&egg(24, 0, 0.0));
         let ends: Vec<String> = (0..2)
             .map(|_| {
-                let mut session = Session::new();
+                let mut session = Session::default();
                 session.join(&egg(24, 0, 0.0), found.clone());
                 session.follow(&egg(30, 2, 0.1), &budget);
                 assert!(session.candidates().iter().all(|c| c.crank_deg.len() == 30));
@@ -183,6 +178,6 @@ mod tests {
             })
             .collect();
         assert!(ends[0].len() > 100 && ends[0] == ends[1]);
-        assert!(Session::new().follow(&egg(24, 0, 0.0), &budget).is_empty());
+        assert!(Session::default().follow(&egg(24, 0, 0.0), &budget).is_empty());
     }
 }
