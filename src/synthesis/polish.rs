@@ -209,11 +209,7 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
     let mut best = f64::INFINITY;
     let mut quiet = 0;
     for hop in 0..MAX_HOPS {
-        let mut near: Vec<(f64, &Candidate)> = Vec::new();
-        for candidate in found.iter().filter(|c| promising(problem, c)) {
-            near.push((deviation_of(problem, candidate), candidate));
-        }
-        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut near = by_deviation(problem, found.iter().filter(|c| promising(problem, c)));
         near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
         let Some(&(least, _)) = near.first() else { return };
         let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
@@ -246,10 +242,8 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
 /// Returns the candidates that differ in more than digits, least deviation first. One curve may occur several times:
 /// cognates and points along a valley of least squares lead to different largest deviations.
 fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
-    let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
-    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut kept: Vec<(f64, &Candidate)> = Vec::new();
-    for (deviation, candidate) in measured {
+    for (deviation, candidate) in by_deviation(problem, all.iter().copied()) {
         let near = |one: f64, other: f64| (one - other).abs() <= SAME_START * other.abs();
         let same = kept.iter().any(|(other, c)| {
             near(deviation, *other)
@@ -264,12 +258,20 @@ fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
     kept.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// Returns the largest error of a candidate, in parts of the tolerances if there are any.
-fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
+/// Returns candidates with their largest errors, in parts of the tolerances if there are any, the least first.
+fn by_deviation<'c>(
+    problem: &Problem,
+    candidates: impl Iterator<Item = &'c Candidate>,
+) -> Vec<(f64, &'c Candidate)> {
     let task = problem.task();
-    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
-    error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+    let deviation = |candidate: &Candidate| {
+        let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+        let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
+        error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+    };
+    let mut measured: Vec<(f64, &Candidate)> = candidates.map(|c| (deviation(c), c)).collect();
+    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    measured
 }
 
 /// Returns a random start near another, in its bounds.

@@ -23,7 +23,7 @@ use super::Context;
 use super::multistart::settle_positions;
 use super::starts::{Searched, Starts, Way};
 use crate::mechanism::four_bar::mobility::linkage_type;
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType};
+use crate::mechanism::{AssemblyMode, Complex, LinkageType};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::Problem;
 use crate::task::Timing;
@@ -217,8 +217,8 @@ impl<'a> ReducedFitness<'a> {
         let at = [p, q, r, angle];
         fit.set_assembly(assembly);
         if let Some(Solution { shape, offset, .. }) = fit.solution(&at) {
-            let side = self.side(&shape);
-            let reading = self.physical.read_timed(side, &shape, offset, direction, assembly);
+            let (side, _) = self.starts.space_of(&shape);
+            let reading = self.physical.read_timed(*side, &shape, offset, direction, assembly);
             return reading.map(|reading| self.within_bounds(reading, shape, offset)).ok_or(UNDEFINED);
         }
         let unit = Shape {
@@ -252,15 +252,8 @@ impl<'a> ReducedFitness<'a> {
         };
         self.starts.place(&ratios, &way, rocking, &mut room.positions)?;
         let shape = self.starts.fit(&ratios, &self.known, &room.positions)?;
-        let reading = self.physical.read_free(self.side(&shape), &shape);
+        let reading = self.physical.read_free(self.starts.space_of(&shape).0, &shape);
         Some(self.within_bounds(reading, shape, 0.0))
-    }
-
-    fn side(&self, shape: &Shape) -> CouplerSide {
-        match self.problem.sides() {
-            [only] => *only,
-            _ => CouplerSide::of(shape.offset.im),
-        }
     }
 
     /// Adds to an evaluation the violation of the design's bounds by its shape.

@@ -16,16 +16,10 @@ pub(super) fn counted(objectives: &[f64], best: f64, exact: f64) -> Repeats {
     let within = |part: f64| came(objectives.iter().copied(), best, part, exact) as u64;
     let mut ends: Vec<f64> = objectives.iter().copied().filter(|o| o.is_finite()).collect();
     ends.sort_by(f64::total_cmp);
-    let mut basins = 0;
-    let mut last: Option<f64> = None;
-    for end in &ends {
-        if last.is_none_or(|first| end - first > (SAME_OPTIMUM * first).max(exact)) {
-            basins += 1;
-            last = Some(*end);
-        }
-    }
+    let followed = ends.len() as u64;
+    ends.dedup_by(|end, first| *end - *first <= (SAME_OPTIMUM * *first).max(exact));
     let (hits, near) = (within(SAME_OPTIMUM), within(NEARLY));
-    Repeats::new(objectives.len() as u64, hits, near).with_basins(ends.len() as u64, basins)
+    Repeats::new(objectives.len() as u64, hits, near).with_basins(followed, ends.len() as u64)
 }
 
 #[cfg(test)]

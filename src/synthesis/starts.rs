@@ -31,11 +31,11 @@ pub(super) trait Searched: PopulationProblem {
 #[derive(Clone, Debug)]
 pub struct Starts<'a> {
     problem: &'a Problem,
-    types: Vec<LinkageType>,
+    pub(super) types: Vec<LinkageType>,
     /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
     arc: Vec<f64>,
     /// One design space per side of the coupler point.
-    spaces: Vec<(CouplerSide, DesignSpace)>,
+    pub(super) spaces: Vec<(CouplerSide, DesignSpace)>,
 }
 
 impl<'a> Starts<'a> {
@@ -75,6 +75,12 @@ impl<'a> Starts<'a> {
         &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
     }
 
+    /// Returns the side that a shape's coupler point lies on, or the only one allowed, and its design space.
+    pub(super) fn space_of(&self, shape: &Shape) -> &(CouplerSide, DesignSpace) {
+        let side = CouplerSide::of(shape.offset.im);
+        self.spaces.iter().find(|(other, _)| *other == side).unwrap_or(&self.spaces[0])
+    }
+
     /// Returns a start of free timing from ratios and positions measured from the ground line: the rest by linear least
     /// squares. `kind` is the type of the ratios, and the one aimed at if types are required.
     pub fn from_positions(
@@ -84,13 +90,11 @@ impl<'a> Starts<'a> {
         direction: f64,
         positions: &[[Complex; 2]],
     ) -> Option<Start> {
-        let (side, space) = &self.spaces[0];
         let shape = self.fit(ratios, &KnownPivots::of(self.problem), positions)?;
-        let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };
-        let space = self.spaces.iter().find(|(s, _)| *s == side).map_or(space, |(_, space)| space);
+        let (side, space) = self.space_of(&shape);
         let aim = self.problem.aims_at_types().then_some(kind);
         let assembly = AssemblyMode::of(assembly_sign(ratios, positions[0]));
-        let setting = Setting { aim, assembly, direction, side };
+        let setting = Setting { aim, assembly, direction, side: *side };
         Some(start_from(space, setting, &shape, positions))
     }
 
@@ -238,7 +242,7 @@ pub(super) struct Way {
 const INSIDE: f64 = 1.0 - 1e-9;
 
 /// Returns the types from which starts are drawn.
-pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
+fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
     match problem.types() {
         // Any type: the types that a motor can turn get half of the draws.
         [] => vec![

@@ -24,15 +24,14 @@ use super::constants::timed::{
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
 use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
 use super::polish::{basins_wanted, promising};
-use super::starts::{Starts, draw_ratios, drawn_types};
+use super::starts::{Starts, draw_ratios};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
 use super::{Context, HitsSoFar, Judging};
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::mechanism::{AssemblyMode, CouplerSide, LinkageType};
+use crate::mechanism::AssemblyMode;
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
 use crate::record::{Candidate, Evaluations, Repeats};
-use crate::task::forms::design_space::DesignSpace;
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
@@ -69,10 +68,7 @@ struct Search<'a> {
     context: Context<'a>,
     problem: &'a Problem,
     forms: Vec<(f64, Projection)>,
-    types: Vec<LinkageType>,
     starts: Starts<'a>,
-    /// One design space per side of the coupler point.
-    spaces: Vec<(CouplerSide, DesignSpace)>,
     requirements: Requirements,
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
     span: (f64, f64),
@@ -223,13 +219,11 @@ impl<'a> Search<'a> {
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &a| (low.min(a), high.max(a)));
         let high = if problem.task().closed() { high.max(low + TAU) } else { high };
-        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
+        let starts = Starts::new(problem);
         Some(Search {
-            requirements: problem.requirements(&spaces[0].1),
-            starts: Starts::new(problem),
-            spaces,
+            requirements: problem.requirements(&starts.spaces[0].1),
+            starts,
             forms,
-            types: drawn_types(problem),
             span: (low, high),
             exact: exact_cost(problem),
             context,
@@ -249,14 +243,13 @@ impl<'a> Search<'a> {
     }
 
     fn draw(&self, draws: &mut Stream) -> Option<Reduced> {
-        let kind = self.types[below(draws, self.types.len())];
+        let types = &self.starts.types;
+        let kind = types[below(draws, types.len())];
         let ratios = draw_ratios(draws, kind)?;
         let angle = uniform(draws, -PI, PI);
         let form = &self.forms[0].1;
+        let angle = if form.has_angle() { angle } else { 0.0 };
         let mut x = [ratios.crank.ln(), ratios.coupler.ln(), ratios.follower.ln(), angle];
-        if !form.has_angle() {
-            x[3] = 0.0;
-        }
         for (value, (low, high)) in x.iter_mut().zip(form.bounds()) {
             *value = value.max(*low).min(*high);
         }
@@ -328,10 +321,8 @@ impl<'a> Search<'a> {
             }
         }
         screened.sort_unstable_by(|x, y| {
-            x.0.total_cmp(&y.0)
-                .then(x.1.cmp(&y.1))
-                .then(x.2.cmp(&y.2))
-                .then(x.3.sign().total_cmp(&y.3.sign()))
+            let places = (x.1, x.2).cmp(&(y.1, y.2));
+            x.0.total_cmp(&y.0).then(places).then(x.3.sign().total_cmp(&y.3.sign()))
         });
         Some(screened)
     }
@@ -341,15 +332,10 @@ impl<'a> Search<'a> {
     fn physical(&self, solution: &Solution, direction: f64, assembly: AssemblyMode) -> Option<(Start, f64)> {
         let problem = self.problem;
         let Solution { shape, offset, .. } = solution;
-        let side = match self.spaces.as_slice() {
-            [(only, _)] => *only,
-            _ if shape.offset.im < 0.0 => CouplerSide::Minus,
-            _ => CouplerSide::Plus,
-        };
-        let (_, space) = self.spaces.iter().find(|(s, _)| *s == side)?;
+        let (side, space) = self.starts.space_of(shape);
         let aim =
             if problem.types().is_empty() { None } else { nearest_type(shape.links(), problem.types()) };
-        let setting = Setting { aim, assembly, direction, side };
+        let setting = Setting { aim, assembly, direction, side: *side };
         let base = match problem.task().timing() {
             Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
                 (shape.follower_pivot - shape.crank_pivot).arg()
