@@ -1,13 +1,12 @@
 //! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
 
-use super::round::{Finished, Known, Place, Round, Setup, finished, is_same, round, unfinished};
+use super::round::{Common, Finished, Round, Setup, finished, is_same, round, unfinished};
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
 use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
 use crate::synthesis::driver::{in_parallel, share, spared};
 use crate::synthesis::states::{End, StageState};
-use crate::task::forms::start::Start;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
@@ -23,15 +22,6 @@ pub(super) struct Batch {
     pub(super) ample: bool,
     /// The state of its stage after it.
     pub(super) stage: StageState,
-}
-
-/// The data that all rounds of a batch share.
-struct Common<'a> {
-    context: Context<'a>,
-    setup: &'a Setup<'a>,
-    /// Index of the random stream of its first round.
-    first: u64,
-    near_ends: Vec<Start>,
 }
 
 impl Batch {
@@ -53,20 +43,19 @@ impl Batch {
             stage: stage.clone(),
         };
         let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { context, setup, first, near_ends };
+        let common = Common { context, setup, first, first_of_stage: stage.index, near_ends };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = setup.finishes_apart() && setup.single && first == 0;
-        let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
-        while begin < BATCH {
+        let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
+        for &(begin, end) in waves {
             // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let left = left.saturating_sub(batch.cost.objective);
             let (parts, of) = (end - begin, BATCH - begin);
-            let exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
-            if exact {
+            let is_exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
+            if is_exact {
                 break;
             }
-            (begin, end) = (end, BATCH);
         }
         batch.stage.index += BATCH;
         batch.stage.leading.sort_by(|one, other| one.0.0.total_cmp(&other.0.0));
@@ -77,16 +66,11 @@ impl Batch {
     /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
     /// among them.
     fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
-        let &Common { context, setup, first, ref near_ends } = common;
-        let (begin, index) = (wave.start, self.stage.index);
-        let found = AtomicU64::new(u64::MAX);
-        let known = Known { bar: self.stage.bar, near_ends };
-        let run = |i, allowance| {
-            let place = Place { stream: first + begin + i, index: index + begin + i };
-            round(context, setup, place, allowance, &known, &found)
-        };
+        let setup = common.setup;
+        let (found, bar) = (AtomicU64::new(u64::MAX), self.stage.bar);
+        let run = |i, allowance| round(common, wave.start + i, bar, allowance, &found);
         let (mut rounds, ample): (Vec<Round>, bool) =
-            in_parallel((left, wave.end - begin), run, |round| round.cost.objective);
+            in_parallel((left, wave.end - wave.start), run, |round| round.cost.objective);
         let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
         self.ample &= ample;
         let mut done: Vec<Finished> = Vec::new();
@@ -120,14 +104,13 @@ impl Batch {
 
     /// Fits the ends of rounds to all points, each once, up to the first exact one.
     fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
-        let &Common { context, setup, .. } = common;
-        let ends = unfinished(setup, rounds, &self.stage);
+        let ends = unfinished(common.setup, rounds, &self.stage);
         let parts = ends.len() as u64;
         let found = AtomicU64::new(u64::MAX);
         let finishes: Vec<(Option<Finished>, Evaluations)> = ends
             .into_par_iter()
             .enumerate()
-            .map(|(i, end)| finished(context, setup, (i as u64, end), share(left, parts, i as u64), &found))
+            .map(|(i, end)| finished(common, (i as u64, end), share(left, parts, i as u64), &found))
             .collect();
         let mut done: Vec<Finished> = Vec::new();
         for (i, (finished, cost)) in (0..).zip(finishes) {

@@ -51,24 +51,22 @@ impl Setup<'_> {
     }
 }
 
-/// The results of earlier batches of a stage that a round uses.
-pub(super) struct Known<'a> {
-    pub(super) bar: f64,
-    pub(super) near_ends: &'a [Start],
+/// The data that all rounds of a batch share.
+pub(super) struct Common<'a> {
+    pub(super) context: Context<'a>,
+    pub(super) setup: &'a Setup<'a>,
+    /// Indices of its first round: in the whole search, for its random stream, and in its stage.
+    pub(super) first: u64,
+    pub(super) first_of_stage: u64,
+    /// The best different ends of the batches before, near which rounds start.
+    pub(super) near_ends: Vec<Start>,
 }
 
-impl Known<'_> {
-    /// Returns whether a round is independent: it uses no results of others.
-    fn is_independent(&self, index: u64) -> bool {
-        self.near_ends.is_empty() || index.is_multiple_of(2)
+impl Common<'_> {
+    /// Returns whether a round of the batch is independent: it uses no results of others.
+    fn is_independent(&self, round: u64) -> bool {
+        self.near_ends.is_empty() || (self.first_of_stage + round).is_multiple_of(2)
     }
-}
-
-/// Index of a round: in the whole search, for its random stream, and in its stage.
-#[derive(Clone, Copy)]
-pub(super) struct Place {
-    pub(super) stream: u64,
-    pub(super) index: u64,
 }
 
 #[derive(Debug)]
@@ -159,13 +157,11 @@ impl Spender<'_> {
     }
 }
 
-/// Returns the starts of a round with their promise ([`promise`]) on the explored points, and the number drawn.
-fn drawn(
-    setup: &Setup<'_>,
-    Place { stream: of_search, index }: Place,
-    known: &Known<'_>,
-    spender: &mut Spender<'_>,
-) -> (Vec<(f64, Start)>, u64) {
+/// Returns the starts of a round of the batch with their promise ([`promise`]) on the explored points, and the number
+/// drawn.
+fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f64, Start)>, u64) {
+    let Common { setup, near_ends, first, first_of_stage, .. } = common;
+    let (of_search, index) = (first + round, first_of_stage + round);
     let explored = setup.explored();
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     let mut count = 0;
@@ -179,14 +175,13 @@ fn drawn(
     let turn = of_search as usize / 2;
     let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, of_search);
-    if !known.is_independent(index) {
-        let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
+    if !common.is_independent(round) {
+        let end = &near_ends[(index / 2) as usize % near_ends.len()];
         for i in 0..JITTERED {
             if spender.left() == 0 {
                 break;
             }
-            let mut other =
-                || &known.near_ends[uniform(&mut draws, 0.0, known.near_ends.len() as f64) as usize];
+            let mut other = || &near_ends[uniform(&mut draws, 0.0, near_ends.len() as f64) as usize];
             let (one, other) = (other(), other());
             let start = if i % 2 == 1
                 && one.setting.side == other.setting.side
@@ -220,32 +215,27 @@ fn drawn(
     (drawn, count)
 }
 
-/// Runs a round: its ends on the explored points, and on a sparse target the finished ends. `found` is the index of the
-/// first round with an exact answer; those after it are not read and may stop.
-pub(super) fn round(
-    context: Context<'_>,
-    setup: &Setup<'_>,
-    Place { stream: of_search, index }: Place,
-    allowance: u64,
-    known: &Known<'_>,
-    found: &AtomicU64,
-) -> Round {
+/// Runs round `index` of a batch: its ends on the explored points, and on a sparse target the finished ends. `bar` is
+/// the least merit there before it; `found` is the index of the first round with an exact answer; those after it are
+/// not read and may stop.
+pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, found: &AtomicU64) -> Round {
+    let &Common { context, setup, .. } = common;
     let mut round = Round {
         draws: 0,
         cost: Evaluations::default(),
         leaders: Vec::new(),
         finished: Vec::new(),
-        independent: known.is_independent(index),
+        independent: common.is_independent(index),
     };
     let mut spender = Spender::new(context, allowance);
-    let beaten = || found.load(Ordering::Relaxed) < of_search;
+    let beaten = || found.load(Ordering::Relaxed) < index;
     if beaten() {
         return round;
     }
     let (explored, dense) = (setup.explored(), setup.finishes_apart());
-    let (mut drawn, draws) = drawn(setup, Place { stream: of_search, index }, known, &mut spender);
+    let (mut drawn, draws) = drawn(common, index, &mut spender);
     round.draws = draws;
-    let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
+    let first_look = setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
     let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
     by_merit(&mut drawn, shorts);
     let spare = drawn.first().cloned();
@@ -272,7 +262,7 @@ pub(super) fn round(
     by_merit(&mut middle, middles);
     round.leaders = middle;
     if !dense {
-        let best = round.explored().min(known.bar);
+        let best = round.explored().min(bar);
         for (merit, start) in &round.leaders {
             if beaten() {
                 break;
@@ -284,7 +274,7 @@ pub(super) fn round(
                 let exact = finished.exact;
                 round.finished.push(finished);
                 if exact {
-                    found.fetch_min(of_search, Ordering::Relaxed);
+                    found.fetch_min(index, Ordering::Relaxed);
                     break;
                 }
             }
@@ -305,16 +295,15 @@ fn finish(
         Some(coarse) => coarse.refine(setup.problem, start)?,
     };
     let fitted = spender.fit_as_required(setup.problem, start.clone(), LONG_FIT);
-    let (merit, start) = match fitted {
+    let mut fitted = match fitted {
         Some(end) => end,
         // Out of budget: taken as it is, with its error on all points.
         None => (promise(setup.problem, &mut start)?, start),
     };
-    let (merit, start) = if setup.finishes_apart() {
-        spender.at_best_places(setup.problem, (merit, start), LONG_FIT)
-    } else {
-        (merit, start)
-    };
+    if setup.finishes_apart() {
+        fitted = spender.at_best_places(setup.problem, fitted, LONG_FIT);
+    }
+    let (merit, start) = fitted;
     let mut end = End { start, merit, judged: false, verdict: None };
     if setup.single && merit <= setup.exact {
         end.judge(setup.problem);
@@ -351,8 +340,7 @@ pub(super) fn is_same(one: f64, other: f64) -> bool {
 
 /// Finishes one of them within its allowance, unless one before it was exact.
 pub(super) fn finished(
-    context: Context<'_>,
-    setup: &Setup<'_>,
+    &Common { context, setup, .. }: &Common<'_>,
     (index, end): (u64, (f64, &Start)),
     allowance: u64,
     found: &AtomicU64,
