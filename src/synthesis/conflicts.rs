@@ -22,7 +22,6 @@ use super::multistart::{LONG_FIT, judged, polish};
 use super::offered_cognates;
 use super::relaxed::led_in;
 use super::{Context, Progress, SearchOutcome, plan};
-use crate::judge::assess::assess;
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
 use crate::judge::rank::divided;
@@ -195,8 +194,8 @@ impl Inquiry<'_> {
     /// Returns the refused candidates that are acceptable under a looser specification.
     fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
         let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
-        let judged = |c: &Candidate| assess(&problem, &c.linkage, &c.crank_deg, &c.t1_at);
-        self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
+        let judged = self.refused.iter().filter_map(|c| judged_under(&problem, c));
+        judged.filter(|c| c.accepted).take(WARM).collect()
     }
 
     /// Runs a search of `auto` with a budget of its own and returns the candidates that it accepts. `fits` as for

@@ -14,13 +14,12 @@ use crate::judge::assess::assess;
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex};
 use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
 };
 use crate::record::{Candidate, Evaluations};
-use crate::task::forms::design_space::{Design, Shape};
+use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
@@ -273,19 +272,10 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
         return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
     }
-    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions)?;
-    let linkage = space.project(&shape.linkage(assemblies[0]).ok()?).ok()?;
-    assess(problem, &linkage, &crank_deg, &assemblies)
-}
-
-/// Returns crank angles (degrees, unwrapped along the motion) and assemblies of positions.
-fn reading(
-    problem: &Problem,
-    shape: &Shape,
-    positions: &[[Complex; 2]],
-) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
-    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
-    let angles = positions.iter().map(|[e, _]| e.arg()).collect();
+    let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
-    Some(unwrapped(problem, &linkage, angles, assemblies))
+    let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
+    let (crank_deg, assemblies) = unwrapped(problem, &linkage, angles, assemblies);
+    let linkage = space.project(&linkage).ok()?;
+    assess(problem, &linkage, &crank_deg, &assemblies)
 }

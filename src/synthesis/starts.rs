@@ -287,16 +287,12 @@ pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Rat
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {
         LinkageType::TripleRocker => {
-            // Most draws are not triple-rockers: try a few.
-            let mut found = None;
-            for _ in 0..16 {
-                let links = [(); 4].map(|()| log_uniform(stream, (0.2, 5.0)));
-                let fits = linkage_type(links) == Some(LinkageType::TripleRocker);
-                if found.is_none() && fits && grashof_margin(links) < 0.0 {
-                    found = Some(links);
-                }
-            }
-            found?
+            // Most draws are not triple-rockers: try a few, always as many.
+            let tries = [(); 16].map(|()| [(); 4].map(|()| log_uniform(stream, (0.2, 5.0))));
+            let fits = |links: [f64; 4]| {
+                linkage_type(links) == Some(LinkageType::TripleRocker) && grashof_margin(links) < 0.0
+            };
+            tries.into_iter().find(|links| fits(*links))?
         }
         _ => {
             let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));

@@ -42,13 +42,8 @@ use std::f64::consts::{PI, TAU};
 /// Difference of designs, in parts of the target's size, within which they are judged once.
 const SAME_NUMBERS: f64 = 1e-6;
 
-/// An end of a fit, in physical parameters.
-#[derive(Clone, Debug)]
-struct End {
-    start: Start,
-    /// The objective.
-    cost: f64,
-}
+/// The end of a fit in physical parameters, with its objective.
+type End = (f64, Start);
 
 /// The outcome of a batch.
 #[derive(Clone, Debug, Default)]
@@ -111,16 +106,16 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 
 impl Timed<'_> {
     /// Judges an end, unless it cannot matter or an equal one has been judged before.
-    fn read_end(&mut self, end: End, judging: &Judging<'_>) {
+    fn read_end(&mut self, (cost, end): End, judging: &Judging<'_>) {
         let belief = &mut self.at.belief;
-        if self.wanted == 1 && end.cost > self.search.exact && !belief.would_improve(end.cost) {
+        if self.wanted == 1 && cost > self.search.exact && !belief.would_improve(cost) {
             // One answer is wanted, and this is not a better one.
-            belief.came_back_to(end.cost);
+            belief.came_back_to(cost);
             return;
         }
         if let Some(accepted) = self.search.judged_before(&self.at.seen, &end) {
             if accepted {
-                belief.came_back_to(end.cost);
+                belief.came_back_to(cost);
             }
             return;
         }
@@ -128,8 +123,8 @@ impl Timed<'_> {
             return;
         }
         let problem = self.search.problem;
-        let Some(candidate) = judged(problem, &end.start) else { return };
-        let Start { setting, design, .. } = end.start;
+        let Some(candidate) = judged(problem, &end) else { return };
+        let Start { setting, design, .. } = end;
         self.at.seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
         self.take(candidate);
     }
@@ -232,13 +227,11 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the verdict on an end if an equal one has been judged before.
-    fn judged_before(&self, seen: &[Judged], end: &End) -> Option<bool> {
+    fn judged_before(&self, seen: &[Judged], end: &Start) -> Option<bool> {
         let near = SAME_NUMBERS * self.problem.task().size();
         let same = |(x, y): (&f64, &f64)| (x - y).abs() <= near;
         seen.iter()
-            .find(|judged| {
-                judged.setting == end.start.setting && judged.design.iter().zip(&end.start.design).all(same)
-            })
+            .find(|judged| judged.setting == end.setting && judged.design.iter().zip(&end.design).all(same))
             .map(|judged| judged.accepted)
     }
 
@@ -306,7 +299,7 @@ impl<'a> Search<'a> {
             fitting.constrained(&screened, &batch);
         }
         let mut out = BatchOutcome { evaluations: fitting.spender.cost, ..fitting.out };
-        out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
+        by_merit(&mut out.ends, usize::MAX);
         out
     }
 
@@ -424,32 +417,31 @@ impl Fitting<'_> {
         let search = self.search;
         let task = search.problem.task();
         let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
-        let mut broken: Vec<(f64, End)> = Vec::new();
+        let mut broken: Vec<(f64, f64, Start)> = Vec::new();
         for (cost, x, form, assembly) in ends {
             let Some((start, lack)) = self.physical(&x, form, assembly) else { continue };
-            let end = End { start, cost };
             if lack != 0.0 {
-                broken.push((cost + scale * lack * lack, end));
+                broken.push((cost + scale * lack * lack, cost, start));
             } else if search.stays_closed(form, &x) {
-                self.out.ends.push(end);
+                self.out.ends.push((cost, start));
             }
         }
         broken.sort_by(|x, y| x.0.total_cmp(&y.0));
         if search.context.stopped() && self.out.ends.is_empty() {
-            self.out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
+            self.out.ends.extend(broken.drain(..).take(1).map(|(_, cost, start)| (cost, start)));
         }
         let mut polishes = 0;
-        for (_, end) in broken {
-            let bar = self.out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
+        for (_, cost, start) in broken {
+            let bar = self.out.ends.iter().map(|end| end.0).fold(bar, f64::min);
             if polishes >= POLISHES || self.spender.is_at_its_end() {
                 break;
             }
-            if end.cost >= bar * (1.0 - SAME_OPTIMUM) {
+            if cost >= bar * (1.0 - SAME_OPTIMUM) {
                 continue;
             }
             polishes += 1;
             self.out.binding = true;
-            self.polished(end.start);
+            self.polished(start);
         }
     }
 
@@ -457,7 +449,7 @@ impl Fitting<'_> {
     fn polished(&mut self, start: Start) {
         let fitted = self.spender.fit(self.search.problem, start, LONG_FIT, u64::MAX);
         self.out.polished = true;
-        self.out.ends.extend(fitted.map(|(cost, start)| End { start, cost }));
+        self.out.ends.extend(fitted);
     }
 
     /// Fits under all requirements from the first step on, from the draws of least cost and violation.

@@ -8,7 +8,7 @@
 
 pub mod nine;
 
-use crate::judge::assess::assess;
+use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, sort};
 use crate::judge::warm::start_at;
 use crate::record::Candidate;
@@ -43,7 +43,9 @@ impl Session {
         let kept = std::mem::take(&mut self.kept);
         self.kept = kept.iter().filter_map(|candidate| followed(problem, candidate, budget)).collect();
         sort(problem, &mut self.kept);
-        self.number();
+        for (rank, candidate) in (1..).zip(&mut self.kept) {
+            candidate.rank = rank;
+        }
         &self.kept
     }
 
@@ -56,12 +58,6 @@ impl Session {
         self.kept = distinct(problem, all, FOLLOWING);
         &self.kept
     }
-
-    fn number(&mut self) {
-        for (rank, candidate) in (1..).zip(&mut self.kept) {
-            candidate.rank = rank;
-        }
-    }
 }
 
 /// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
@@ -72,8 +68,7 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     spec.task.path.tolerance = None;
     let Ok(easier) = Problem::new(spec) else { return Vec::new() };
     let Ok(outcome) = plan::search(Context::new(&easier, budget)) else { return Vec::new() };
-    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
-    let found = outcome.candidates.iter().filter_map(judged).collect();
+    let found = outcome.candidates.iter().filter_map(|c| judged_under(problem, c)).collect();
     distinct(problem, found, FOLLOWING)
 }
 

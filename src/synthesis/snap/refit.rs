@@ -110,15 +110,9 @@ impl Fixed {
         let mut fixed = design.clone();
         let at = |value: f64| Limits(value, value);
         let both = |p: [f64; 2]| p.map(at);
-        if let Some(p) = self.crank_pivot {
-            fixed.crank_pivot = Some(both(p));
-        }
-        if let Some(p) = self.follower_pivot {
-            fixed.follower_pivot = Some(both(p));
-        }
-        if let Some(angle) = self.ground_angle_deg {
-            fixed.ground_angle_deg = Some(at(angle));
-        }
+        fixed.crank_pivot = self.crank_pivot.map(both).or(fixed.crank_pivot);
+        fixed.follower_pivot = self.follower_pivot.map(both).or(fixed.follower_pivot);
+        fixed.ground_angle_deg = self.ground_angle_deg.map(at).or(fixed.ground_angle_deg);
         for &(length, value) in &self.lengths {
             *length.place(&mut fixed) = Some(at(value));
         }
