@@ -229,11 +229,9 @@ const FROM_CHANGE_POINT: (f64, f64) = (1e-4, 0.1);
 /// Returns the same links with the longest one changed so that s + l - p - q is almost zero, on either side.
 fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, LinkageType)> {
     let mut links = [1.0, ratios.crank, ratios.coupler, ratios.follower];
-    let (mut shortest, mut longest) = (0, 0);
-    for i in 1..4 {
-        shortest = if links[i] < links[shortest] { i } else { shortest };
-        longest = if links[i] > links[longest] { i } else { longest };
-    }
+    // Of equal ones the first.
+    let shortest = (0..4).min_by(|&i, &j| links[i].total_cmp(&links[j]))?;
+    let longest = (0..4).min_by(|&i, &j| links[j].total_cmp(&links[i]))?;
     let off = uniform(stream, FROM_CHANGE_POINT.0.ln(), FROM_CHANGE_POINT.1.ln()).exp();
     let side = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
     let others: f64 = links.iter().sum::<f64>() - links[longest] - links[shortest];

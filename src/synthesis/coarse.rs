@@ -5,10 +5,9 @@
 
 use super::constants::coarse::{DENSE, GROUPS};
 use crate::mechanism::Complex;
-use crate::task::Problem;
-use crate::task::Timing;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::{Problem, Timing};
 use std::ops::Range;
 
 /// The coarse problem of a dense one, with the groups of points.

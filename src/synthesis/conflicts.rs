@@ -19,16 +19,14 @@ use super::constants::conflicts::{
     TRIAL_SHARE, WARM,
 };
 use super::multistart::{LONG_FIT, judged, polish};
-use super::offered_cognates;
 use super::relaxed::led_in;
-use super::{Context, Progress, SearchOutcome, plan};
+use super::{Context, Progress, SearchOutcome, offered_cognates, plan};
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
 use crate::judge::rank::divided;
 use crate::judge::warm::start_at;
 use crate::numbers::optimise::population::PopulationError;
-use crate::record::RELAXED;
-use crate::record::{Candidate, Conflict, Relaxation};
+use crate::record::{Candidate, Conflict, RELAXED, Relaxation};
 use crate::task::Problem;
 use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
@@ -65,16 +63,9 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
         return Ok(Explained::default());
     }
     let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
-    let mut inquiry = Inquiry {
-        context,
-        problem,
-        trial,
-        spent: 0,
-        allowance: ALLOWANCE * trial,
-        refused: outcome.candidates.clone(),
-        met: Vec::new(),
-        tried: Vec::new(),
-    };
+    let (allowance, refused) = (ALLOWANCE * trial, outcome.candidates.clone());
+    let (met, tried) = (Vec::new(), Vec::new());
+    let mut inquiry = Inquiry { context, problem, trial, spent: 0, allowance, refused, met, tried };
     let explained = inquiry.explain()?;
     let Inquiry { met, .. } = inquiry;
     if let Some(reason) = context.stop_reason() {

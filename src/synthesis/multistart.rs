@@ -24,8 +24,7 @@ use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::{Positions, TorusFit};
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
 
 /// The candidates found in a round, and its cost.
@@ -239,17 +238,17 @@ fn ended<S>(
     }
 }
 
-/// Returns the positions of free timing at a fixed design, each brought to its nearest point, and the evaluations used.
+/// Returns the positions of free timing at a fixed design, each brought to its nearest point.
 pub fn settle_positions(
     context: Context<'_>,
     design: &Design,
     setting: Setting,
     positions: Positions,
-) -> Option<(Positions, u64)> {
+) -> Option<Positions> {
     let fit = TorusFit::at(context.problem, setting, design);
     let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(context.problem, SETTLING, u64::MAX) };
     let result = solve(&fit, *design, positions, &options, &|| context.stopped());
-    (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
+    (!matches!(result.outcome, LmOutcome::NoStart)).then_some(result.state)
 }
 
 /// Returns the judged candidate of a fit's end; `None` if it cannot be judged.

@@ -216,7 +216,7 @@ impl Searched for PathFitness<'_> {
             Timing::Free => {
                 let shape = space.shape(&design)?;
                 let sampled = PathFitness::positions(self, &shape, &reading)?;
-                settle_positions(context.of(problem), &design, reading.setting, sampled)?.0
+                settle_positions(context.of(problem), &design, reading.setting, sampled)?
             }
         };
         Some(Start { design, setting: reading.setting, positions })

@@ -25,8 +25,6 @@ use super::starts::{Searched, Starts, Way};
 use crate::mechanism::four_bar::mobility::linkage_type;
 use crate::mechanism::{AssemblyMode, Complex, LinkageType};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
-use crate::task::Problem;
-use crate::task::Timing;
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::fitness::{PathFitness, Reading};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios};
@@ -34,6 +32,7 @@ use crate::task::forms::projection::{ProjectedFit, Projection, Solution, ratio_b
 use crate::task::forms::reduced::known_ground;
 use crate::task::forms::start::Start;
 use crate::task::requirement::DEFAULT_LINK_RATIO;
+use crate::task::{Problem, Timing};
 use std::f64::consts::{PI, TAU};
 use std::sync::{Mutex, PoisonError};
 
@@ -307,7 +306,7 @@ impl Searched for ReducedFitness<'_> {
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
         let sampled = self.physical.positions(&shape, &reading)?;
-        let (positions, _) = settle_positions(context, &design, reading.setting, sampled)?;
+        let positions = settle_positions(context, &design, reading.setting, sampled)?;
         Some(Start { design, setting: reading.setting, positions })
     }
 }

@@ -15,8 +15,7 @@ use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::Positions;
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A fitness of a population search whose individuals become starts.
@@ -116,7 +115,6 @@ impl<'a> Starts<'a> {
         let mut known = KnownPivots::of(self.problem);
         match self.problem.task().timing() {
             Timing::Prescribed { offset, .. } => {
-                let t = assembly.sign();
                 let phases = self.problem.phases(direction);
                 let turn = match offset {
                     AngleOffset::Free => Complex::from_polar(1.0, phase),
@@ -131,13 +129,8 @@ impl<'a> Starts<'a> {
                         Complex::from_polar(1.0, -angle)
                     }
                 };
-                let positions: Option<Vec<[Complex; 2]>> = phases
-                    .iter()
-                    .map(|e| {
-                        let e = e * turn;
-                        Some([e, coupler_direction(&ratios, e, t)?])
-                    })
-                    .collect();
+                let position = |e: Complex| Some([e, coupler_direction(&ratios, e, assembly.sign())?]);
+                let positions: Option<Positions> = phases.iter().map(|e| position(e * turn)).collect();
                 let shape = self.fit(&ratios, &known, &positions?)?;
                 let ground = (shape.follower_pivot - shape.crank_pivot).arg();
                 let offset = if self.problem.offset_is_free() { phase + ground } else { 0.0 };

@@ -35,8 +35,7 @@ use crate::record::{Candidate, Evaluations, Repeats};
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{PI, TAU};
 
 /// Difference of designs, in parts of the target's size, within which they are judged once.
@@ -59,7 +58,8 @@ struct BatchOutcome {
     binding: bool,
 }
 
-struct Search<'a> {
+/// The search with its state.
+struct Timed<'a> {
     context: Context<'a>,
     problem: &'a Problem,
     forms: Vec<(f64, Projection)>,
@@ -68,11 +68,7 @@ struct Search<'a> {
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
     span: (f64, f64),
     exact: f64,
-}
-
-/// The search with its state.
-struct Timed<'a> {
-    search: Search<'a>,
+    /// Number of distinct answers wanted.
     wanted: usize,
     at: TimedState,
 }
@@ -81,12 +77,11 @@ struct Timed<'a> {
 /// reduced form.
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
-    let search = Search::new(context)?;
+    let mut timed = Timed::new(context)?;
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().timed.clone());
-    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
-    let at =
-        earlier.unwrap_or_else(|| TimedState { belief: Belief::new(search.exact), ..TimedState::default() });
-    let mut timed = Timed { search, wanted: basins_wanted(problem), at };
+    if let Some(state) = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best)) {
+        timed.at = state;
+    }
     let reason = drive(context, allowance, &mut timed);
     let at = timed.at;
     let (hits, near) = at.belief.hits();
@@ -107,22 +102,21 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 impl Timed<'_> {
     /// Judges an end, unless it cannot matter or an equal one has been judged before.
     fn read_end(&mut self, (cost, end): End, judging: &Judging<'_>) {
-        let belief = &mut self.at.belief;
-        if self.wanted == 1 && cost > self.search.exact && !belief.would_improve(cost) {
+        if self.wanted == 1 && cost > self.exact && !self.at.belief.would_improve(cost) {
             // One answer is wanted, and this is not a better one.
-            belief.came_back_to(cost);
+            self.at.belief.came_back_to(cost);
             return;
         }
-        if let Some(accepted) = self.search.judged_before(&self.at.seen, &end) {
+        if let Some(accepted) = self.judged_before(&end) {
             if accepted {
-                belief.came_back_to(cost);
+                self.at.belief.came_back_to(cost);
             }
             return;
         }
         if !judging.may_go_on() {
             return;
         }
-        let problem = self.search.problem;
+        let problem = self.problem;
         let Some(candidate) = judged(problem, &end) else { return };
         let Start { setting, design, .. } = end;
         self.at.seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
@@ -130,7 +124,7 @@ impl Timed<'_> {
     }
 
     fn take(&mut self, candidate: Candidate) {
-        let problem = self.search.problem;
+        let problem = self.problem;
         if promising(problem, &candidate) {
             let cost = searched(problem, &candidate);
             self.at.belief.came_to(cost);
@@ -164,7 +158,7 @@ impl Strategy for Timed<'_> {
 
     fn run(&mut self, _: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let (first, bar, binding) = (self.at.wave * WAVE, self.at.belief.best(), self.at.binding);
-        let run = |i, allowance| self.search.batch(first + i, allowance, bar, binding);
+        let run = |i, allowance| self.batch(first + i, allowance, bar, binding);
         let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations.objective);
         ((wave, binding), ample)
     }
@@ -201,7 +195,7 @@ impl Strategy for Timed<'_> {
     }
 }
 
-impl<'a> Search<'a> {
+impl<'a> Timed<'a> {
     fn new(context: Context<'a>) -> Option<Self> {
         let problem = context.problem;
         let Timing::Prescribed { crank_angles, .. } = problem.task().timing() else { return None };
@@ -210,29 +204,32 @@ impl<'a> Search<'a> {
             .iter()
             .map(|&direction| Some((direction, Projection::new(problem, direction)?)))
             .collect::<Option<Vec<_>>>()?;
-        let (low, high) = crank_angles
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &a| (low.min(a), high.max(a)));
+        let low = crank_angles.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = crank_angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let high = if problem.task().closed() { high.max(low + TAU) } else { high };
         let starts = Starts::new(problem);
-        Some(Search {
+        let exact = exact_cost(problem);
+        Some(Timed {
             requirements: problem.requirements(&starts.spaces[0].1),
             starts,
             forms,
             span: (low, high),
-            exact: exact_cost(problem),
+            exact,
+            wanted: basins_wanted(problem),
+            at: TimedState { belief: Belief::new(exact), ..TimedState::default() },
             context,
             problem,
         })
     }
 
     /// Returns the verdict on an end if an equal one has been judged before.
-    fn judged_before(&self, seen: &[Judged], end: &Start) -> Option<bool> {
+    fn judged_before(&self, end: &Start) -> Option<bool> {
         let near = SAME_NUMBERS * self.problem.task().size();
         let same = |(x, y): (&f64, &f64)| (x - y).abs() <= near;
-        seen.iter()
-            .find(|judged| judged.setting == end.setting && judged.design.iter().zip(&end.design).all(same))
-            .map(|judged| judged.accepted)
+        let equal = |judged: &&Judged| {
+            judged.setting == end.setting && judged.design.iter().zip(&end.design).all(same)
+        };
+        self.at.seen.iter().find(equal).map(|judged| judged.accepted)
     }
 
     fn draw(&self, draws: &mut Stream) -> Option<Reduced> {
@@ -351,7 +348,7 @@ type ReducedEnd = (f64, Reduced, usize, AssemblyMode);
 
 /// The fits of one batch within its allowance.
 struct Fitting<'a> {
-    search: &'a Search<'a>,
+    search: &'a Timed<'a>,
     /// One fit per form.
     fits: Vec<ProjectedFit<'a>>,
     spender: Spender<'a>,
@@ -359,7 +356,7 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Returns the start and the violation of unknowns of the reduced form ([`Search::physical`]).
+    /// Returns the start and the violation of unknowns of the reduced form ([`Timed::physical`]).
     fn physical(&mut self, x: &Reduced, form: usize, assembly: AssemblyMode) -> Option<(Start, f64)> {
         let fit = &mut self.fits[form];
         fit.set_assembly(assembly);
