@@ -14,7 +14,7 @@ use linkwright::internals::app::job::checkpoint::{Checkpoint, Writer};
 use linkwright::internals::app::job::folder::{CHECKPOINT, replace_file};
 use linkwright::internals::app::job::run::{Context, Job, run_kept};
 use linkwright::internals::files::problem_file;
-use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::synthesis::keeper::{Keeper, LEAST_PAUSE, SearchState};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -105,7 +105,7 @@ fn checkpoints(place: &Path, problem: &str, method: &str) {
         let mut spent = spent.lock().expect("no panic");
         *spent = (spent.0 + 1, spent.1 + begun.elapsed(), bytes.len());
     };
-    let keeper = Keeper::new(SearchState::default(), Pace::Seldom, &sink);
+    let keeper = Keeper::new(SearchState::default(), LEAST_PAUSE, &sink);
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let finished = run_kept(&job, &context, Some(&keeper)).expect("it runs");
     let (count, spent, bytes) = *spent.lock().expect("no panic");

@@ -54,9 +54,10 @@ fn main() {
             for which in all {
                 row(&format!("{}{word}", which.name()), evaluations, |seed| {
                     let problem = problem(seed, evaluations, Method::DifferentialEvolution, variables);
-                    let end = search(Context::new(&problem, &budget), which, evaluations).expect("it runs");
+                    let (end, _) =
+                        search(Context::new(&problem, &budget), which, evaluations).expect("it runs");
                     assert!(end.evaluations.objective <= evaluations, "the budget is kept");
-                    best(&end.found)
+                    best(&end.candidates)
                 });
             }
         }

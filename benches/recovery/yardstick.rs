@@ -96,7 +96,7 @@ fn fit(
         let end = polish(context, start, LONG_FIT, u64::MAX).end?;
         Some((end.design, end.positions))
     } else {
-        let (positions, _) = settle_positions(context, &design, setting, positions)?;
+        let positions = settle_positions(context, &design, setting, positions)?;
         Some((design, positions))
     }
 }

@@ -46,22 +46,30 @@ const LAID: usize = 2400;
 
 type Descriptor = [f32; 2 * HARMONICS];
 
-/// The x and y coordinates of points evenly along a closed curve, centred and of unit norm.
+/// The x and y coordinates of points, centred and scaled to unit norm.
 #[derive(Clone, Copy, Debug)]
-struct Even([[f32; EVEN]; 2]);
+struct Normal<const N: usize>([[f32; N]; 2]);
 
-impl Even {
-    fn of(points: &[Complex]) -> Option<Even> {
+impl<const N: usize> Normal<N> {
+    /// Creates them from `N` points; `None` if all points coincide.
+    fn of(points: &[Complex]) -> Option<Self> {
         let middle = points.iter().sum::<Complex>() / points.len() as f64;
         let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
-        let mut out = [[0.0; EVEN]; 2];
-        for (m, p) in points.iter().enumerate().take(EVEN) {
+        let mut out = [[0.0; N]; 2];
+        for (m, p) in points.iter().enumerate().take(N) {
             let q = (p - middle) / norm;
             (out[0][m], out[1][m]) = (q.re as f32, q.im as f32);
         }
-        norm.is_normal().then_some(Even(out))
+        norm.is_normal().then_some(Normal(out))
     }
+}
 
+/// Points evenly along a closed curve.
+type Even = Normal<EVEN>;
+/// Points evenly along an arc.
+type OnArc = Normal<ON_ARC>;
+
+impl Even {
     /// Returns the relative residual of a target fitted by similarity to this curve, for each shift of the first point;
     /// `ahead`: in the same direction, else reversed.
     fn misfits(&self, target: &Even, ahead: bool) -> [f32; EVEN] {
@@ -132,8 +140,7 @@ impl Entry {
             };
             points.push(e * self.ratios.crank + u * self.offset);
         }
-        let along = lengths(&points)?;
-        Some(Traced { points, along })
+        Traced::of(points)
     }
 }
 
@@ -146,49 +153,40 @@ fn unit_circle() -> &'static [Complex; TRACED] {
 }
 
 impl Traced {
+    /// Measures a closed polygon; `None` if it has no length.
+    fn of(points: Vec<Complex>) -> Option<Traced> {
+        let mut along = vec![0.0];
+        for i in 0..points.len() {
+            let step = (points[(i + 1) % points.len()] - points[i]).norm_sqr().sqrt();
+            along.push(along[i] + step);
+        }
+        let whole = along[points.len()];
+        along.iter_mut().for_each(|s| *s /= whole);
+        (whole > 0.0 && whole.is_finite()).then_some(Traced { points, along })
+    }
+
     /// Returns the index of the sample before a place in [0, 1) of the curve, and the fraction of the way to the next.
     fn locate(&self, place: f64) -> (usize, f64) {
-        let corner = self.along.partition_point(|length| *length <= place).clamp(1, TRACED) - 1;
+        let corner = self.along.partition_point(|length| *length <= place).clamp(1, self.points.len()) - 1;
         let (from, to) = (self.along[corner], self.along[corner + 1]);
         (corner, if to > from { (place - from) / (to - from) } else { 0.0 })
     }
 
     fn point(&self, place: f64) -> Complex {
         let (corner, part) = self.locate(place);
-        let (from, to) = (self.points[corner], self.points[(corner + 1) % TRACED]);
+        let (from, to) = (self.points[corner], self.points[(corner + 1) % self.points.len()]);
         from + (to - from) * part
+    }
+
+    /// Returns points evenly along the curve, from its first sample on.
+    fn even(&self) -> Vec<Complex> {
+        (0..EVEN).map(|m| self.point(m as f64 / EVEN as f64)).collect()
     }
 
     fn parameter(&self, place: f64) -> f64 {
         let (corner, part) = self.locate(place);
         ((corner as f64 + 0.5 + part) / TRACED as f64).rem_euclid(1.0)
     }
-}
-
-/// Returns the length along a closed polygon up to each corner and back at the first, in parts of the whole.
-fn lengths(points: &[Complex]) -> Option<Vec<f64>> {
-    let mut along = vec![0.0];
-    for i in 0..points.len() {
-        let step = (points[(i + 1) % points.len()] - points[i]).norm_sqr().sqrt();
-        along.push(along[i] + step);
-    }
-    let whole = along[points.len()];
-    (whole > 0.0 && whole.is_finite()).then(|| along.iter().map(|s| s / whole).collect())
-}
-
-/// Returns `count` points evenly along a closed polygon, from its first corner on.
-fn evenly(points: &[Complex], along: &[f64], count: usize) -> Vec<Complex> {
-    let mut corner = 0;
-    (0..count)
-        .map(|m| {
-            let s = m as f64 / count as f64;
-            while along[corner + 1] <= s {
-                corner += 1;
-            }
-            let (from, to) = (points[corner], points[(corner + 1) % points.len()]);
-            from + (to - from) * ((s - along[corner]) / (along[corner + 1] - along[corner]))
-        })
-        .collect()
 }
 
 fn descriptor(even: &[Complex]) -> Option<Descriptor> {
@@ -231,11 +229,9 @@ const FROM_CHANGE_POINT: (f64, f64) = (1e-4, 0.1);
 /// Returns the same links with the longest one changed so that s + l - p - q is almost zero, on either side.
 fn near_change_point(stream: &mut Stream, ratios: &Ratios) -> Option<(Ratios, LinkageType)> {
     let mut links = [1.0, ratios.crank, ratios.coupler, ratios.follower];
-    let (mut shortest, mut longest) = (0, 0);
-    for i in 1..4 {
-        shortest = if links[i] < links[shortest] { i } else { shortest };
-        longest = if links[i] > links[longest] { i } else { longest };
-    }
+    // Of equal ones the first.
+    let shortest = (0..4).min_by(|&i, &j| links[i].total_cmp(&links[j]))?;
+    let longest = (0..4).min_by(|&i, &j| links[j].total_cmp(&links[i]))?;
     let off = uniform(stream, FROM_CHANGE_POINT.0.ln(), FROM_CHANGE_POINT.1.ln()).exp();
     let side = if below(stream, 2) == 0 { 1.0 } else { -1.0 };
     let others: f64 = links.iter().sum::<f64>() - links[longest] - links[shortest];
@@ -265,10 +261,9 @@ fn draw(stream: &mut Stream) -> Option<Entry> {
         let mobility: Mobility = super::starts::unit_linkage(&ratios)?;
         Some(mobility.arc(Circuit { index: which % mobility.circuits().max(1) })?)
     };
-    let even = Even([[0.0; EVEN]; 2]);
+    let even = Normal([[0.0; EVEN]; 2]);
     let mut entry = Entry { kind, ratios, offset, assembly, arc, descriptor: [0.0; 2 * HARMONICS], even };
-    let traced = entry.trace()?;
-    let points = evenly(&traced.points, &traced.along, EVEN);
+    let points = entry.trace()?.even();
     entry.descriptor = descriptor(&points)?;
     entry.even = Even::of(&points)?;
     Some(entry)
@@ -294,7 +289,7 @@ struct Arc {
     span: f32,
     /// Whether the arc stays on one branch (assembly).
     one_branch: bool,
-    points: [[f32; 2]; ON_ARC],
+    points: OnArc,
 }
 
 /// Number of points on an arc.
@@ -303,18 +298,6 @@ const ON_ARC: usize = 12;
 const ARCS: usize = 3;
 /// Least and greatest length of an arc, in parts of the curve's.
 const SPANS: (f64, f64) = (0.1, 0.97);
-
-/// Returns the points centred and scaled to unit norm; `None` if all points coincide.
-fn normalised(points: &[Complex]) -> Option<[[f32; 2]; ON_ARC]> {
-    let middle = points.iter().sum::<Complex>() / points.len() as f64;
-    let norm = points.iter().map(|p| (p - middle).norm_sqr()).sum::<f64>().sqrt();
-    let mut out = [[0.0; 2]; ON_ARC];
-    for (out, p) in out.iter_mut().zip(points) {
-        let q = (p - middle) / norm;
-        *out = [q.re as f32, q.im as f32];
-    }
-    norm.is_normal().then_some(out)
-}
 
 impl Arc {
     fn of(index: usize, entry: &Entry, traced: &Traced, stream: &mut Stream) -> Option<Arc> {
@@ -330,17 +313,19 @@ impl Arc {
             let halves: Vec<bool> = (0..=24).map(|m| half(begin + span * f64::from(m) / 24.0)).collect();
             halves.iter().all(|h| *h == halves[0])
         };
-        let points = normalised(&points)?;
+        let points = Normal::of(&points)?;
         Some(Arc { entry: index as u32, begin: begin as f32, span: span as f32, one_branch, points })
     }
 
     /// Returns the relative residual of a target after the best similarity, for the arc in the target's direction and
     /// reversed.
-    fn misfits(&self, target: &[[f32; 2]; ON_ARC]) -> [f32; 2] {
+    fn misfits(&self, target: &OnArc) -> [f32; 2] {
+        let (Normal([tx, ty]), Normal([x, y])) = (target, &self.points);
         let (mut ahead, mut back) = ([0.0f32; 2], [0.0f32; 2]);
-        for ((t, c), r) in target.iter().zip(&self.points).zip(self.points.iter().rev()) {
-            ahead = [ahead[0] + c[0] * t[0] + c[1] * t[1], ahead[1] + c[0] * t[1] - c[1] * t[0]];
-            back = [back[0] + r[0] * t[0] + r[1] * t[1], back[1] + r[0] * t[1] - r[1] * t[0]];
+        for m in 0..ON_ARC {
+            let r = ON_ARC - 1 - m;
+            ahead = [ahead[0] + x[m] * tx[m] + y[m] * ty[m], ahead[1] + x[m] * ty[m] - y[m] * tx[m]];
+            back = [back[0] + x[r] * tx[m] + y[r] * ty[m], back[1] + x[r] * ty[m] - y[r] * tx[m]];
         }
         [ahead, back].map(|z| 1.0 - (z[0] * z[0] + z[1] * z[1]))
     }
@@ -378,21 +363,36 @@ struct Laid {
     misfit: f64,
 }
 
+/// Returns the `LAID` nearest of some entries or arcs, each with its misfit and its index, nearest first; equals in
+/// their order.
+fn nearest<T>(mut near: Vec<(f32, usize, T)>) -> Vec<(f32, usize, T)> {
+    let order =
+        |one: &(f32, usize, T), other: &(f32, usize, T)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
+    if near.len() > LAID {
+        near.select_nth_unstable_by(LAID, order);
+        near.truncate(LAID);
+    }
+    near.sort_by(order);
+    near
+}
+
 /// The nearest entries to a target, best first.
 #[derive(Debug)]
-pub struct Matches {
+pub(super) struct Matches {
     laid: Vec<Laid>,
 }
 
 impl Matches {
     /// Finds the matches for the target of a problem; empty if no entry may be used.
-    pub fn of(starts: &Starts<'_>) -> Matches {
+    pub(super) fn of(starts: &Starts<'_>) -> Matches {
         let task = starts.problem().task();
-        if task.closed() || task.repeats_first() { Matches::closed(starts) } else { Matches::open(starts) }
+        let is_closed = task.closed() || task.repeats_first();
+        let laid = if is_closed { Matches::closed(starts) } else { Matches::open(starts) };
+        Matches { laid: laid.unwrap_or_default() }
     }
 
-    fn open(starts: &Starts<'_>) -> Matches {
-        let none = Matches { laid: Vec::new() };
+    /// Returns the matches of an open target; `None` if all of its points coincide.
+    fn open(starts: &Starts<'_>) -> Option<Vec<Laid>> {
         let problem = starts.problem();
         let (points, along) = (problem.task().points(), starts.arc());
         // ON_ARC points evenly along the target.
@@ -404,56 +404,34 @@ impl Matches {
             let part = if to > from { ((s - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
             even.push(points[next - 1] + (points[next] - points[next - 1]) * part);
         }
-        let Some(target) = normalised(&even) else { return none };
+        let target = Normal::of(&even)?;
         let types = problem.types();
-        let senses = [1.0, -1.0].map(|sense| problem.directions().contains(&sense));
-        let mut near: Vec<(f32, usize, f64)> = Vec::new();
-        for (index, arc) in arcs().iter().enumerate() {
-            let [ahead, back] = arc.misfits(&target);
-            let (misfit, direction) = match senses {
-                [true, true] => {
-                    if back < ahead {
-                        (back, -1.0)
-                    } else {
-                        (ahead, 1.0)
-                    }
-                }
-                [true, false] => (ahead, 1.0),
-                _ => (back, -1.0),
-            };
-            let kind = || atlas()[arc.entry as usize].kind;
-            let usable =
-                (arc.one_branch || problem.branch_any()) && (types.is_empty() || types.contains(&kind()));
-            if usable {
-                near.push((misfit, index, direction));
-            }
-        }
-        let order = |one: &(f32, usize, f64), other: &(f32, usize, f64)| {
-            one.0.total_cmp(&other.0).then(one.1.cmp(&other.1))
+        let [with, against] = [1.0, -1.0].map(|sense| problem.directions().contains(&sense));
+        let usable = |arc: &Arc| {
+            (arc.one_branch || problem.branch_any())
+                && (types.is_empty() || types.contains(&atlas()[arc.entry as usize].kind))
         };
-        if near.len() > LAID {
-            near.select_nth_unstable_by(LAID, order);
-            near.truncate(LAID);
-        }
-        near.sort_by(order);
+        let apart = |(index, arc): (usize, &Arc)| {
+            let [ahead, back] = arc.misfits(&target);
+            let reversed = if with && against { back < ahead } else { !with };
+            if reversed { (back, index, -1.0) } else { (ahead, index, 1.0) }
+        };
+        let near = nearest(arcs().iter().enumerate().filter(|(_, arc)| usable(arc)).map(apart).collect());
         let lay = |&(misfit, index, direction): &(f32, usize, f64)| {
             let arc = &arcs()[index];
             let (begin, span) = (f64::from(arc.begin), f64::from(arc.span));
             let begin = if direction > 0.0 { begin } else { begin + span };
             Laid { entry: &atlas()[arc.entry as usize], begin, span, direction, misfit: f64::from(misfit) }
         };
-        Matches { laid: near.iter().map(lay).collect() }
+        Some(near.iter().map(lay).collect())
     }
 
-    fn closed(starts: &Starts<'_>) -> Matches {
-        let none = Matches { laid: Vec::new() };
+    /// Returns the matches of a closed target; `None` if all of its points coincide.
+    fn closed(starts: &Starts<'_>) -> Option<Vec<Laid>> {
         let problem = starts.problem();
-        let points: Vec<Complex> = starts.loop_points().to_vec();
-        let Some(along) = lengths(&points) else { return none };
-        let even = evenly(&points, &along, EVEN);
-        let (Some(wanted), Some(target)) = (descriptor(&even), Even::of(&even)) else { return none };
+        let even = Traced::of(starts.loop_points().to_vec())?.even();
+        let (wanted, target) = (descriptor(&even)?, Even::of(&even)?);
         let types = problem.types();
-        let senses: &[f64] = problem.directions();
         let usable = |entry: &Entry| {
             (types.is_empty() || types.contains(&entry.kind)) && (entry.arc.is_none() || problem.branch_any())
         };
@@ -466,50 +444,31 @@ impl Matches {
             }
             same.min(reversed)
         };
-        let mut near: Vec<(f32, usize)> = atlas()
-            .iter()
-            .enumerate()
-            .filter(|(_, entry)| usable(entry))
-            .map(|(index, entry)| (apart(entry), index))
-            .collect();
-        let order =
-            |one: &(f32, usize), other: &(f32, usize)| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1));
-        if near.len() > LAID {
-            near.select_nth_unstable_by(LAID, order);
-            near.truncate(LAID);
-        }
-        near.sort_by(order);
-        let lay = |&(_, index): &(f32, usize)| -> Option<Laid> {
-            let entry: &'static Entry = &atlas()[index];
-            let mut best: Option<Laid> = None;
-            for &direction in senses {
-                for (shift, misfit) in entry.even.misfits(&target, direction > 0.0).into_iter().enumerate() {
-                    let misfit = f64::from(misfit);
-                    if best.is_none_or(|b| misfit < b.misfit) {
-                        let begin = shift as f64 / EVEN as f64;
-                        best = Some(Laid { entry, begin, span: 1.0, direction, misfit });
-                    }
-                }
-            }
-            best
+        let usable = atlas().iter().enumerate().filter(|(_, entry)| usable(entry));
+        let near = nearest(usable.map(|(index, entry)| (apart(entry), index, entry)).collect());
+        let lay = |(_, _, entry): (f32, usize, &'static Entry)| {
+            let along = |&direction: &f64| {
+                let misfits = entry.even.misfits(&target, direction > 0.0).into_iter().map(f64::from);
+                misfits.enumerate().map(move |(shift, misfit)| {
+                    let begin = shift as f64 / EVEN as f64;
+                    Laid { entry, begin, span: 1.0, direction, misfit }
+                })
+            };
+            let laid = problem.directions().iter().flat_map(along);
+            laid.min_by(|one, other| one.misfit.total_cmp(&other.misfit))
         };
-        let mut laid: Vec<Laid> = near.iter().filter_map(lay).collect();
+        let mut laid: Vec<Laid> = near.into_iter().filter_map(lay).collect();
         laid.sort_by(|one, other| one.misfit.total_cmp(&other.misfit));
-        Matches { laid }
+        Some(laid)
     }
 
     /// Returns the number of matches.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.laid.len()
     }
 
-    /// Returns whether there are no matches.
-    pub fn is_empty(&self) -> bool {
-        self.laid.is_empty()
-    }
-
     /// Returns the start made from the match of a rank, counted from 0.
-    pub fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
+    pub(super) fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
         let laid = self.laid.get(rank)?;
         let traced = laid.entry.trace()?;
         let mut positions = Vec::with_capacity(starts.arc().len());

@@ -63,19 +63,15 @@ pub fn buildable(
     outcome.searched = search;
     let mut best: Option<Candidate> = None;
     let mut offer = |candidate: &Candidate| {
-        if !candidate.accepted {
-            return;
-        }
-        let better = best.as_ref().is_none_or(|best| compare(problem, candidate, best).is_lt());
-        if better {
+        let better = || best.as_ref().is_none_or(|best| compare(problem, candidate, best).is_lt());
+        if candidate.accepted && better() {
             let list = warnings(problem, candidate);
             if !list.iter().any(|warning| is_serious(warning) || !search) {
                 best = Some(Candidate { warnings: list, ..candidate.clone() });
             }
         }
     };
-    ranked.iter().for_each(&mut offer);
-    others.iter().for_each(&mut offer);
+    ranked.iter().chain(others).for_each(&mut offer);
     // As in the main search, a far target is moved to the origin.
     let centre = problem.task().centre();
     let away = if centre.norm() > FAR * problem.task().size() { centre } else { Complex::new(0.0, 0.0) };
@@ -114,13 +110,7 @@ fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     require.transmission_deg_min = Some(require.transmission_deg_min.map_or(least, |deg| deg.max(least)));
     require.link_ratio_max = require.link_ratio_max.min(GREATEST_LINK_RATIO);
     if require.types.is_empty() {
-        require.types = vec![
-            LinkageType::CrankRocker,
-            LinkageType::RockerCrank,
-            LinkageType::DoubleCrank,
-            LinkageType::DoubleRocker,
-            LinkageType::TripleRocker,
-        ];
+        require.types.extend(LinkageType::ALL.into_iter().filter(|kind| *kind != LinkageType::ChangePoint));
     }
     spec
 }

@@ -5,10 +5,9 @@
 
 use super::constants::coarse::{DENSE, GROUPS};
 use crate::mechanism::Complex;
-use crate::task::Problem;
-use crate::task::Timing;
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::{Problem, Timing};
 use std::ops::Range;
 
 /// The coarse problem of a dense one, with the groups of points.
@@ -69,11 +68,10 @@ impl Coarse {
             for (i, _) in group.clone().enumerate() {
                 // From -1/2 to 1/2 across the group.
                 let part = (i as f64 + 0.5) / group.len() as f64 - 0.5;
-                let neighbour =
-                    if part < 0.0 { k.checked_sub(1) } else { Some(k + 1).filter(|k| *k < count) };
-                let neighbour = match neighbour {
-                    None if self.cyclic => Some(if part < 0.0 { count - 1 } else { 0 }),
-                    other => other,
+                let neighbour = if part < 0.0 {
+                    k.checked_sub(1).or(self.cyclic.then_some(count - 1))
+                } else {
+                    Some(k + 1).filter(|k| *k < count).or(self.cyclic.then_some(0))
                 };
                 positions.push(match neighbour {
                     Some(next) => between(at[k], at[next], part.abs()),

@@ -19,18 +19,16 @@ use super::constants::conflicts::{
     TRIAL_SHARE, WARM,
 };
 use super::multistart::{LONG_FIT, judged, polish};
-use super::offered_cognates;
 use super::relaxed::led_in;
-use super::{Context, Progress, SearchOutcome, plan};
-use crate::judge::assess::assess;
+use super::{Context, Progress, SearchOutcome, offered_cognates, plan};
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
 use crate::judge::rank::divided;
 use crate::judge::warm::start_at;
 use crate::numbers::optimise::population::PopulationError;
-use crate::record::RELAXED;
-use crate::record::{Candidate, Conflict, Relaxation};
+use crate::record::{Candidate, Conflict, RELAXED, Relaxation};
 use crate::task::Problem;
+use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
 
 /// Distance from a bound, in parts of its scale, within which the bound is active.
@@ -65,16 +63,9 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
         return Ok(Explained::default());
     }
     let trial = (problem.spec().solve.evaluations / TRIAL_SHARE).clamp(1, TRIAL);
-    let mut inquiry = Inquiry {
-        context,
-        problem,
-        trial,
-        spent: 0,
-        allowance: ALLOWANCE * trial,
-        refused: outcome.candidates.clone(),
-        met: Vec::new(),
-        tried: Vec::new(),
-    };
+    let (allowance, refused) = (ALLOWANCE * trial, outcome.candidates.clone());
+    let (met, tried) = (Vec::new(), Vec::new());
+    let mut inquiry = Inquiry { context, problem, trial, spent: 0, allowance, refused, met, tried };
     let explained = inquiry.explain()?;
     let Inquiry { met, .. } = inquiry;
     if let Some(reason) = context.stop_reason() {
@@ -194,8 +185,8 @@ impl Inquiry<'_> {
     /// Returns the refused candidates that are acceptable under a looser specification.
     fn known_under(&self, spec: &ProblemSpec) -> Vec<Candidate> {
         let Ok(problem) = Problem::new(spec.clone()) else { return Vec::new() };
-        let judged = |c: &Candidate| assess(&problem, &c.linkage, &c.crank_deg, &c.t1_at);
-        self.refused.iter().filter_map(judged).filter(|c| c.accepted).take(WARM).collect()
+        let judged = self.refused.iter().filter_map(|c| judged_under(&problem, c));
+        judged.filter(|c| c.accepted).take(WARM).collect()
     }
 
     /// Runs a search of `auto` with a budget of its own and returns the candidates that it accepts. `fits` as for
@@ -297,26 +288,19 @@ impl Inquiry<'_> {
         &mut self,
         demands: &[Demand],
         base: &ProblemSpec,
-        mut warm: Vec<Candidate>,
+        warm: Vec<Candidate>,
     ) -> Result<Option<(f64, Relaxation)>, PopulationError> {
         let has_measure = |d: &Demand| !d.is_policy();
         let measured: Vec<Demand> = demands.iter().copied().filter(has_measure).collect();
         let Some(ladder) = Ladder::new(self.problem, &measured) else { return Ok(None) };
-        let mut reached: Vec<Vec<f64>> = Vec::new();
-        warm.retain(|candidate| match ladder.reached(self.problem, candidate) {
-            Some(limits) => {
-                reached.push(limits);
-                true
-            }
-            None => false,
-        });
-        let Some(first) = (0..warm.len())
-            .min_by(|&i, &k| ladder.distance(&reached[i]).total_cmp(&ladder.distance(&reached[k])))
-        else {
-            return Ok(None);
-        };
-        let outermost = reached.swap_remove(first);
-        warm.swap(0, first);
+        let reached = |c: Candidate| Some((ladder.reached(self.problem, &c)?, c));
+        let mut reached: Vec<(Vec<f64>, Candidate)> = warm.into_iter().filter_map(reached).collect();
+        let distance = |i: &usize| ladder.distance(&reached[*i].0);
+        let nearest = (0..reached.len()).min_by(|one, other| distance(one).total_cmp(&distance(other)));
+        let Some(nearest) = nearest else { return Ok(None) };
+        reached.swap(0, nearest);
+        let outermost = reached[0].0.clone();
+        let mut warm: Vec<Candidate> = reached.into_iter().map(|(_, candidate)| candidate).collect();
         let mut outer = outermost.clone();
         // The tolerance judges the error but does not guide a fit: the error found is the best known. Beside other
         // limits it follows: it becomes the error that the last fit leaves.
@@ -326,7 +310,7 @@ impl Inquiry<'_> {
                 if step < SHORTEST_STEP || self.exhausted() {
                     break;
                 }
-                let between = ladder.without_tolerance(ladder.between(1.0 - step, &outer));
+                let between = ladder.without_tolerance(&ladder.between(1.0 - step, &outer));
                 match self.accepted_at(ladder.spec(base, &between), &warm, step >= SEARCHED_STEP)? {
                     Some(candidate) => {
                         let limits = ladder.reached(self.problem, &candidate);
@@ -408,38 +392,52 @@ fn scale(demand: Demand, spec: &ProblemSpec) -> f64 {
     }
 }
 
-/// The limits of several demands, with their outward sides.
+/// A limit of a demand.
+struct Rung {
+    asked: f64,
+    outward: f64,
+    scale: f64,
+    is_length: bool,
+    is_tolerance: bool,
+}
+
+impl Rung {
+    /// Returns a limit as it may be asked for: a length is never below 0.
+    fn allowed(&self, limit: f64) -> f64 {
+        if self.is_length { limit.max(0.0) } else { limit }
+    }
+
+    fn is_outside(&self, one: f64, other: f64) -> bool {
+        self.outward * (one - other) > 0.0
+    }
+}
+
+/// The limits of several demands, in their order.
 struct Ladder {
     demands: Vec<Demand>,
-    asked: Vec<f64>,
-    outward: Vec<f64>,
-    scale: Vec<f64>,
-    lengths: Vec<bool>,
-    tolerances: Vec<bool>,
+    rungs: Vec<Rung>,
 }
 
 impl Ladder {
     /// Collects the limits; `None` if one of the demands has no limits as numbers.
     fn new(problem: &Problem, demands: &[Demand]) -> Option<Ladder> {
-        let mut ladder = Ladder {
-            demands: demands.to_vec(),
-            asked: Vec::new(),
-            outward: Vec::new(),
-            scale: Vec::new(),
-            lengths: Vec::new(),
-            tolerances: Vec::new(),
-        };
+        let mut rungs = Vec::new();
         for demand in demands {
             let measure = scale(*demand, problem.spec());
-            for limit in demand.limits(problem.spec())? {
-                ladder.asked.push(limit.value);
-                ladder.outward.push(limit.outward);
-                ladder.scale.push(if measure > 0.0 { measure } else { problem.task().size() });
-                ladder.lengths.push(matches!(demand, Demand::Design(key) if key.is_length()));
-                ladder.tolerances.push(*demand == Demand::TOLERANCE);
-            }
+            let rung = |limit: Limit| Rung {
+                asked: limit.value,
+                outward: limit.outward,
+                scale: if measure > 0.0 { measure } else { problem.task().size() },
+                is_length: matches!(demand, Demand::Design(key) if key.is_length()),
+                is_tolerance: *demand == Demand::TOLERANCE,
+            };
+            rungs.extend(demand.limits(problem.spec())?.into_iter().map(rung));
         }
-        Some(ladder)
+        Some(Ladder { demands: demands.to_vec(), rungs })
+    }
+
+    fn each(&self, limits: &[f64], to: impl Fn(&Rung, f64) -> f64) -> Vec<f64> {
+        self.rungs.iter().zip(limits).map(|(rung, limit)| to(rung, *limit)).collect()
     }
 
     /// Returns the limits that a candidate just meets, none stricter than asked.
@@ -449,47 +447,35 @@ impl Ladder {
         for demand in &self.demands {
             limits.extend(demand.attained(&judged)?);
         }
-        let outer = |i: usize| {
-            if self.outward[i] * (limits[i] - self.asked[i]) > 0.0 { limits[i] } else { self.asked[i] }
-        };
-        (limits.len() == self.asked.len()).then(|| (0..limits.len()).map(outer).collect())
+        let outer =
+            |rung: &Rung, limit: f64| if rung.is_outside(limit, rung.asked) { limit } else { rung.asked };
+        (limits.len() == self.rungs.len()).then(|| self.each(&limits, outer))
     }
 
     /// Returns the greatest relative change of the limits.
     fn distance(&self, limits: &[f64]) -> f64 {
-        let each = limits.iter().zip(&self.asked).zip(&self.scale);
-        each.map(|((limit, asked), scale)| (limit - asked).abs() / scale).fold(0.0, f64::max)
+        let each = self.each(limits, |rung, limit| (limit - rung.asked).abs() / rung.scale);
+        each.into_iter().fold(0.0, f64::max)
     }
 
     /// Returns limits at a fraction of the way from the asked to the `outer` ones; lengths never below 0.
     fn between(&self, share: f64, outer: &[f64]) -> Vec<f64> {
-        let at = |i: usize| {
-            let limit = self.asked[i] + share * (outer[i] - self.asked[i]);
-            if self.lengths[i] { limit.max(0.0) } else { limit }
-        };
-        (0..outer.len()).map(at).collect()
+        self.each(outer, |rung, outer| rung.allowed(rung.asked + share * (outer - rung.asked)))
     }
 
     /// Returns the same limits with a tolerance that everything meets.
-    fn without_tolerance(&self, mut limits: Vec<f64>) -> Vec<f64> {
-        for (limit, _) in limits.iter_mut().zip(&self.tolerances).filter(|(_, is)| **is) {
-            *limit = f64::MAX;
-        }
-        limits
+    fn without_tolerance(&self, limits: &[f64]) -> Vec<f64> {
+        self.each(limits, |rung, limit| if rung.is_tolerance { f64::MAX } else { limit })
     }
 
     /// Returns the stricter limit of two in each place.
     fn inner(&self, one: &[f64], other: &[f64]) -> Vec<f64> {
-        let at = |i: usize| if self.outward[i] * (one[i] - other[i]) > 0.0 { other[i] } else { one[i] };
-        (0..one.len()).map(at).collect()
+        let pairs = self.rungs.iter().zip(one.iter().zip(other));
+        pairs.map(|(rung, (one, other))| if rung.is_outside(*one, *other) { *other } else { *one }).collect()
     }
 
     fn rounded(&self, limits: &[f64]) -> Vec<f64> {
-        let at = |i: usize| {
-            let limit = rounded_outward(limits[i], self.asked[i], self.outward[i]);
-            if self.lengths[i] { limit.max(0.0) } else { limit }
-        };
-        (0..limits.len()).map(at).collect()
+        self.each(limits, |rung, limit| rung.allowed(rounded_outward(limit, rung.asked, rung.outward)))
     }
 
     fn spec(&self, base: &ProblemSpec, limits: &[f64]) -> ProblemSpec {

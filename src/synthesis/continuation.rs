@@ -33,17 +33,31 @@ pub struct Exact {
     pub classes: Vec<Class>,
 }
 
-/// Lists the real classes with their certificates, if they have one, and counts them in the census.
+/// Lists the real classes, with their certificates if they have one and all figures are computed, and counts them in
+/// the census.
 pub fn listed(
     problem: &Problem,
     target: &Target,
-    census: Census,
-    completeness: Completeness,
+    (census, completeness): (Census, Completeness),
     real: &[Solution],
+    depth: Depth,
 ) -> Exact {
-    let classes = classes(problem, target, real, Depth::Whole);
-    let proofs = classes.par_iter().map(|class| certified(target, &class.best)).collect();
-    counted((census, completeness), real.len(), classes, proofs)
+    let classes = classes(problem, target, real, depth);
+    let proofs: Vec<Option<Certified>> = match depth {
+        Depth::Whole => classes.par_iter().map(|class| certified(target, &class.best)).collect(),
+        Depth::Glance => vec![None; classes.len()],
+    };
+    let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
+    let census = Census {
+        degenerate: real.len() - classes.len(),
+        one_circuit: count(|c| c.one_circuit),
+        in_order: count(|c| c.in_order),
+        free_of_defects: count(|c| c.free_of_defects),
+        ..census
+    };
+    let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
+    let generic = census.classes == GENERIC_CLASSES;
+    Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
 }
 
 /// Lists all real linkages of a quick solve, for a target that moves: without certificates and without distances to
@@ -51,9 +65,7 @@ pub fn listed(
 pub fn glanced(problem: &Problem, solved: &Solved) -> Exact {
     let real = solved.classes.iter().filter(|class| class.reality == Reality::Real);
     let real: Vec<Solution> = real.map(|class| class.solution).collect();
-    let classes = classes(problem, &solved.target, &real, Depth::Glance);
-    let proofs = vec![None; classes.len()];
-    counted(ended(solved), real.len(), classes, proofs)
+    listed(problem, &solved.target, ended(solved), &real, Depth::Glance)
 }
 
 /// Returns the census of the paths and the completeness, in the record's terms; nothing is certified yet.
@@ -79,26 +91,6 @@ fn ended(solved: &Solved) -> (Census, Completeness) {
         nine_point::Completeness::Cancelled => Completeness::Cancelled,
     };
     (census, completeness)
-}
-
-/// Counts the listed classes in the census.
-fn counted(
-    (census, completeness): (Census, Completeness),
-    real: usize,
-    classes: Vec<Class>,
-    proofs: Vec<Option<Certified>>,
-) -> Exact {
-    let count = |of: fn(&Class) -> bool| classes.iter().filter(|class| of(class)).count();
-    let census = Census {
-        degenerate: real - classes.len(),
-        one_circuit: count(|c| c.one_circuit),
-        in_order: count(|c| c.in_order),
-        free_of_defects: count(|c| c.free_of_defects),
-        ..census
-    };
-    let linkages = classes.iter().zip(proofs).map(|(class, proof)| class.listed(proof)).collect();
-    let generic = census.classes == GENERIC_CLASSES;
-    Exact { record: ExactRecord { census, generic, completeness, linkages }, classes }
 }
 
 impl Exact {
@@ -213,5 +205,5 @@ pub fn solve(context: Context<'_>) -> Option<Exact> {
         not_told_apart: not_proved_distinct(&certificates).len(),
         ..census
     };
-    Some(listed(problem, &target, census, completeness, &real))
+    Some(listed(problem, &target, (census, completeness), &real, Depth::Whole))
 }

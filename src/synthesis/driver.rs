@@ -28,17 +28,17 @@ pub(super) struct Allowance {
 
 /// The results of one or several searches.
 #[derive(Debug)]
-pub(super) struct Found {
+pub struct Found {
     /// Judged candidates.
-    pub(super) candidates: Vec<Candidate>,
+    pub candidates: Vec<Candidate>,
     /// The evaluations used.
-    pub(super) evaluations: Evaluations,
+    pub evaluations: Evaluations,
     /// The reason why the last search ended.
-    pub(super) reason: Reason,
+    pub reason: Reason,
     /// Names of the methods that ran, in order.
-    pub(super) used: Vec<String>,
+    pub used: Vec<String>,
     /// The repeated hits of the best answer of the last search, if they were counted.
-    pub(super) repeats: Option<Repeats>,
+    pub repeats: Option<Repeats>,
 }
 
 impl Found {

@@ -21,43 +21,27 @@ pub const LEAST_PAUSE: Duration = Duration::from_secs(1);
 /// search.
 const PAUSE: u32 = 200;
 
-/// The frequency at which states are saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pace {
-    /// Not more often than [`LEAST_PAUSE`], and less often if saving takes long: it costs a search less than one
-    /// percent.
-    Seldom,
-    /// As `Seldom`, with another shortest pause.
-    NotWithin(Duration),
-    /// At every boundary, whatever it costs.
-    EveryBoundary,
-}
-
 /// Saves the states of one search through a sink, and returns the state of an earlier search that is resumed.
 pub struct Keeper<'a> {
     earlier: SearchState,
     kept: Mutex<Kept>,
-    pace: Pace,
+    least: Duration,
     sink: &'a (dyn Fn(&SearchState) + Sync),
 }
 
 struct Kept {
     state: SearchState,
     since: Instant,
-    least: Duration,
     pause: Duration,
 }
 
 impl<'a> Keeper<'a> {
-    /// Creates a keeper that gives every saved state to `sink`, of a search that resumes from `earlier`.
-    pub fn new(earlier: SearchState, pace: Pace, sink: &'a (dyn Fn(&SearchState) + Sync)) -> Self {
-        let least = match pace {
-            Pace::Seldom => LEAST_PAUSE,
-            Pace::NotWithin(pause) => pause,
-            Pace::EveryBoundary => Duration::ZERO,
-        };
-        let kept = Kept { state: earlier.clone(), since: Instant::now(), least, pause: least };
-        Keeper { earlier, kept: Mutex::new(kept), pace, sink }
+    /// Creates a keeper that gives every saved state to `sink`, of a search that resumes from `earlier`. States are not
+    /// saved more often than after the pause `least`, and less often if saving takes long: it costs a search less than
+    /// one percent. If `least` is zero they are saved at every boundary, whatever it costs.
+    pub fn new(earlier: SearchState, least: Duration, sink: &'a (dyn Fn(&SearchState) + Sync)) -> Self {
+        let kept = Kept { state: earlier.clone(), since: Instant::now(), pause: least };
+        Keeper { earlier, kept: Mutex::new(kept), least, sink }
     }
 
     /// Returns the state of the earlier search.
@@ -70,12 +54,12 @@ impl<'a> Keeper<'a> {
         let mut kept: MutexGuard<'_, Kept> = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let begun = Instant::now();
         let due = begun.saturating_duration_since(kept.since) >= kept.pause;
-        if !(due || stopped || self.pace == Pace::EveryBoundary) {
+        if !(due || stopped || self.least.is_zero()) {
             return;
         }
         put(&mut kept.state);
         (self.sink)(&kept.state);
         kept.since = Instant::now();
-        kept.pause = kept.least.max(begun.elapsed() * PAUSE);
+        kept.pause = self.least.max(begun.elapsed() * PAUSE);
     }
 }

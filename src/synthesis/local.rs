@@ -6,36 +6,27 @@ use super::{Context, free, rounds, timed};
 use crate::record::Reason;
 use crate::task::Timing;
 
-/// A local search, and its part of the patience that is left.
-struct Entry {
-    /// Runs the search; `None` if it does not suit the problem.
-    search: fn(Context<'_>, Allowance) -> Option<Found>,
-    share: f64,
-}
-
-/// The searches for prescribed timing, in their order: the reduced form, then the physical parameters.
-const PRESCRIBED: &[Entry] =
-    &[Entry { search: timed::search, share: REDUCED_SHARE }, Entry { search: rounds::search, share: 1.0 }];
-/// The searches for free timing.
-const FREE: &[Entry] = &[Entry { search: free::search, share: 1.0 }];
+/// A local search: `None` if it does not suit the problem.
+type Search = fn(Context<'_>, Allowance) -> Option<Found>;
 
 /// Runs the searches that suit the problem, one after the other, until one of them ends otherwise than by giving up or
 /// finds something acceptable.
 pub(super) fn search(context: Context<'_>, Allowance { limit, patience }: Allowance) -> Found {
-    let entries = match context.problem.task().timing() {
-        Timing::Prescribed { .. } => PRESCRIBED,
-        Timing::Free => FREE,
+    // Each with its part of the patience that is left.
+    let searches: &[(Search, f64)] = match context.problem.task().timing() {
+        Timing::Prescribed { .. } => &[(timed::search, REDUCED_SHARE), (rounds::search, 1.0)],
+        Timing::Free => &[(free::search, 1.0)],
     };
     let mut found = Found::nothing();
-    for entry in entries {
+    for (search, share) in searches {
         let used = found.evaluations.objective;
         let limit = limit.saturating_sub(used);
         let gave_up = matches!(found.reason, Reason::EvaluationLimit | Reason::Stalled);
         if !gave_up || limit == 0 || found.has_accepted() {
             break;
         }
-        let patience = (patience.saturating_sub(used).min(limit) as f64 * entry.share) as u64;
-        if let Some(more) = (entry.search)(context, Allowance { limit, patience }) {
+        let patience = (patience.saturating_sub(used).min(limit) as f64 * share) as u64;
+        if let Some(more) = search(context, Allowance { limit, patience }) {
             found.add(more);
         }
     }

@@ -69,6 +69,7 @@ mod stopping_tests;
 pub mod timed;
 
 pub use context::Context;
+pub use driver::Found;
 
 use crate::mechanism::effort::is_stopped_by_a_test;
 use crate::record::{Candidate, Evaluations, ExactRecord, Reason, Repeats};

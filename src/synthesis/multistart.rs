@@ -14,19 +14,17 @@ use crate::judge::assess::assess;
 use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
-use crate::mechanism::{AssemblyMode, Complex};
 use crate::numbers::arithmetic::streams::stream;
 use crate::numbers::optimise::levenberg_marquardt::{
     BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
 };
 use crate::record::{Candidate, Evaluations};
-use crate::task::forms::design_space::{Design, Shape};
+use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::{Positions, TorusFit};
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
 
 /// The candidates found in a round, and its cost.
@@ -55,55 +53,84 @@ fn options(problem: &Problem, effort: Effort, max_evaluations: u64) -> LmOptions
     }
 }
 
+/// Runs fits within an allowance of evaluations and counts their cost.
+pub(super) struct Spender<'a> {
+    context: Context<'a>,
+    /// The evaluations used.
+    pub(super) cost: Evaluations,
+    allowance: u64,
+}
+
+impl<'a> Spender<'a> {
+    /// Creates a spender that has used nothing of its allowance.
+    pub(super) fn new(context: Context<'a>, allowance: u64) -> Self {
+        Spender { context, cost: Evaluations::default(), allowance }
+    }
+
+    /// Returns the evaluations left.
+    pub(super) fn left(&self) -> u64 {
+        self.allowance.saturating_sub(self.cost.objective)
+    }
+
+    /// Returns whether no further fit begins: nothing is left, or the search should end.
+    pub(super) fn is_at_its_end(&self) -> bool {
+        self.left() == 0 || self.context.stopped()
+    }
+
+    /// Counts evaluations on the points of a problem.
+    pub(super) fn spend(&mut self, problem: &Problem, evaluations: u64) {
+        self.cost += self.context.of(problem).cost(evaluations);
+    }
+
+    /// Fits from a start with at most `most` of the evaluations left, and returns the end with its merit; `None` if it
+    /// is given up, or no fit may begin.
+    pub(super) fn fit(
+        &mut self,
+        problem: &Problem,
+        start: Start,
+        effort: Effort,
+        most: u64,
+    ) -> Option<(f64, Start)> {
+        if self.is_at_its_end() {
+            return None;
+        }
+        let fit = polish(self.context.of(problem), start, effort, self.left().min(most));
+        self.spend(problem, fit.evaluations);
+        fit.end.map(|end| (fit.merit, end))
+    }
+
+    /// As [`Spender::fit`] with all that is left; if that is nothing, returns the start with its merit as it is.
+    fn fit_or_keep(&mut self, (merit, start): (f64, Start), effort: Effort) -> Option<(f64, Start)> {
+        if self.left() == 0 && !self.context.stopped() {
+            return Some((merit, start));
+        }
+        self.fit(self.context.problem, start, effort, u64::MAX)
+    }
+}
+
 /// Runs round `index` of the seed with at most `allowance` evaluations.
 pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u64) -> RoundOutcome {
     let problem = context.problem;
+    let mut spender = Spender::new(context, allowance);
     let mut outcome = RoundOutcome::default();
-    let mut draws = stream(problem.spec().solve.seed, index);
+    let mut stream = stream(problem.spec().solve.seed, index);
     let mut screened: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
-    for _ in 0..SCREEN {
-        if outcome.evaluations.objective >= allowance || context.stopped() {
-            break;
-        }
+    while outcome.draws < SCREEN as u64 && !spender.is_at_its_end() {
         outcome.draws += 1;
-        let Some(mut start) = starts.draw(&mut draws) else { continue };
-        outcome.evaluations += context.cost(1);
-        if let Some(promise) = promise(problem, &mut start) {
-            screened.push((promise, start));
-        }
+        let Some(mut start) = starts.draw(&mut stream) else { continue };
+        spender.spend(problem, 1);
+        screened.extend(promise(problem, &mut start).map(|promise| (promise, start)));
     }
     by_merit(&mut screened, SHORT);
-    let mut fitted: Vec<(f64, Start)> = Vec::with_capacity(SHORT);
-    for (promised, start) in screened {
-        if context.stopped() {
-            return outcome;
-        }
-        let left = allowance - outcome.evaluations.objective;
-        if left == 0 {
-            // No evaluations are left for a fit: the start as it is.
-            fitted.push((promised, start));
-            continue;
-        }
-        let fit = polish(context, start, SHORT_FIT, left);
-        outcome.evaluations += context.cost(fit.evaluations);
-        fitted.extend(fit.end.map(|start| (fit.merit, start)));
-    }
+    let mut fitted: Vec<(f64, Start)> =
+        screened.into_iter().filter_map(|start| spender.fit_or_keep(start, SHORT_FIT)).collect();
     by_merit(&mut fitted, LONG);
     let judging = context.judging();
-    for (_, start) in fitted {
-        if context.stopped() {
-            return outcome;
-        }
-        let left = allowance - outcome.evaluations.objective;
-        if left == 0 {
-            outcome.found.extend(judged(problem, &start));
-            continue;
-        }
-        let fit = polish(context, start, LONG_FIT, left);
-        outcome.evaluations += context.cost(fit.evaluations);
-        let end = fit.end.filter(|_| judging.may_go_on());
-        outcome.found.extend(end.and_then(|end| judged(problem, &end)));
+    for start in fitted {
+        let end = spender.fit_or_keep(start, LONG_FIT).filter(|_| judging.may_go_on());
+        outcome.found.extend(end.and_then(|(_, end)| judged(problem, &end)));
     }
+    outcome.evaluations = spender.cost;
     outcome
 }
 
@@ -211,17 +238,17 @@ fn ended<S>(
     }
 }
 
-/// Returns the positions of free timing at a fixed design, each brought to its nearest point, and the evaluations used.
+/// Returns the positions of free timing at a fixed design, each brought to its nearest point.
 pub fn settle_positions(
     context: Context<'_>,
     design: &Design,
     setting: Setting,
     positions: Positions,
-) -> Option<(Positions, u64)> {
+) -> Option<Positions> {
     let fit = TorusFit::at(context.problem, setting, design);
     let options = LmOptions { hopeless_cost: f64::INFINITY, ..options(context.problem, SETTLING, u64::MAX) };
     let result = solve(&fit, *design, positions, &options, &|| context.stopped());
-    (!matches!(result.outcome, LmOutcome::NoStart)).then_some((result.state, result.evaluations))
+    (!matches!(result.outcome, LmOutcome::NoStart)).then_some(result.state)
 }
 
 /// Returns the judged candidate of a fit's end; `None` if it cannot be judged.
@@ -244,19 +271,10 @@ pub fn judged(problem: &Problem, end: &Start) -> Option<Candidate> {
             written.crank_deg.iter().map(|deg| base + end.setting.direction * deg).collect();
         return assess(problem, &linkage, &crank_deg, &vec![end.setting.assembly; crank_deg.len()]);
     }
-    let (crank_deg, assemblies) = reading(problem, &shape, &end.positions)?;
-    let linkage = space.project(&shape.linkage(assemblies[0]).ok()?).ok()?;
-    assess(problem, &linkage, &crank_deg, &assemblies)
-}
-
-/// Returns crank angles (degrees, unwrapped along the motion) and assemblies of positions.
-fn reading(
-    problem: &Problem,
-    shape: &Shape,
-    positions: &[[Complex; 2]],
-) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
-    let assemblies: Vec<AssemblyMode> = positions.iter().map(|[e, u]| assembly_of(shape, *e, *u)).collect();
-    let angles = positions.iter().map(|[e, _]| e.arg()).collect();
+    let assemblies = end.positions.iter().map(|[e, u]| assembly_of(&shape, *e, *u)).collect::<Vec<_>>();
     let linkage = shape.linkage(assemblies[0]).ok()?;
-    Some(unwrapped(problem, &linkage, angles, assemblies))
+    let angles = end.positions.iter().map(|[e, _]| e.arg()).collect();
+    let (crank_deg, assemblies) = unwrapped(problem, &linkage, angles, assemblies);
+    let linkage = space.project(&linkage).ok()?;
+    assess(problem, &linkage, &crank_deg, &assemblies)
 }

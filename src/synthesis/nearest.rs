@@ -3,8 +3,7 @@
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::coupler_curve::DEFAULT_SAMPLES;
 use crate::mechanism::{AssemblyMode, CouplerCurve, FourBar, InputRange};
-use crate::task::Problem;
-use crate::task::{AngleOffset, Timing};
+use crate::task::{AngleOffset, Problem, Timing};
 
 /// Returns the crank angles (degrees) and assemblies at the points; `None` if there is no position for one.
 ///

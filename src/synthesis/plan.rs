@@ -24,30 +24,6 @@ use crate::task::{AngleOffset, Problem};
 /// 1e6 sizes differences of coordinates have lost six digits.
 pub(super) const FAR: f64 = 100.0;
 
-/// A phase of a plan.
-#[derive(Clone, Copy, Debug)]
-enum Phase {
-    /// The local searches; without an acceptable candidate they give up after this part of the budget.
-    Local(f64),
-    /// Searches without one of the requirements in turn.
-    Relaxed,
-    /// Differential evolution for a feasible design, and the polish of its best.
-    Feasible,
-    /// A population search without a polish.
-    Population(Population),
-}
-
-/// Returns the phases of a method, in the order in which they run.
-fn phases(method: Method) -> &'static [Phase] {
-    match method {
-        Method::Genetic => &[Phase::Population(Population::Genetic)],
-        Method::DifferentialEvolution => &[Phase::Population(Population::DifferentialEvolution)],
-        Method::LeastSquares => &[Phase::Local(1.0)],
-        // Exact answers are not approximated; if the points have none, `continuation` searches as `auto`.
-        Method::Auto | Method::Continuation => &[Phase::Local(LOCAL_SHARE), Phase::Relaxed, Phase::Feasible],
-    }
-}
-
 /// Searches as the problem's `[solve]` table says: if there are nine precision points, `continuation` and `auto` first
 /// solve for all linkages through them, and `auto` approximates if these do not give enough answers.
 ///
@@ -101,12 +77,21 @@ pub(super) fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) 
 
 fn search_here(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
     let problem = context.problem;
-    let mut run = Run { context, limit: problem.spec().solve.evaluations, found: Found::nothing() };
-    for &phase in phases(problem.spec().solve.method) {
-        if run.suits(phase) {
-            run.go_on(phase)?;
-        } else {
-            break;
+    let solve = &problem.spec().solve;
+    let mut run = Run { context, limit: solve.evaluations, found: Found::nothing() };
+    match solve.method {
+        Method::Genetic => run.population_alone(Population::Genetic)?,
+        Method::DifferentialEvolution => run.population_alone(Population::DifferentialEvolution)?,
+        Method::LeastSquares => run.local(1.0),
+        // Exact answers are not approximated; if the points have none, `continuation` searches as `auto`.
+        Method::Auto | Method::Continuation => {
+            run.local(LOCAL_SHARE);
+            if run.gave_up() {
+                run.relaxed();
+                if !run.found.has_accepted() {
+                    run.feasible()?;
+                }
+            }
         }
     }
     let Found { candidates, evaluations, reason, used, repeats } = run.found;
@@ -125,38 +110,20 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Returns whether a phase runs after those before it.
-    fn suits(&self, phase: Phase) -> bool {
+    /// Returns whether the local searches ended with evaluations left and nothing acceptable. Converged without an
+    /// accepted answer means a tolerance that no polish could meet.
+    fn gave_up(&self) -> bool {
         let found = &self.found;
-        match phase {
-            Phase::Local(_) | Phase::Population(_) => true,
-            Phase::Relaxed => {
-                // Converged without an accepted answer means a tolerance that no polish could meet.
-                let gave_up =
-                    matches!(found.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged);
-                gave_up && found.evaluations.objective < self.limit && !found.has_accepted()
-            }
-            Phase::Feasible => !found.has_accepted(),
-        }
-    }
-
-    fn go_on(&mut self, phase: Phase) -> Result<(), PopulationError> {
-        match phase {
-            Phase::Local(share) => self.local(share),
-            Phase::Relaxed => self.relaxed(),
-            Phase::Feasible => self.feasible()?,
-            Phase::Population(which) => {
-                self.population(which, self.limit)?;
-                self.found.reason = self.context.stop_reason().unwrap_or(self.found.reason);
-            }
-        }
-        Ok(())
+        matches!(found.reason, Reason::EvaluationLimit | Reason::Stalled | Reason::Converged)
+            && found.evaluations.objective < self.limit
+            && !found.has_accepted()
     }
 
     fn left(&self) -> u64 {
         self.limit.saturating_sub(self.found.evaluations.objective)
     }
 
+    /// Runs the local searches; without an acceptable candidate they give up after this part of the budget.
     fn local(&mut self, share: f64) {
         let limit = self.limit - reserve(self.context.problem, self.limit);
         let patience = (self.limit as f64 * share) as u64;
@@ -164,6 +131,7 @@ impl Run<'_> {
         self.finish();
     }
 
+    /// Runs searches without one of the requirements in turn.
     fn relaxed(&mut self) {
         let (led, cost) = relaxed::search(self.context, self.left() / RELAXED_SHARE);
         if cost.objective > 0 {
@@ -175,35 +143,34 @@ impl Run<'_> {
         }
     }
 
+    /// Runs differential evolution for a feasible design, and polishes the best of its end.
     fn feasible(&mut self) -> Result<(), PopulationError> {
         let (context, left) = (self.context, self.left().max(1));
         let for_polish = left / POLISH_SHARE;
         let evaluations = left - for_polish - reserve(context.problem, left);
         let end = self.population(Population::DifferentialEvolution, evaluations)?;
-        self.found.repeats = None;
         let each = for_polish / end.len().max(1) as u64;
         if each > 0 {
             let Found { candidates, evaluations, .. } = &mut self.found;
-            fit_and_judge(
-                context,
-                end,
-                |start| polish(context, start, LONG_FIT, each),
-                candidates,
-                evaluations,
-            );
+            let fit = |start| polish(context, start, LONG_FIT, each);
+            fit_and_judge(context, end, fit, candidates, evaluations);
         }
         self.finish();
         Ok(())
     }
 
+    /// Runs a population search without a polish.
+    fn population_alone(&mut self, which: Population) -> Result<(), PopulationError> {
+        self.population(which, self.limit)?;
+        self.found.reason = self.context.stop_reason().unwrap_or(self.found.reason);
+        Ok(())
+    }
+
     /// Runs a population search and returns the starts for a polish.
     fn population(&mut self, which: Population, evaluations: u64) -> Result<Vec<Start>, PopulationError> {
-        let end = population::search(self.context, which, evaluations)?;
-        self.found.uses(which.name());
-        self.found.evaluations += end.evaluations;
-        self.found.candidates.extend(end.found);
-        self.found.reason = end.reason;
-        Ok(end.starts)
+        let (found, starts) = population::search(self.context, which, evaluations)?;
+        self.found.add(found);
+        Ok(starts)
     }
 
     /// Runs the polish that the objective and the tolerances ask for.

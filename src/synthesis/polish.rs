@@ -14,7 +14,6 @@ use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
 use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
-use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::record::{Candidate, Evaluations, Figure};
 use crate::task::forms::design_space::DESIGN;
 use crate::task::forms::start::Start;
@@ -126,7 +125,7 @@ fn convex(
     let stop = || context.stopped();
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return (Fitted::NONE, f64::INFINITY) };
-        let result = run(&fit, goal, start, (), &options, &stop);
+        let result = solve(&fit, goal, start.design, (), &options, &stop);
         ended(size, start.setting, result, |()| Vec::new())
     } else {
         let fit = TorusFit::new(problem, start.setting);
@@ -134,19 +133,9 @@ fn convex(
         if !fit.settle(&start.design, &mut positions) {
             return (Fitted::NONE, f64::INFINITY);
         }
-        ended(size, start.setting, run(&fit, goal, start, positions, &options, &stop), |positions| positions)
+        let result = solve(&fit, goal, start.design, positions, &options, &stop);
+        ended(size, start.setting, result, |positions| positions)
     }
-}
-
-fn run<P: BlockLeastSquares<DESIGN>>(
-    fit: &P,
-    goal: &Goal<'_>,
-    start: &Start,
-    state: P::State,
-    options: &ConvexOptions<DESIGN>,
-    stop: &dyn Fn() -> bool,
-) -> ConvexResult<DESIGN, P::State> {
-    solve(fit, goal, start.design, state, options, stop)
 }
 
 fn ended<S>(
@@ -220,11 +209,7 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
     let mut best = f64::INFINITY;
     let mut quiet = 0;
     for hop in 0..MAX_HOPS {
-        let mut near: Vec<(f64, &Candidate)> = Vec::new();
-        for candidate in found.iter().filter(|c| promising(problem, c)) {
-            near.push((deviation_of(problem, candidate), candidate));
-        }
-        near.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut near = by_deviation(problem, found.iter().filter(|c| promising(problem, c)));
         near.dedup_by(|one, other| (one.0 - other.0).abs() <= SAME_DEVIATION * other.0);
         let Some(&(least, _)) = near.first() else { return };
         let done = toleranced && !deviation && found.iter().any(|c| c.accepted);
@@ -257,10 +242,8 @@ pub fn improve(context: Context<'_>, found: &mut Vec<Candidate>, evaluations: &m
 /// Returns the candidates that differ in more than digits, least deviation first. One curve may occur several times:
 /// cognates and points along a valley of least squares lead to different largest deviations.
 fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
-    let mut measured: Vec<(f64, &Candidate)> = all.iter().map(|c| (deviation_of(problem, c), *c)).collect();
-    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut kept: Vec<(f64, &Candidate)> = Vec::new();
-    for (deviation, candidate) in measured {
+    for (deviation, candidate) in by_deviation(problem, all.iter().copied()) {
         let near = |one: f64, other: f64| (one - other).abs() <= SAME_START * other.abs();
         let same = kept.iter().any(|(other, c)| {
             near(deviation, *other)
@@ -275,12 +258,20 @@ fn optima<'c>(problem: &Problem, all: &[&'c Candidate]) -> Vec<&'c Candidate> {
     kept.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// Returns the largest error of a candidate, in parts of the tolerances if there are any.
-fn deviation_of(problem: &Problem, candidate: &Candidate) -> f64 {
+/// Returns candidates with their largest errors, in parts of the tolerances if there are any, the least first.
+fn by_deviation<'c>(
+    problem: &Problem,
+    candidates: impl Iterator<Item = &'c Candidate>,
+) -> Vec<(f64, &'c Candidate)> {
     let task = problem.task();
-    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
-    let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
-    error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+    let deviation = |candidate: &Candidate| {
+        let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+        let error = task.errors(&candidate.linkage, &radians, &candidate.t1_at);
+        error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
+    };
+    let mut measured: Vec<(f64, &Candidate)> = candidates.map(|c| (deviation(c), c)).collect();
+    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    measured
 }
 
 /// Returns a random start near another, in its bounds.

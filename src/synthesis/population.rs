@@ -5,7 +5,7 @@ use super::constants::population::{KEPT, LONG_TARGET};
 use super::multistart::{judged, settle_positions};
 use super::reduced::{ReducedFitness, forms};
 use super::starts::Searched;
-use super::{Context, Progress};
+use super::{Context, Found, Progress};
 use crate::numbers::optimise::argmin_bridge::{
     Limits, PopulationProgress, RestartsState, SearchArguments, StopReason, run_restarts,
 };
@@ -14,7 +14,7 @@ use crate::numbers::optimise::genetic::Genetic;
 use crate::numbers::optimise::population::{Fitness, PopulationError, PopulationProblem};
 use crate::numbers::optimise::random_search::{UniformSampling, UniformSamplingParameters};
 use crate::numbers::optimise::saved::Resumable;
-use crate::record::{Candidate, Evaluations, Reason};
+use crate::record::{Evaluations, Reason};
 use crate::task::Timing;
 use crate::task::forms::fitness::PathFitness;
 use crate::task::forms::reduced::refusal;
@@ -44,21 +44,11 @@ impl Population {
     }
 }
 
-/// The outcome of a population search.
-#[derive(Clone, Debug)]
-pub struct PopulationEnd {
-    /// Starts for a polish, best first, one for each individual kept.
-    pub starts: Vec<Start>,
-    /// The candidates of these starts, judged without a polish.
-    pub found: Vec<Candidate>,
-    /// The evaluations used.
-    pub evaluations: Evaluations,
-    /// The reason why it ended.
-    pub reason: Reason,
-}
-
 /// Runs a population search, restarting with the next stream whenever it has converged, until `evaluations`
 /// are used.
+///
+/// Returns also the starts for a polish, best first, one for each individual kept; the candidates found are those of
+/// these starts, judged without a polish.
 ///
 /// It moves in reduced variables if the method is a population search and `variables` asks for them
 /// ([`crate::task::spec::SolveSpec::moves_reduced`]). If everything is fixed there is one design, and it is
@@ -70,7 +60,7 @@ pub fn search(
     context: Context<'_>,
     which: Population,
     evaluations: u64,
-) -> Result<PopulationEnd, PopulationError> {
+) -> Result<(Found, Vec<Start>), PopulationError> {
     let problem = context.problem;
     if !problem.spec().solve.moves_reduced() {
         return search_in(context, &PathFitness::new(problem), which, evaluations);
@@ -90,17 +80,6 @@ struct Stoppable<'a, F> {
     is_long: bool,
     begun: AtomicBool,
     skipped: AtomicU64,
-}
-
-impl<'a, F: Searched> Stoppable<'a, F> {
-    fn new(context: Context<'a>, fitness: &'a F) -> Self {
-        let is_long = context.points() >= LONG_TARGET;
-        Stoppable { fitness, context, is_long, begun: AtomicBool::new(false), skipped: AtomicU64::new(0) }
-    }
-
-    fn skipped(&self) -> u64 {
-        self.skipped.load(Ordering::Relaxed)
-    }
 }
 
 impl<F: Searched> PopulationProblem for Stoppable<'_, F> {
@@ -126,7 +105,7 @@ fn search_in<F: Searched>(
     fitness: &F,
     which: Population,
     evaluations: u64,
-) -> Result<PopulationEnd, PopulationError> {
+) -> Result<(Found, Vec<Start>), PopulationError> {
     let problem = context.problem;
     let spec = &problem.spec().solve;
     let mut algorithm: Box<dyn Resumable> = match which {
@@ -138,17 +117,26 @@ fn search_in<F: Searched>(
     };
     if fitness.bounds().is_empty() {
         let starts: Vec<Start> = fitness.start(&[], context).into_iter().collect();
-        return Ok(PopulationEnd {
-            found: starts.iter().filter_map(|start| judged(problem, start)).collect(),
-            starts,
+        let found = Found {
+            candidates: starts.iter().filter_map(|start| judged(problem, start)).collect(),
             evaluations: Evaluations { objective: 1, positions: fitness.positions() },
             reason: Reason::Converged,
-        });
+            used: vec![which.name().into()],
+            repeats: None,
+        };
+        return Ok((found, starts));
     }
     let limits = Limits { evaluations, target: Some(crate::judge::rank::exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(context.stopped());
-    let stoppable = Stoppable::new(context, fitness);
+    let stoppable = Stoppable {
+        fitness,
+        context,
+        is_long: context.points() >= LONG_TARGET,
+        begun: AtomicBool::new(false),
+        skipped: AtomicU64::new(0),
+    };
+    let skipped = || stoppable.skipped.load(Ordering::Relaxed);
     let mut observe = |at: PopulationProgress<'_>| {
         if context.stopped() {
             stop.store(true, Ordering::Relaxed);
@@ -162,7 +150,7 @@ fn search_in<F: Searched>(
     };
     let mut keep = |state: &dyn Fn() -> RestartsState| {
         // The state after a generation that was cut short is not saved.
-        if let Some(keeper) = context.keeper.filter(|_| stoppable.skipped() == 0) {
+        if let Some(keeper) = context.keeper.filter(|_| skipped() == 0) {
             keeper.keep(stop.load(Ordering::Relaxed), |at| at.population = Some(state()));
         }
     };
@@ -182,7 +170,7 @@ fn search_in<F: Searched>(
     let mut found = Vec::new();
     let kept =
         [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
-    let (skipped, judging) = (stoppable.skipped(), context.judging());
+    let (skipped, judging) = (skipped(), context.judging());
     for individual in kept {
         if skipped > 0 && individual.fitness.violation.is_nan() {
             continue;
@@ -195,22 +183,21 @@ fn search_in<F: Searched>(
         starts.push(start);
     }
     let reached = crate::judge::rank::holds_an_exact(problem, &found);
-    Ok(PopulationEnd {
-        starts,
-        found,
-        evaluations: Evaluations {
-            objective: outcome.evaluations - skipped,
-            positions: (outcome.evaluations - skipped) * fitness.positions(),
-        },
+    let objective = outcome.evaluations - skipped;
+    let found = Found {
+        candidates: found,
+        evaluations: Evaluations { objective, positions: objective * fitness.positions() },
         reason: match outcome.reason {
             StopReason::Cancelled => context.stop_reason().unwrap_or(Reason::Cancelled),
             // The fitness does not judge: an exact answer has to pass the referee too.
             StopReason::TargetReached if reached => Reason::TargetReached,
-            StopReason::TargetReached => Reason::Stalled,
+            StopReason::TargetReached | StopReason::Converged => Reason::Stalled,
             StopReason::EvaluationLimit => Reason::EvaluationLimit,
-            StopReason::Converged => Reason::Stalled,
         },
-    })
+        used: vec![which.name().into()],
+        repeats: None,
+    };
+    Ok((found, starts))
 }
 
 impl Searched for PathFitness<'_> {
@@ -229,7 +216,7 @@ impl Searched for PathFitness<'_> {
             Timing::Free => {
                 let shape = space.shape(&design)?;
                 let sampled = PathFitness::positions(self, &shape, &reading)?;
-                settle_positions(context.of(problem), &design, reading.setting, sampled)?.0
+                settle_positions(context.of(problem), &design, reading.setting, sampled)?
             }
         };
         Some(Start { design, setting: reading.setting, positions })

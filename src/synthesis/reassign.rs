@@ -15,6 +15,7 @@
 
 use crate::mechanism::four_bar::mobility::ways_round;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Mobility};
+use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::task::Problem;
 use crate::task::forms::rows::assembly_of;
 use crate::task::forms::start::Start;
@@ -107,7 +108,7 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
         return nothing;
     }
     let target = Target { points: &task.points()[..n], weights: &task.weights()[..n] };
-    let chosen = if !problem.order_required() {
+    let mut positions: Positions = if !problem.order_required() {
         target.nearest(&places)
     } else if one_branch {
         // A rocking motion may run either way.
@@ -115,27 +116,19 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
         let mut back = places.clone();
         back.reverse();
         let behind = target.along(&back, None);
-        if behind.0 < ahead.0 { behind } else { ahead }
+        if behind.0 < ahead.0 { behind.1 } else { ahead.1 }
     } else {
         let first = own[0].rem_euclid(TAU);
-        target
-            .pins(&places, first)
-            .into_iter()
-            .map(|pin| {
-                let mut around = places.clone();
-                around.rotate_left(pin);
-                target.along(&around, Some(0))
-            })
-            .min_by(|one, other| one.0.total_cmp(&other.0))
-            .unwrap_or((f64::INFINITY, Vec::new()))
+        let pinned = target.pins(&places, first).into_iter().map(|pin| {
+            let mut around = places.clone();
+            around.rotate_left(pin);
+            target.along(&around, Some(0))
+        });
+        pinned.min_by(|one, other| one.0.total_cmp(&other.0)).map_or(Vec::new(), |(_, positions)| positions)
     };
     let fit = TorusFit::new(problem, start.setting);
-    let cost = |positions: &Positions| {
-        use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
-        fit.cost(&start.design, positions)
-    };
+    let cost = |positions: &Positions| fit.cost(&start.design, positions);
     let Some(now) = cost(&start.positions) else { return Reassigned { better: None, positions: count } };
-    let mut positions: Positions = chosen.1;
     let mut better = None;
     if positions.len() == n {
         if task.repeats_first() {
@@ -182,19 +175,13 @@ struct Target<'a> {
 }
 
 impl Target<'_> {
-    fn nearest(&self, places: &[Place]) -> (f64, Positions) {
-        let mut sum = 0.0;
-        let mut positions = Positions::with_capacity(self.points.len());
-        for (point, weight) in self.points.iter().zip(self.weights) {
-            let best = places
-                .iter()
-                .map(|place| ((place.point - point).norm_sqr(), place.position))
-                .min_by(|one, other| one.0.total_cmp(&other.0));
-            let Some((square, position)) = best else { break };
-            sum += weight * square;
-            positions.push(position);
-        }
-        (sum, positions)
+    /// Returns the positions at the samples nearest to the points.
+    fn nearest(&self, places: &[Place]) -> Positions {
+        let nearest = |point: &Complex| {
+            let apart = places.iter().map(|place| ((place.point - point).norm_sqr(), place.position));
+            apart.min_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, position)| position)
+        };
+        self.points.iter().filter_map(nearest).collect()
     }
 
     /// Returns the indices of the samples of a closed circuit at which the first point may begin: its present place,
@@ -340,7 +327,6 @@ mod tests {
                 let (problem, start, size) = displaced(links, order, closed);
                 let better = reassigned(&problem, &start).better.expect("they are not at their places");
                 let fit = TorusFit::new(&problem, start.setting);
-                use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
                 let cost = fit.cost(&better.design, &better.positions).expect("a cost");
                 // Samples are about a hundredth of the curve apart.
                 assert!(cost < 40.0 * (0.02 * size).powi(2), "{links:?} {order:?} {closed}: {cost}");

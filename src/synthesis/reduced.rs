@@ -21,19 +21,18 @@
 
 use super::Context;
 use super::multistart::settle_positions;
-use super::starts::{Searched, Starts, unit_linkage};
+use super::starts::{Searched, Starts, Way};
 use crate::mechanism::four_bar::mobility::linkage_type;
-use crate::mechanism::{AssemblyMode, Circuit, Complex, CouplerSide, LinkageType};
+use crate::mechanism::{AssemblyMode, Complex, LinkageType};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
-use crate::task::Problem;
-use crate::task::Timing;
 use crate::task::forms::design_space::Shape;
 use crate::task::forms::fitness::{PathFitness, Reading};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios};
-use crate::task::forms::projection::{ProjectedFit, Projection, ratio_box};
+use crate::task::forms::projection::{ProjectedFit, Projection, Solution, ratio_box};
 use crate::task::forms::reduced::known_ground;
 use crate::task::forms::start::Start;
 use crate::task::requirement::DEFAULT_LINK_RATIO;
+use crate::task::{Problem, Timing};
 use std::f64::consts::{PI, TAU};
 use std::sync::{Mutex, PoisonError};
 
@@ -42,6 +41,8 @@ const SPAN: (f64, f64) = (0.2, 6.0);
 /// Base violation of a form whose loop does not close; its measured opening is added, so that no closed form ranks
 /// behind an open one for a small violation.
 const OPEN: f64 = 1.0;
+/// The fitness of genes at which nothing can be computed.
+const UNDEFINED: Fitness = Fitness { violation: f64::INFINITY, cost: f64::NAN };
 /// Number of genes: ln p, ln q, ln r, two angles and the choice of direction and assembly; `CHOICE` is the index of the
 /// last.
 const GENES: usize = 6;
@@ -190,17 +191,16 @@ impl<'a> ReducedFitness<'a> {
         unknowns
     }
 
-    /// Returns the fitness, with the shape if there is one.
-    fn read(&self, x: &[f64]) -> (Fitness, Option<Read>) {
+    /// Returns the shape that the genes encode, or the fitness of genes that encode none.
+    fn read(&self, x: &[f64]) -> Result<Read, Fitness> {
         let unknowns = self.unknowns(x);
         // The end of the box belongs to the last choice.
-        let choice = (unknowns[CHOICE] as usize).min(self.choices.len() - 1);
-        let (direction, assembly) = self.choices[choice];
+        let choice = self.choices[(unknowns[CHOICE] as usize).min(self.choices.len() - 1)];
         self.in_a_room(|room| {
             if self.forms.is_empty() {
-                self.read_free(room, &unknowns, direction, assembly)
+                self.read_free(room, &unknowns, choice).ok_or(UNDEFINED)
             } else {
-                self.read_timed(room, &unknowns, direction, assembly)
+                self.read_timed(room, &unknowns, choice)
             }
         })
     }
@@ -208,96 +208,51 @@ impl<'a> ReducedFitness<'a> {
     fn read_timed(
         &self,
         room: &mut Room<'_>,
-        unknowns: &[f64; GENES],
-        direction: usize,
-        assembly: AssemblyMode,
-    ) -> (Fitness, Option<Read>) {
-        let unknown = Fitness { violation: f64::INFINITY, cost: f64::NAN };
-        let (Some(fit), Some(form)) = (room.fits.get_mut(direction), self.forms.get(direction)) else {
-            return (unknown, None);
-        };
-        let at = [unknowns[0], unknowns[1], unknowns[2], unknowns[3]];
+        &[p, q, r, angle, ..]: &[f64; GENES],
+        (direction, assembly): (usize, AssemblyMode),
+    ) -> Result<Read, Fitness> {
+        let fit = room.fits.get_mut(direction).ok_or(UNDEFINED)?;
+        let form = self.forms.get(direction).ok_or(UNDEFINED)?;
+        let at = [p, q, r, angle];
         fit.set_assembly(assembly);
-        if let Some(solution) = fit.solution(&at) {
-            let side = self.side(&solution.shape);
-            let Some(reading) =
-                self.physical.read_timed(side, &solution.shape, solution.offset, direction, assembly)
-            else {
-                return (unknown, None);
-            };
-            let read = self.within_bounds(reading, solution.shape, solution.offset);
-            return (read.fitness, Some(read));
+        if let Some(Solution { shape, offset, .. }) = fit.solution(&at) {
+            let (side, _) = self.starts.space_of(&shape);
+            let reading = self.physical.read_timed(*side, &shape, offset, direction, assembly);
+            return reading.map(|reading| self.within_bounds(reading, shape, offset)).ok_or(UNDEFINED);
         }
         let unit = Shape {
             crank_pivot: Complex::new(0.0, 0.0),
             follower_pivot: Complex::new(1.0, 0.0),
-            crank: at[0].exp(),
-            coupler: at[1].exp(),
-            follower: at[2].exp(),
+            crank: p.exp(),
+            coupler: q.exp(),
+            follower: r.exp(),
             offset: Complex::new(0.0, 0.0),
         };
         let open = OPEN + self.physical.open(&unit, form.crank_turn(&at), direction);
-        (Fitness { violation: open, cost: f64::NAN }, None)
+        Err(Fitness { violation: open, cost: f64::NAN })
     }
 
     fn read_free(
         &self,
         room: &mut Room<'_>,
-        unknowns: &[f64; GENES],
-        direction: usize,
-        assembly: AssemblyMode,
-    ) -> (Fitness, Option<Read>) {
-        let unknown = Fitness { violation: f64::INFINITY, cost: f64::NAN };
-        let ratios =
-            Ratios { crank: unknowns[0].exp(), coupler: unknowns[1].exp(), follower: unknowns[2].exp() };
-        let positions = &mut room.positions;
-        let direction = self.problem.directions()[direction];
-        let Some(shape) = self
-            .place(&ratios, direction, assembly, (unknowns[3], unknowns[4]), positions)
-            .and_then(|()| self.starts.fit(&ratios, &self.known, positions))
-        else {
-            return (unknown, None);
-        };
-        let reading = self.physical.read_free(self.side(&shape), &shape);
-        let read = self.within_bounds(reading, shape, 0.0);
-        (read.fitness, Some(read))
-    }
-
-    /// Computes positions from the ground line along the circuit; `None` if the loop is open.
-    fn place(
-        &self,
-        ratios: &Ratios,
-        direction: f64,
-        assembly: AssemblyMode,
-        (start, span): (f64, f64),
-        positions: &mut Vec<[Complex; 2]>,
-    ) -> Option<()> {
+        &[p, q, r, start, span, _]: &[f64; GENES],
+        (direction, assembly): (usize, AssemblyMode),
+    ) -> Option<Read> {
+        let ratios = Ratios { crank: p.exp(), coupler: q.exp(), follower: r.exp() };
         let kind = linkage_type([1.0, ratios.crank, ratios.coupler, ratios.follower])?;
-        let around = if self.whole { TAU } else { span };
-        positions.clear();
-        let mut take = |at: Option<[Complex; 2]>| at.map(|at| positions.push(at));
-        if kind.input_turns_fully() || kind == LinkageType::ChangePoint {
-            return self.starts.turning(ratios, assembly, start, direction * around).try_for_each(&mut take);
-        }
-        let mobility = unit_linkage(ratios)?;
-        let any = self.problem.branch_any();
-        let first = if any { assembly == AssemblyMode::Plus } else { start.cos() >= 0.0 };
-        let index = u8::from(!first) % mobility.circuits().max(1);
-        let arc = mobility.arc(Circuit { index })?;
-        if any {
-            return self.starts.round_an_arc(ratios, &arc, start, direction * around).try_for_each(&mut take);
-        }
-        let (one, other) = (start.sin(), (start + span).sin());
-        let (low, high) = (one.min(other), one.max(other));
-        let ends = if direction > 0.0 { [low, high] } else { [high, low] };
-        self.starts.along_an_arc(ratios, &arc, assembly, ends).try_for_each(&mut take)
-    }
-
-    fn side(&self, shape: &Shape) -> CouplerSide {
-        match self.problem.sides() {
-            [only] => *only,
-            _ => CouplerSide::of(shape.offset.im),
-        }
+        let direction = self.problem.directions()[direction];
+        let way = Way { kind, assembly, start, span: direction * if self.whole { TAU } else { span } };
+        let rocking = || {
+            let any = self.problem.branch_any();
+            let first = if any { assembly == AssemblyMode::Plus } else { start.cos() >= 0.0 };
+            let (one, other) = (start.sin(), (start + span).sin());
+            let (low, high) = (one.min(other), one.max(other));
+            Some((u8::from(!first), if direction > 0.0 { [low, high] } else { [high, low] }))
+        };
+        self.starts.place(&ratios, &way, rocking, &mut room.positions)?;
+        let shape = self.starts.fit(&ratios, &self.known, &room.positions)?;
+        let reading = self.physical.read_free(self.starts.space_of(&shape).0, &shape);
+        Some(self.within_bounds(reading, shape, 0.0))
     }
 
     /// Adds to an evaluation the violation of the design's bounds by its shape.
@@ -315,7 +270,7 @@ impl PopulationProblem for ReducedFitness<'_> {
     }
 
     fn evaluate(&self, x: &[f64]) -> Fitness {
-        self.read(x).0
+        self.read(x).map_or_else(|fitness| fitness, |read| read.fitness)
     }
 
     fn cost_hint_ns(&self) -> f64 {
@@ -341,7 +296,7 @@ impl Searched for ReducedFitness<'_> {
     }
 
     fn start(&self, x: &[f64], context: Context<'_>) -> Option<Start> {
-        let Read { reading, shape, offset, .. } = self.read(x).1?;
+        let Read { reading, shape, offset, .. } = self.read(x).ok()?;
         let space = self.physical.space(reading.setting.side);
         let design = space.design(&shape, offset);
         if !self.forms.is_empty() {
@@ -351,7 +306,7 @@ impl Searched for ReducedFitness<'_> {
         let shape = space.shape(&design)?;
         let reading = self.physical.read_free(reading.setting.side, &shape);
         let sampled = self.physical.positions(&shape, &reading)?;
-        let (positions, _) = settle_positions(context, &design, reading.setting, sampled)?;
+        let positions = settle_positions(context, &design, reading.setting, sampled)?;
         Some(Start { design, setting: reading.setting, positions })
     }
 }

@@ -6,26 +6,20 @@ use crate::record::Repeats;
 /// Returns the number of rounds whose objective lies within a relative distance `part` of the best; objectives up to
 /// `exact` are exact, and equal. An objective lower than the best is that of an end that cannot be accepted, and does
 /// not count.
-pub(super) fn came(objectives: &[f64], best: f64, part: f64, exact: f64) -> usize {
+pub(super) fn came(objectives: impl Iterator<Item = f64>, best: f64, part: f64, exact: f64) -> usize {
     let room = (part * best).max(exact);
-    objectives.iter().filter(|objective| (**objective - best).abs() <= room).count()
+    objectives.filter(|objective| (objective - best).abs() <= room).count()
 }
 
 /// Counts the repeated hits of `best` among rounds with these objectives, infinite for a round that was given up.
 pub(super) fn counted(objectives: &[f64], best: f64, exact: f64) -> Repeats {
-    let within = |part: f64| came(objectives, best, part, exact) as u64;
+    let within = |part: f64| came(objectives.iter().copied(), best, part, exact) as u64;
     let mut ends: Vec<f64> = objectives.iter().copied().filter(|o| o.is_finite()).collect();
     ends.sort_by(f64::total_cmp);
-    let mut basins = 0;
-    let mut last: Option<f64> = None;
-    for end in &ends {
-        if last.is_none_or(|first| end - first > (SAME_OPTIMUM * first).max(exact)) {
-            basins += 1;
-            last = Some(*end);
-        }
-    }
+    let followed = ends.len() as u64;
+    ends.dedup_by(|end, first| *end - *first <= (SAME_OPTIMUM * *first).max(exact));
     let (hits, near) = (within(SAME_OPTIMUM), within(NEARLY));
-    Repeats::new(objectives.len() as u64, hits, near).with_basins(ends.len() as u64, basins)
+    Repeats::new(objectives.len() as u64, hits, near).with_basins(followed, ends.len() as u64)
 }
 
 #[cfg(test)]

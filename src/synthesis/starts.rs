@@ -5,17 +5,17 @@
 //! is s and whose margin is positive. Phases of free timing follow the arc length of the target.
 
 use super::Context;
-use crate::mechanism::four_bar::mobility::{InputArc, Mobility};
-use crate::mechanism::four_bar::mobility::{grashof_margin, linkage_type};
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates};
+use crate::mechanism::four_bar::mobility::{Mobility, grashof_margin, linkage_type};
+use crate::mechanism::{
+    AssemblyMode, Circuit, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates,
+};
 use crate::numbers::arithmetic::streams::{Stream, below, uniform};
 use crate::numbers::optimise::population::PopulationProblem;
 use crate::task::forms::design_space::{DesignSpace, Shape};
 use crate::task::forms::linear_fit::{KnownPivots, Ratios, assembly_sign, coupler_direction, fit};
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::Positions;
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A fitness of a population search whose individuals become starts.
@@ -30,11 +30,11 @@ pub(super) trait Searched: PopulationProblem {
 #[derive(Clone, Debug)]
 pub struct Starts<'a> {
     problem: &'a Problem,
-    types: Vec<LinkageType>,
+    pub(super) types: Vec<LinkageType>,
     /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
     arc: Vec<f64>,
     /// One design space per side of the coupler point.
-    spaces: Vec<(CouplerSide, DesignSpace)>,
+    pub(super) spaces: Vec<(CouplerSide, DesignSpace)>,
 }
 
 impl<'a> Starts<'a> {
@@ -74,6 +74,12 @@ impl<'a> Starts<'a> {
         &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
     }
 
+    /// Returns the side that a shape's coupler point lies on, or the only one allowed, and its design space.
+    pub(super) fn space_of(&self, shape: &Shape) -> &(CouplerSide, DesignSpace) {
+        let side = CouplerSide::of(shape.offset.im);
+        self.spaces.iter().find(|(other, _)| *other == side).unwrap_or(&self.spaces[0])
+    }
+
     /// Returns a start of free timing from ratios and positions measured from the ground line: the rest by linear least
     /// squares. `kind` is the type of the ratios, and the one aimed at if types are required.
     pub fn from_positions(
@@ -83,17 +89,12 @@ impl<'a> Starts<'a> {
         direction: f64,
         positions: &[[Complex; 2]],
     ) -> Option<Start> {
-        let (side, space) = &self.spaces[0];
         let shape = self.fit(ratios, &KnownPivots::of(self.problem), positions)?;
-        let ground = shape.follower_pivot - shape.crank_pivot;
-        let turn = ground / ground.norm();
-        let side = if self.spaces.len() > 1 { CouplerSide::of(shape.offset.im) } else { *side };
-        let space = self.spaces.iter().find(|(s, _)| *s == side).map_or(space, |(_, space)| space);
+        let (side, space) = self.space_of(&shape);
         let aim = self.problem.aims_at_types().then_some(kind);
         let assembly = AssemblyMode::of(assembly_sign(ratios, positions[0]));
-        let setting = Setting { aim, assembly, direction, side };
-        let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
-        Some(Start { design: space.design(&shape, 0.0), setting, positions })
+        let setting = Setting { aim, assembly, direction, side: *side };
+        Some(start_from(space, setting, &shape, positions))
     }
 
     /// Draws one start; `None` if it cannot be assembled at every point.
@@ -114,7 +115,6 @@ impl<'a> Starts<'a> {
         let mut known = KnownPivots::of(self.problem);
         match self.problem.task().timing() {
             Timing::Prescribed { offset, .. } => {
-                let t = assembly.sign();
                 let phases = self.problem.phases(direction);
                 let turn = match offset {
                     AngleOffset::Free => Complex::from_polar(1.0, phase),
@@ -129,25 +129,17 @@ impl<'a> Starts<'a> {
                         Complex::from_polar(1.0, -angle)
                     }
                 };
-                let positions: Option<Vec<[Complex; 2]>> = phases
-                    .iter()
-                    .map(|e| {
-                        let e = e * turn;
-                        Some([e, coupler_direction(&ratios, e, t)?])
-                    })
-                    .collect();
+                let position = |e: Complex| Some([e, coupler_direction(&ratios, e, assembly.sign())?]);
+                let positions: Option<Positions> = phases.iter().map(|e| position(e * turn)).collect();
                 let shape = self.fit(&ratios, &known, &positions?)?;
                 let ground = (shape.follower_pivot - shape.crank_pivot).arg();
                 let offset = if self.problem.offset_is_free() { phase + ground } else { 0.0 };
                 Some(Start { design: space.design(&shape, offset), setting, positions: Vec::new() })
             }
             Timing::Free => {
-                let positions = self.free_positions(stream, &ratios, drawn, assembly, direction)?;
+                let positions = self.free_positions(stream, &ratios, (drawn, assembly), direction)?;
                 let shape = self.fit(&ratios, &known, &positions)?;
-                let ground = shape.follower_pivot - shape.crank_pivot;
-                let turn = ground / ground.norm();
-                let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
-                Some(Start { design: space.design(&shape, 0.0), setting, positions })
+                Some(start_from(space, setting, &shape, &positions))
             }
         }
     }
@@ -168,90 +160,82 @@ impl<'a> Starts<'a> {
         &self,
         stream: &mut Stream,
         ratios: &Ratios,
-        drawn: LinkageType,
-        assembly: AssemblyMode,
+        (kind, assembly): (LinkageType, AssemblyMode),
         direction: f64,
     ) -> Option<Positions> {
         let closed = self.problem.task().closed() || self.problem.task().repeats_first();
         let start = uniform(stream, -PI, PI);
         let partial = uniform(stream, 0.5, 5.8);
         let within = [uniform(stream, -FRAC_PI_2, FRAC_PI_2), uniform(stream, -FRAC_PI_2, FRAC_PI_2)];
-        let arc_choice = below(stream, 2);
-        if drawn.input_turns_fully() || drawn == LinkageType::ChangePoint {
-            let span = if closed { TAU } else { partial };
-            return self.turning(ratios, assembly, start, direction * span).collect();
+        let circuit = below(stream, 2) as u8;
+        let way = Way { kind, assembly, start, span: direction * if closed { TAU } else { partial } };
+        let rocking = || {
+            let ends = within.map(f64::sin);
+            let is_against = (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1;
+            (self.problem.branch_any() || !is_against).then_some((circuit, ends))
+        };
+        let mut positions = Positions::with_capacity(self.arc.len());
+        self.place(ratios, &way, rocking, &mut positions)?;
+        Some(positions)
+    }
+
+    /// Computes positions (from the ground line) along the circuit as the points are along the target; `None` if the
+    /// loop is open. For a crank that rocks, `rocking` returns the number of the circuit (modulo their number) and the
+    /// two ends of the motion on its arc, in parts of its half width; they count unless the motion may pass toggles.
+    pub(super) fn place(
+        &self,
+        ratios: &Ratios,
+        &Way { kind, assembly, start, span }: &Way,
+        rocking: impl FnOnce() -> Option<(u8, [f64; 2])>,
+        positions: &mut Positions,
+    ) -> Option<()> {
+        positions.clear();
+        let mut take = |angle: f64, t: f64| {
+            let e = Complex::from_polar(1.0, angle);
+            positions.push([e, coupler_direction(ratios, e, t)?]);
+            Some(())
+        };
+        if kind.input_turns_fully() || kind == LinkageType::ChangePoint {
+            return self.arc.iter().try_for_each(|s| take(start + span * s, assembly.sign()));
         }
         let mobility = unit_linkage(ratios)?;
-        let index = (arc_choice as u8) % mobility.circuits().max(1);
-        let arc = mobility.arc(crate::mechanism::Circuit { index })?;
+        let (circuit, ends) = rocking()?;
+        let arc = mobility.arc(Circuit { index: circuit % mobility.circuits().max(1) })?;
+        let on_arc = |x: f64| arc.middle + INSIDE * arc.half_width * x;
         if self.problem.branch_any() {
-            let span = if closed { TAU } else { partial };
-            return self.round_an_arc(ratios, &arc, start, direction * span).collect();
+            return self.arc.iter().try_for_each(|s| {
+                let psi = start + span * s;
+                take(on_arc(psi.sin()), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
+            });
         }
-        let ends = within.map(f64::sin);
-        if (ends[1] - ends[0]) * direction < 0.0 && self.problem.directions().len() == 1 {
-            return None;
-        }
-        self.along_an_arc(ratios, &arc, assembly, ends).collect()
+        let ends = ends.map(on_arc);
+        self.arc.iter().try_for_each(|s| take(ends[0] + (ends[1] - ends[0]) * s, assembly.sign()))
     }
+}
 
-    /// Returns positions (from the ground line) of a crank that turns through `span` from `start`, as the points are
-    /// along the target.
-    pub(super) fn turning(
-        &self,
-        ratios: &Ratios,
-        assembly: AssemblyMode,
-        start: f64,
-        span: f64,
-    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
-        self.arc
-            .iter()
-            .map(move |s| position(ratios, Complex::from_polar(1.0, start + span * s), assembly.sign()))
-    }
+/// Returns the start of free timing at a shape and at positions measured from its ground line.
+fn start_from(space: &DesignSpace, setting: Setting, shape: &Shape, positions: &[[Complex; 2]]) -> Start {
+    let ground = shape.follower_pivot - shape.crank_pivot;
+    let turn = ground / ground.norm();
+    let positions = positions.iter().map(|[e, u]| [e * turn, u * turn]).collect();
+    Start { design: space.design(shape, 0.0), setting, positions }
+}
 
-    /// As [`Starts::turning`], for a crank that rocks on an arc and passes its toggles, psi from `start` through
-    /// `span`.
-    pub(super) fn round_an_arc(
-        &self,
-        ratios: &Ratios,
-        arc: &InputArc,
-        start: f64,
-        span: f64,
-    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
-        self.arc.iter().map(move |s| {
-            let psi = start + span * s;
-            let angle = arc.middle + INSIDE * arc.half_width * psi.sin();
-            position(ratios, Complex::from_polar(1.0, angle), if psi.cos() < 0.0 { -1.0 } else { 1.0 })
-        })
-    }
-
-    /// As [`Starts::turning`], for a crank that rocks on an arc from one end to the other, given in parts of its half
-    /// width.
-    pub(super) fn along_an_arc(
-        &self,
-        ratios: &Ratios,
-        arc: &InputArc,
-        assembly: AssemblyMode,
-        ends: [f64; 2],
-    ) -> impl Iterator<Item = Option<[Complex; 2]>> {
-        let ends = ends.map(|x| arc.middle + INSIDE * arc.half_width * x);
-        self.arc.iter().map(move |s| {
-            let angle = ends[0] + (ends[1] - ends[0]) * s;
-            position(ratios, Complex::from_polar(1.0, angle), assembly.sign())
-        })
-    }
+/// The motion of a crank along its circuit, from the first point of the target to the last.
+pub(super) struct Way {
+    pub(super) kind: LinkageType,
+    pub(super) assembly: AssemblyMode,
+    /// The crank angle at the first point, from the ground line, and the angle through which it turns; if it rocks and
+    /// may pass toggles, the phases psi, with sin psi in parts of the arc's half width.
+    pub(super) start: f64,
+    pub(super) span: f64,
 }
 
 /// Factor that keeps positions a little off the toggles, where the assembly is undecided.
 const INSIDE: f64 = 1.0 - 1e-9;
 
-/// Returns a position from the ground line.
-fn position(ratios: &Ratios, e: Complex, t: f64) -> Option<[Complex; 2]> {
-    Some([e, coupler_direction(ratios, e, t)?])
-}
-
 /// Returns the types from which starts are drawn.
-pub(super) fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
+fn drawn_types(problem: &Problem) -> Vec<LinkageType> {
     match problem.types() {
         // Any type: the types that a motor can turn get half of the draws.
         [] => vec![
@@ -296,16 +280,12 @@ pub(super) fn draw_ratios(stream: &mut Stream, drawn: LinkageType) -> Option<Rat
         |stream: &mut Stream, (low, high): (f64, f64)| uniform(stream, low.ln(), high.ln()).exp();
     let links = match drawn {
         LinkageType::TripleRocker => {
-            // Most draws are not triple-rockers: try a few.
-            let mut found = None;
-            for _ in 0..16 {
-                let links = [(); 4].map(|()| log_uniform(stream, (0.2, 5.0)));
-                let fits = linkage_type(links) == Some(LinkageType::TripleRocker);
-                if found.is_none() && fits && grashof_margin(links) < 0.0 {
-                    found = Some(links);
-                }
-            }
-            found?
+            // Most draws are not triple-rockers: try a few, always as many.
+            let tries = [(); 16].map(|()| [(); 4].map(|()| log_uniform(stream, (0.2, 5.0))));
+            let fits = |links: [f64; 4]| {
+                linkage_type(links) == Some(LinkageType::TripleRocker) && grashof_margin(links) < 0.0
+            };
+            tries.into_iter().find(|links| fits(*links))?
         }
         _ => {
             let mut s = [(); 3].map(|()| log_uniform(stream, SLACK_RANGE));

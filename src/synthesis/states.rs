@@ -6,7 +6,7 @@
 
 use super::belief::Belief;
 use crate::numbers::optimise::argmin_bridge::RestartsState;
-use crate::numbers::optimise::exact_float::Exact;
+use crate::numbers::optimise::exact_float::{self, Exact};
 use crate::record::{Candidate, Evaluations};
 use crate::task::forms::design_space::Design;
 use crate::task::forms::start::Start;
@@ -42,29 +42,49 @@ pub(super) struct Counts {
 }
 
 /// The state of least squares with free timing between two batches.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FreeState {
     pub(super) counts: Counts,
     pub(super) evaluations: Evaluations,
+    /// The least merit of each independent round.
     pub(super) best_merits: Vec<Exact>,
+    /// The stages that have begun.
     pub(super) stages: Vec<StageState>,
-    pub(super) ends: Vec<EndState>,
+    /// The ends, least merit first.
+    pub(super) ends: Vec<End>,
 }
 
+/// The results of the batches of a stage (on groups of points, or on all points) so far.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct StageState {
-    pub(super) bar: Exact,
+    /// The least merit on the explored points.
+    #[serde(with = "exact_float")]
+    pub(super) bar: f64,
+    /// The best different ends on the explored points.
     pub(super) leading: Vec<(Exact, Start)>,
+    /// The merits, on the explored points and on all points, of the ends that have been finished after their batch.
     pub(super) finished: Vec<(Exact, Exact)>,
+    /// Rounds so far.
     pub(super) index: u64,
 }
 
+impl StageState {
+    /// The state of a stage before its first batch.
+    pub(super) const BEGUN: StageState =
+        StageState { bar: f64::INFINITY, leading: Vec::new(), finished: Vec::new(), index: 0 };
+}
+
+/// The end of a fit, judged or not yet.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct EndState {
-    pub(super) merit: Exact,
+pub(super) struct End {
+    #[serde(with = "exact_float")]
+    pub(super) merit: f64,
     pub(super) start: Start,
-    /// Whether the referee has judged it; the verdict is computed again on resuming.
+    /// Whether the referee has judged it.
     pub(super) judged: bool,
+    /// The referee's result, `None` for an end that cannot be judged. It is computed again on resuming.
+    #[serde(skip)]
+    pub(super) verdict: Option<Candidate>,
 }
 
 /// An end that the referee has judged.

@@ -4,7 +4,7 @@
 //! on both assemblies, fits the `SHORT` most promising for a few steps and the best `LONG` of them to convergence
 //! ([`crate::task::forms::projection`]). An end that meets every bound and requirement is taken as it is. One that does
 //! not, and has a lower objective than the best that does, is a lower bound for its basin: it is polished in the
-//! physical parameters under all requirements ([`polish`]).
+//! physical parameters under all requirements ([`super::multistart::polish`]).
 //!
 //! If such ends occur, requirements are active, and later waves also fit under all requirements from the first step on:
 //! from the screened draws of least cost and violation, and in rounds of [`super::multistart`], in turn.
@@ -22,34 +22,27 @@ use super::constants::timed::{
     POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
 };
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive, in_parallel};
-use super::multistart::{LONG_FIT, SHORT_FIT, by_merit, judged, polish, promise, round};
+use super::multistart::{LONG_FIT, SHORT_FIT, Spender, by_merit, judged, promise, round};
 use super::polish::{basins_wanted, promising};
-use super::starts::{Starts, draw_ratios, drawn_types};
+use super::starts::{Starts, draw_ratios};
 use super::states::{Judged, SearchState, TimedState, of_as_many_points};
 use super::{Context, HitsSoFar, Judging};
 use crate::judge::rank::{exact_cost, searched, sort};
-use crate::mechanism::{AssemblyMode, CouplerSide, LinkageType};
+use crate::mechanism::AssemblyMode;
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::numbers::optimise::compact_lm::{CompactOptions, solve};
-use crate::record::{Candidate, Repeats};
-use crate::task::forms::design_space::DesignSpace;
+use crate::record::{Candidate, Evaluations, Repeats};
 use crate::task::forms::projection::{Batch, ProjectedFit, Projection, Reduced, Solution};
 use crate::task::forms::rows::{Motion, Requirements, nearest_type};
 use crate::task::forms::start::Start;
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::{PI, TAU};
 
 /// Difference of designs, in parts of the target's size, within which they are judged once.
 const SAME_NUMBERS: f64 = 1e-6;
 
-/// An end of a fit, in physical parameters.
-#[derive(Clone, Debug)]
-struct End {
-    start: Start,
-    /// The objective.
-    cost: f64,
-}
+/// The end of a fit in physical parameters, with its objective.
+type End = (f64, Start);
 
 /// The outcome of a batch.
 #[derive(Clone, Debug, Default)]
@@ -58,30 +51,24 @@ struct BatchOutcome {
     ends: Vec<End>,
     /// Ends of a round in the physical parameters, judged.
     judged: Vec<Candidate>,
-    evaluations: u64,
+    evaluations: Evaluations,
     draws: u64,
     polished: bool,
     /// Whether an end that violates a bound or a requirement was better than all that meet them.
     binding: bool,
 }
 
-struct Search<'a> {
+/// The search with its state.
+struct Timed<'a> {
     context: Context<'a>,
     problem: &'a Problem,
     forms: Vec<(f64, Projection)>,
-    types: Vec<LinkageType>,
     starts: Starts<'a>,
-    /// One design space per side of the coupler point.
-    spaces: Vec<(CouplerSide, DesignSpace)>,
     requirements: Requirements,
     /// The least and the greatest prescribed angle as written, radians; the full turn of a closed target.
     span: (f64, f64),
     exact: f64,
-}
-
-/// The search with its state.
-struct Timed<'a> {
-    search: Search<'a>,
+    /// Number of distinct answers wanted.
     wanted: usize,
     at: TimedState,
 }
@@ -90,12 +77,11 @@ struct Timed<'a> {
 /// reduced form.
 pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found> {
     let problem = context.problem;
-    let search = Search::new(context)?;
+    let mut timed = Timed::new(context)?;
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().timed.clone());
-    let earlier = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best));
-    let at =
-        earlier.unwrap_or_else(|| TimedState { belief: Belief::new(search.exact), ..TimedState::default() });
-    let mut timed = Timed { search, wanted: basins_wanted(problem), at };
+    if let Some(state) = earlier.filter(|state| of_as_many_points(problem, &state.found, &state.best)) {
+        timed.at = state;
+    }
     let reason = drive(context, allowance, &mut timed);
     let at = timed.at;
     let (hits, near) = at.belief.hits();
@@ -115,31 +101,30 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 
 impl Timed<'_> {
     /// Judges an end, unless it cannot matter or an equal one has been judged before.
-    fn read_end(&mut self, end: End, judging: &Judging<'_>) {
-        let belief = &mut self.at.belief;
-        if self.wanted == 1 && end.cost > self.search.exact && !belief.would_improve(end.cost) {
+    fn read_end(&mut self, (cost, end): End, judging: &Judging<'_>) {
+        if self.wanted == 1 && cost > self.exact && !self.at.belief.would_improve(cost) {
             // One answer is wanted, and this is not a better one.
-            belief.came_back_to(end.cost);
+            self.at.belief.came_back_to(cost);
             return;
         }
-        if let Some(accepted) = self.search.judged_before(&self.at.seen, &end) {
+        if let Some(accepted) = self.judged_before(&end) {
             if accepted {
-                belief.came_back_to(end.cost);
+                self.at.belief.came_back_to(cost);
             }
             return;
         }
         if !judging.may_go_on() {
             return;
         }
-        let problem = self.search.problem;
-        let Some(candidate) = judged(problem, &end.start) else { return };
-        let Start { setting, design, .. } = end.start;
+        let problem = self.problem;
+        let Some(candidate) = judged(problem, &end) else { return };
+        let Start { setting, design, .. } = end;
         self.at.seen.push(Judged { setting, design, accepted: promising(problem, &candidate) });
         self.take(candidate);
     }
 
     fn take(&mut self, candidate: Candidate) {
-        let problem = self.search.problem;
+        let problem = self.problem;
         if promising(problem, &candidate) {
             let cost = searched(problem, &candidate);
             self.at.belief.came_to(cost);
@@ -173,8 +158,8 @@ impl Strategy for Timed<'_> {
 
     fn run(&mut self, _: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let (first, bar, binding) = (self.at.wave * WAVE, self.at.belief.best(), self.at.binding);
-        let run = |i, allowance| self.search.batch(first + i, allowance, bar, binding);
-        let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations);
+        let run = |i, allowance| self.batch(first + i, allowance, bar, binding);
+        let (wave, ample) = in_parallel((left, WAVE), run, |batch| batch.evaluations.objective);
         ((wave, binding), ample)
     }
 
@@ -186,7 +171,7 @@ impl Strategy for Timed<'_> {
             self.at.binding |= batch.binding;
             self.at.draws += batch.draws;
             self.at.polished |= batch.polished;
-            self.at.evaluations += context.cost(batch.evaluations);
+            self.at.evaluations += batch.evaluations;
             for end in batch.ends {
                 self.read_end(end, &judging);
             }
@@ -210,7 +195,7 @@ impl Strategy for Timed<'_> {
     }
 }
 
-impl<'a> Search<'a> {
+impl<'a> Timed<'a> {
     fn new(context: Context<'a>) -> Option<Self> {
         let problem = context.problem;
         let Timing::Prescribed { crank_angles, .. } = problem.task().timing() else { return None };
@@ -219,44 +204,42 @@ impl<'a> Search<'a> {
             .iter()
             .map(|&direction| Some((direction, Projection::new(problem, direction)?)))
             .collect::<Option<Vec<_>>>()?;
-        let (low, high) = crank_angles
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &a| (low.min(a), high.max(a)));
+        let low = crank_angles.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = crank_angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let high = if problem.task().closed() { high.max(low + TAU) } else { high };
-        let spaces: Vec<_> = problem.sides().iter().map(|&side| (side, problem.space(side))).collect();
-        Some(Search {
-            requirements: problem.requirements(&spaces[0].1),
-            starts: Starts::new(problem),
-            spaces,
+        let starts = Starts::new(problem);
+        let exact = exact_cost(problem);
+        Some(Timed {
+            requirements: problem.requirements(&starts.spaces[0].1),
+            starts,
             forms,
-            types: drawn_types(problem),
             span: (low, high),
-            exact: exact_cost(problem),
+            exact,
+            wanted: basins_wanted(problem),
+            at: TimedState { belief: Belief::new(exact), ..TimedState::default() },
             context,
             problem,
         })
     }
 
     /// Returns the verdict on an end if an equal one has been judged before.
-    fn judged_before(&self, seen: &[Judged], end: &End) -> Option<bool> {
+    fn judged_before(&self, end: &Start) -> Option<bool> {
         let near = SAME_NUMBERS * self.problem.task().size();
         let same = |(x, y): (&f64, &f64)| (x - y).abs() <= near;
-        seen.iter()
-            .find(|judged| {
-                judged.setting == end.start.setting && judged.design.iter().zip(&end.start.design).all(same)
-            })
-            .map(|judged| judged.accepted)
+        let equal = |judged: &&Judged| {
+            judged.setting == end.setting && judged.design.iter().zip(&end.design).all(same)
+        };
+        self.at.seen.iter().find(equal).map(|judged| judged.accepted)
     }
 
     fn draw(&self, draws: &mut Stream) -> Option<Reduced> {
-        let kind = self.types[below(draws, self.types.len())];
+        let types = &self.starts.types;
+        let kind = types[below(draws, types.len())];
         let ratios = draw_ratios(draws, kind)?;
         let angle = uniform(draws, -PI, PI);
         let form = &self.forms[0].1;
+        let angle = if form.has_angle() { angle } else { 0.0 };
         let mut x = [ratios.crank.ln(), ratios.coupler.ln(), ratios.follower.ln(), angle];
-        if !form.has_angle() {
-            x[3] = 0.0;
-        }
         for (value, (low, high)) in x.iter_mut().zip(form.bounds()) {
             *value = value.max(*low).min(*high);
         }
@@ -296,23 +279,24 @@ impl<'a> Search<'a> {
             return out;
         }
         let batch = Batch::new(draws);
-        out.evaluations = readings * batch.len() as u64;
+        let mut spender = Spender::new(self.context, allowance);
+        spender.spend(self.problem, readings * batch.len() as u64);
         let Some(screened) = self.screened(&batch) else { return BatchOutcome::default() };
         let forms = self.forms.iter();
         let fits = forms.map(|(_, form)| ProjectedFit::new(form, AssemblyMode::Plus)).collect();
-        let mut fitting = Fitting { search: self, fits, allowance, out };
+        let mut fitting = Fitting { search: self, fits, spender, out };
         let ends = fitting.reduced(&screened, &batch);
         fitting.divide(ends, bar);
         if thorough && index.is_multiple_of(2) {
-            let round = round(self.context, &self.starts, index, fitting.left());
-            fitting.out.evaluations += round.evaluations.objective;
+            let round = round(self.context, &self.starts, index, fitting.spender.left());
+            fitting.spender.cost += round.evaluations;
             fitting.out.polished = true;
             fitting.out.judged = round.found;
         } else if thorough {
             fitting.constrained(&screened, &batch);
         }
-        let mut out = fitting.out;
-        out.ends.sort_by(|x, y| x.cost.total_cmp(&y.cost));
+        let mut out = BatchOutcome { evaluations: fitting.spender.cost, ..fitting.out };
+        by_merit(&mut out.ends, usize::MAX);
         out
     }
 
@@ -327,10 +311,8 @@ impl<'a> Search<'a> {
             }
         }
         screened.sort_unstable_by(|x, y| {
-            x.0.total_cmp(&y.0)
-                .then(x.1.cmp(&y.1))
-                .then(x.2.cmp(&y.2))
-                .then(x.3.sign().total_cmp(&y.3.sign()))
+            let places = (x.1, x.2).cmp(&(y.1, y.2));
+            x.0.total_cmp(&y.0).then(places).then(x.3.sign().total_cmp(&y.3.sign()))
         });
         Some(screened)
     }
@@ -340,15 +322,10 @@ impl<'a> Search<'a> {
     fn physical(&self, solution: &Solution, direction: f64, assembly: AssemblyMode) -> Option<(Start, f64)> {
         let problem = self.problem;
         let Solution { shape, offset, .. } = solution;
-        let side = match self.spaces.as_slice() {
-            [(only, _)] => *only,
-            _ if shape.offset.im < 0.0 => CouplerSide::Minus,
-            _ => CouplerSide::Plus,
-        };
-        let (_, space) = self.spaces.iter().find(|(s, _)| *s == side)?;
+        let (side, space) = self.starts.space_of(shape);
         let aim =
             if problem.types().is_empty() { None } else { nearest_type(shape.links(), problem.types()) };
-        let setting = Setting { aim, assembly, direction, side };
+        let setting = Setting { aim, assembly, direction, side: *side };
         let base = match problem.task().timing() {
             Timing::Prescribed { offset: AngleOffset::Ground, .. } => {
                 (shape.follower_pivot - shape.crank_pivot).arg()
@@ -371,25 +348,24 @@ type ReducedEnd = (f64, Reduced, usize, AssemblyMode);
 
 /// The fits of one batch within its allowance.
 struct Fitting<'a> {
-    search: &'a Search<'a>,
+    search: &'a Timed<'a>,
     /// One fit per form.
     fits: Vec<ProjectedFit<'a>>,
-    allowance: u64,
+    spender: Spender<'a>,
     out: BatchOutcome,
 }
 
 impl Fitting<'_> {
-    fn left(&self) -> u64 {
-        self.allowance - self.out.evaluations
-    }
-
-    fn stopped(&self) -> bool {
-        self.search.context.stopped()
+    /// Returns the start and the violation of unknowns of the reduced form ([`Timed::physical`]).
+    fn physical(&mut self, x: &Reduced, form: usize, assembly: AssemblyMode) -> Option<(Start, f64)> {
+        let fit = &mut self.fits[form];
+        fit.set_assembly(assembly);
+        self.search.physical(&fit.solution(x)?, self.search.forms[form].0, assembly)
     }
 
     /// Fits in the reduced form with at most `most` evaluations.
     fn fit(&mut self, (x, form, assembly): (Reduced, usize, AssemblyMode), most: u32) -> Option<ReducedEnd> {
-        let left = u32::try_from(self.left()).unwrap_or(u32::MAX);
+        let left = u32::try_from(self.spender.left()).unwrap_or(u32::MAX);
         if left == 0 {
             return None;
         }
@@ -405,7 +381,7 @@ impl Fitting<'_> {
         fit.set_assembly(assembly);
         let stop = || search.context.stopped();
         let end = solve(fit, x, search.forms[form].1.bounds(), &options, &stop);
-        self.out.evaluations += u64::from(end.evaluations);
+        self.spender.spend(search.problem, u64::from(end.evaluations));
         end.cost.is_finite().then_some((end.cost, end.x, form, assembly))
     }
 
@@ -421,7 +397,7 @@ impl Fitting<'_> {
         short.sort_by(|x, y| x.0.total_cmp(&y.0));
         let mut long: Vec<ReducedEnd> = Vec::with_capacity(LONG);
         for (cost, x, form, assembly) in short.into_iter().take(LONG) {
-            if self.stopped() {
+            if search.context.stopped() {
                 // Taken as it is: the best so far.
                 long.push((cost, x, form, assembly));
                 break;
@@ -438,82 +414,65 @@ impl Fitting<'_> {
         let search = self.search;
         let task = search.problem.task();
         let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
-        let mut broken: Vec<(f64, End)> = Vec::new();
+        let mut broken: Vec<(f64, f64, Start)> = Vec::new();
         for (cost, x, form, assembly) in ends {
-            self.fits[form].set_assembly(assembly);
-            let Some(solution) = self.fits[form].solution(&x) else { continue };
-            let physical = search.physical(&solution, search.forms[form].0, assembly);
-            let Some((start, lack)) = physical else { continue };
-            let end = End { start, cost };
+            let Some((start, lack)) = self.physical(&x, form, assembly) else { continue };
             if lack != 0.0 {
-                broken.push((cost + scale * lack * lack, end));
+                broken.push((cost + scale * lack * lack, cost, start));
             } else if search.stays_closed(form, &x) {
-                self.out.ends.push(end);
+                self.out.ends.push((cost, start));
             }
         }
         broken.sort_by(|x, y| x.0.total_cmp(&y.0));
-        if self.stopped() && self.out.ends.is_empty() {
-            self.out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
+        if search.context.stopped() && self.out.ends.is_empty() {
+            self.out.ends.extend(broken.drain(..).take(1).map(|(_, cost, start)| (cost, start)));
         }
         let mut polishes = 0;
-        for (_, end) in broken {
-            let bar = self.out.ends.iter().map(|e| e.cost).fold(bar, f64::min);
-            if polishes >= POLISHES || self.left() == 0 || self.stopped() {
+        for (_, cost, start) in broken {
+            let bar = self.out.ends.iter().map(|end| end.0).fold(bar, f64::min);
+            if polishes >= POLISHES || self.spender.is_at_its_end() {
                 break;
             }
-            if end.cost >= bar * (1.0 - SAME_OPTIMUM) {
+            if cost >= bar * (1.0 - SAME_OPTIMUM) {
                 continue;
             }
             polishes += 1;
             self.out.binding = true;
-            self.polished(end.start);
+            self.polished(start);
         }
     }
 
     /// Fits to convergence under all requirements and adds the end.
     fn polished(&mut self, start: Start) {
-        let fitted = polish(self.search.context, start, LONG_FIT, self.left());
-        self.out.evaluations += fitted.evaluations;
+        let fitted = self.spender.fit(self.search.problem, start, LONG_FIT, u64::MAX);
         self.out.polished = true;
-        self.out.ends.extend(fitted.end.map(|start| End { start, cost: fitted.merit }));
+        self.out.ends.extend(fitted);
     }
 
     /// Fits under all requirements from the first step on, from the draws of least cost and violation.
     fn constrained(&mut self, screened: &[Screened], batch: &Batch) {
         let search = self.search;
+        let problem = search.problem;
         let mut starts = Vec::new();
         for &(_, i, form, assembly) in screened.iter().take(PROMISING) {
             let x = &batch.draws()[i];
-            if self.stopped() {
+            if self.spender.is_at_its_end() {
                 break;
             }
-            if self.out.evaluations >= self.allowance || !search.stays_closed(form, x) {
+            if !search.stays_closed(form, x) {
                 continue;
             }
-            self.out.evaluations += 1;
-            self.fits[form].set_assembly(assembly);
-            let Some(solution) = self.fits[form].solution(x) else { continue };
+            self.spender.spend(problem, 1);
+            let Some((mut start, _)) = self.physical(x, form, assembly) else { continue };
             // The promise of the start as the fit takes it: clamped to the bounds.
-            let physical = search.physical(&solution, search.forms[form].0, assembly);
-            if let Some((mut start, _)) = physical
-                && let Some(promise) = promise(search.problem, &mut start)
-            {
-                starts.push((promise, start));
-            }
+            starts.extend(promise(problem, &mut start).map(|promise| (promise, start)));
         }
         by_merit(&mut starts, CONSTRAINED_SHORT);
-        let mut short = Vec::new();
-        for (_, start) in starts {
-            if self.out.evaluations >= self.allowance || self.stopped() {
-                break;
-            }
-            let fitted = polish(search.context, start, SHORT_FIT, self.left());
-            self.out.evaluations += fitted.evaluations;
-            short.extend(fitted.end.map(|start| (fitted.merit, start)));
-        }
+        let fit = |(_, start)| self.spender.fit(problem, start, SHORT_FIT, u64::MAX);
+        let mut short: Vec<(f64, Start)> = starts.into_iter().filter_map(fit).collect();
         by_merit(&mut short, CONSTRAINED_LONG);
         for (_, start) in short {
-            if self.out.evaluations >= self.allowance || self.stopped() {
+            if self.spender.is_at_its_end() {
                 break;
             }
             self.polished(start);

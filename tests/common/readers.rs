@@ -28,10 +28,11 @@ use linkwright::internals::report::{
     Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text,
 };
 use linkwright::internals::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
-use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::synthesis::keeper::{Keeper, SearchState};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::spec::ProblemSpec;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// A problem that `--set` changes.
 const SET_BASE: &str = "format = 1
@@ -223,7 +224,7 @@ fn go_on(job: &Job, state: SearchState, writer: &Writer) {
         writer.bytes(state);
         cancel.store(seen.swap(true, Ordering::Relaxed), Ordering::Relaxed);
     };
-    let keeper = Keeper::new(state, Pace::EveryBoundary, &sink);
+    let keeper = Keeper::new(state, Duration::ZERO, &sink);
     let context = Context { cancel: &cancel, observer: &|_| {} };
     let finished = run::run_kept(job, &context, Some(&keeper)).expect("it is a search");
     // What a search gives is judged by the referee, whatever it went on from.

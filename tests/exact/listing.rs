@@ -3,6 +3,7 @@
 use crate::known::{GAUSSIAN, WMS3, target};
 use crate::verdicts::verdicts;
 use linkwright::internals::files::problem_file;
+use linkwright::internals::judge::exact_linkages::Depth;
 use linkwright::internals::numbers::nine_point::{Solution, Target};
 use linkwright::internals::record::{Census, Completeness, ExactLinkage};
 use linkwright::internals::synthesis::continuation::{Exact, listed};
@@ -34,7 +35,8 @@ fn census(real: usize, real_curve: usize) -> Census {
 fn listing(name: &str, points: [[f64; 2]; 9], real_curve: usize, more: &str) -> Exact {
     let target = target(points);
     let real: Vec<Solution> = verdicts(name, &target).iter().map(|class| class.solution).collect();
-    listed(&problem(&target, more), &target, census(real.len(), real_curve), Completeness::Complete, &real)
+    let counted = (census(real.len(), real_curve), Completeness::Complete);
+    listed(&problem(&target, more), &target, counted, &real, Depth::Whole)
 }
 
 fn free(list: &[ExactLinkage]) -> usize {

@@ -100,7 +100,7 @@ fn no_small_change_of_the_linkage_lessens_the_largest_error() {
             moved.setting,
             moved.positions.clone(),
         );
-        let Some((positions, _)) = settled else { continue };
+        let Some(positions) = settled else { continue };
         moved.positions = positions;
         let Some(candidate) = judged(&problem, &moved) else { continue };
         assert!(!candidate.accepted || candidate.error.max >= best.error.max * (1.0 - 1e-9));

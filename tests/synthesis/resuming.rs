@@ -5,11 +5,12 @@ use linkwright::internals::app::job::checkpoint::{Checkpoint, Writer};
 use linkwright::internals::app::job::run::{Context, Job, run_kept};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::record::{Reason, Record};
-use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
+use linkwright::internals::synthesis::keeper::{Keeper, LEAST_PAUSE, SearchState};
 use std::fs;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// Runs a job from a state; the record, and the checkpoints of all its boundaries.
@@ -30,7 +31,7 @@ fn run_from(
             cancel.store(true, Ordering::Relaxed);
         }
     };
-    let keeper = Keeper::new(state, Pace::EveryBoundary, &sink);
+    let keeper = Keeper::new(state, Duration::ZERO, &sink);
     let context = Context { cancel: &cancel, observer: &|_| {} };
     let finished = pool.install(|| run_kept(job, &context, Some(&keeper))).expect("it runs");
     (finished.record, written.into_inner().expect("no panic"))
@@ -207,7 +208,7 @@ fn a_short_search_keeps_nothing() {
     let job = job(literature("k18", &[]));
     let kept = AtomicBool::new(false);
     let sink = |_: &SearchState| kept.store(true, Ordering::Relaxed);
-    let keeper = Keeper::new(SearchState::default(), Pace::Seldom, &sink);
+    let keeper = Keeper::new(SearchState::default(), LEAST_PAUSE, &sink);
     let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
     let begun = std::time::Instant::now();
     run_kept(&job, &context, Some(&keeper)).expect("it runs");

@@ -210,9 +210,9 @@ fn population_searches_beat_uniform_sampling_tenfold_at_equal_evaluations() {
             let file = literature("k18", &[("solve.seed", &seed)]);
             let problem = Problem::new(file.spec).expect("it is one");
             let budget = Budget { cancel: &AtomicBool::new(false), deadline: None };
-            let end = search(Context::new(&problem, &budget), which, EVALUATIONS).expect("it runs");
+            let (end, _) = search(Context::new(&problem, &budget), which, EVALUATIONS).expect("it runs");
             assert!(end.evaluations.objective <= EVALUATIONS);
-            end.found.iter().filter(|c| c.accepted).map(|c| c.error.sum_sq).fold(f64::INFINITY, f64::min)
+            end.candidates.iter().filter(|c| c.accepted).map(|c| c.error.sum_sq).fold(f64::INFINITY, f64::min)
         });
         median(sums.collect())
     };

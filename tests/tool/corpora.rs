@@ -69,9 +69,10 @@ fn checkpoints() {
 fn remake_the_corpus_of_checkpoints() {
     use linkwright::internals::app::job::checkpoint::Writer;
     use linkwright::internals::app::job::run::{Context, run_kept};
-    use linkwright::internals::synthesis::keeper::{Keeper, Pace, SearchState};
+    use linkwright::internals::synthesis::keeper::{Keeper, SearchState};
     use std::collections::BTreeSet;
     use std::sync::Mutex;
+    use std::time::Duration;
     let folder = root().join("tests/corpora/checkpoint");
     std::fs::create_dir_all(&folder).expect("a folder");
     for text in readers::SEARCHES {
@@ -79,7 +80,7 @@ fn remake_the_corpus_of_checkpoints() {
         let writer = Writer::new(&job).expect("it has a digest");
         let written = Mutex::new(Vec::new());
         let sink = |state: &SearchState| written.lock().expect("no panic").push(writer.bytes(state));
-        let keeper = Keeper::new(SearchState::default(), Pace::EveryBoundary, &sink);
+        let keeper = Keeper::new(SearchState::default(), Duration::ZERO, &sink);
         let context = Context { cancel: &false.into(), observer: &|_| {} };
         run_kept(&job, &context, Some(&keeper)).expect("it runs");
         let written: Vec<Vec<u8>> = written.into_inner().expect("no panic").into_iter().flatten().collect();

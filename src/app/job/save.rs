@@ -14,7 +14,7 @@ use crate::record::digest::{NotWritten, digest};
 use crate::record::{Reason, Record};
 use crate::report::html::Extent;
 use crate::synthesis::Observer;
-use crate::synthesis::keeper::{Keeper, LEAST_PAUSE, Pace, SearchState};
+use crate::synthesis::keeper::{Keeper, LEAST_PAUSE, SearchState};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -175,9 +175,7 @@ pub fn run(
             (listener.tell)(&format!("warning: no checkpoint could be written, the search goes on: {e}"));
         }
     };
-    let pause = options.checkpoint_every;
-    let pace = if pause.is_zero() { Pace::EveryBoundary } else { Pace::NotWithin(pause) };
-    let keeper = Keeper::new(earlier, pace, &sink);
+    let keeper = Keeper::new(earlier, options.checkpoint_every, &sink);
     let outcome = run_kept(job, &Context { cancel, observer: listener.observer }, Some(&keeper));
     let Finished { mut record, search_s, beside_s, advice_s } =
         outcome.map_err(|source| SaveError::Run { job: job.name.clone(), source })?;

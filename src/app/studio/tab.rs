@@ -200,8 +200,8 @@ impl Tab {
             mail,
             told,
             searches,
-            session: Session::new(),
-            nine: Nine::new(),
+            session: Session::default(),
+            nine: Nine::default(),
             exact: None,
             helps: Vec::new(),
             current: None,
@@ -216,7 +216,7 @@ impl Tab {
         if catch_unwind(AssertUnwindSafe(|| act(self))).is_err() {
             self.cancel();
             self.edits += 1;
-            self.nine = Nine::new();
+            self.nine = Nine::default();
             self.helps.clear();
             let version = self.current.as_ref().map_or(0, |current| current.version);
             self.refuse(version, BUG.into());
@@ -292,7 +292,7 @@ impl Tab {
                 None => self.session.clear(),
             }
         } else {
-            self.nine = Nine::new();
+            self.nine = Nine::default();
             self.session.follow(problem, &Budget::new(closed, None));
         }
     }

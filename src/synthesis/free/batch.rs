@@ -1,13 +1,12 @@
 //! A batch of rounds: run in parallel, read in their order, followed by the fits of the ends that they share.
 
-use super::round::{Finished, Known, Place, Round, Setup, finished, is_same, round, unfinished};
-use super::{End, Memory};
+use super::round::{Common, Finished, Round, Setup, finished, is_same, round, unfinished};
+use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Evaluations;
 use crate::synthesis::Context;
 use crate::synthesis::constants::free::{BATCH, DIFFERENT, LEADING};
 use crate::synthesis::driver::{in_parallel, share, spared};
-use crate::synthesis::multistart::by_merit;
-use crate::task::forms::start::Start;
+use crate::synthesis::states::{End, StageState};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::AtomicU64;
@@ -21,26 +20,17 @@ pub(super) struct Batch {
     pub(super) ends: Vec<End>,
     /// Whether every part of it stayed well below its allowance of evaluations.
     pub(super) ample: bool,
-    /// The memory of its stage after it.
-    pub(super) memory: Memory,
-}
-
-/// The data that all rounds of a batch share.
-struct Common<'a> {
-    context: Context<'a>,
-    setup: &'a Setup<'a>,
-    /// Index of the random stream of its first round.
-    first: u64,
-    near_ends: Vec<Start>,
+    /// The state of its stage after it.
+    pub(super) stage: StageState,
 }
 
 impl Batch {
     /// Runs the rounds of a batch, the first of which draws from the stream `first`, with at most `left` evaluations;
-    /// `memory` is the memory of its stage before it.
+    /// `stage` is the state of its stage before it.
     pub(super) fn run(
         context: Context<'_>,
         setup: &Setup<'_>,
-        memory: &Memory,
+        stage: &StageState,
         first: u64,
         left: u64,
     ) -> Batch {
@@ -50,48 +40,44 @@ impl Batch {
             best_merits: Vec::new(),
             ends: Vec::new(),
             ample: true,
-            memory: memory.clone(),
+            stage: stage.clone(),
         };
-        let near_ends = memory.leading.iter().map(|(_, start)| start.clone()).collect();
-        let common = Common { context, setup, first, near_ends };
+        let near_ends = stage.leading.iter().map(|(_, start)| start.clone()).collect();
+        let common = Common { context, setup, first, first_of_stage: stage.index, near_ends };
         // If ends are finished after the rounds and an exact one would end the search, one round runs before the
         // others.
         let split = setup.finishes_apart() && setup.single && first == 0;
-        let (mut begin, mut end) = (0, if split { 1 } else { BATCH });
-        while begin < BATCH {
+        let waves: &[(u64, u64)] = if split { &[(0, 1), (1, BATCH)] } else { &[(0, BATCH)] };
+        for &(begin, end) in waves {
             // Shared evenly among all rounds of the batch, each with the fits that follow from it.
             let left = left.saturating_sub(batch.cost.objective);
             let (parts, of) = (end - begin, BATCH - begin);
-            let exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
-            if exact {
+            let is_exact = batch.wave(&common, begin..end, left / of * parts + left % of * parts / of);
+            if is_exact {
                 break;
             }
-            (begin, end) = (end, BATCH);
         }
-        batch.memory.index += BATCH;
-        by_merit(&mut batch.memory.leading, LEADING);
+        batch.stage.index += BATCH;
+        batch.stage.leading.sort_by(|one, other| one.0.0.total_cmp(&other.0.0));
+        batch.stage.leading.truncate(LEADING);
         batch
     }
 
     /// Runs some of the rounds in parallel, then finishes the ends that they share. Returns whether an exact answer is
     /// among them.
     fn wave(&mut self, common: &Common<'_>, wave: Range<u64>, left: u64) -> bool {
-        let &Common { context, setup, first, ref near_ends } = common;
-        let (begin, index) = (wave.start, self.memory.index);
-        let found = AtomicU64::new(u64::MAX);
-        let known = Known { bar: self.memory.bar, near_ends };
-        let run = |i, allowance| {
-            let place = Place { stream: first + begin + i, index: index + begin + i };
-            round(context, setup, place, allowance, &known, &found)
-        };
+        let setup = common.setup;
+        let (found, bar) = (AtomicU64::new(u64::MAX), self.stage.bar);
+        let run = |i, allowance| round(common, wave.start + i, bar, allowance, &found);
         let (mut rounds, ample): (Vec<Round>, bool) =
-            in_parallel((left, wave.end - begin), run, |round| round.cost.objective);
+            in_parallel((left, wave.end - wave.start), run, |round| round.cost.objective);
         let used: u64 = rounds.iter().map(|round| round.cost.objective).sum();
         self.ample &= ample;
         let mut done: Vec<Finished> = Vec::new();
         if setup.finishes_apart() {
             done = self.finish(common, &rounds, left.saturating_sub(used));
-            self.memory.finished.extend(done.iter().map(|done| (done.explored, done.end.merit)));
+            let merits = done.iter().map(|done| (Exact(done.explored), Exact(done.end.merit)));
+            self.stage.finished.extend(merits);
         } else if let Some(exact) = rounds.iter().position(Round::is_exact) {
             // Rounds after it may have been cut short.
             rounds.truncate(exact + 1);
@@ -102,11 +88,12 @@ impl Batch {
             if round.independent {
                 self.best_merits.push(self.least_on_all(round));
             }
-            self.memory.bar = self.memory.bar.min(round.explored());
+            self.stage.bar = self.stage.bar.min(round.explored());
             done.append(&mut round.finished);
+            let leading = &mut self.stage.leading;
             for (merit, start) in round.leaders.drain(..) {
-                if self.memory.leading.iter().all(|(other, _)| (merit - other).abs() > DIFFERENT * other) {
-                    self.memory.leading.push((merit, start));
+                if leading.iter().all(|(Exact(other), _)| (merit - other).abs() > DIFFERENT * other) {
+                    leading.push((Exact(merit), start));
                 }
             }
         }
@@ -117,14 +104,13 @@ impl Batch {
 
     /// Fits the ends of rounds to all points, each once, up to the first exact one.
     fn finish(&mut self, common: &Common<'_>, rounds: &[Round], left: u64) -> Vec<Finished> {
-        let &Common { context, setup, .. } = common;
-        let ends = unfinished(setup, rounds, self.memory.bar, &self.memory.finished);
+        let ends = unfinished(common.setup, rounds, &self.stage);
         let parts = ends.len() as u64;
         let found = AtomicU64::new(u64::MAX);
         let finishes: Vec<(Option<Finished>, Evaluations)> = ends
             .into_par_iter()
             .enumerate()
-            .map(|(i, end)| finished(context, setup, (i as u64, end), share(left, parts, i as u64), &found))
+            .map(|(i, end)| finished(common, (i as u64, end), share(left, parts, i as u64), &found))
             .collect();
         let mut done: Vec<Finished> = Vec::new();
         for (i, (finished, cost)) in (0..).zip(finishes) {
@@ -141,8 +127,8 @@ impl Batch {
     /// Returns the least merit on all points of the ends of a round, whether they were finished in it or after a batch.
     fn least_on_all(&self, round: &Round) -> f64 {
         let own = round.finished.iter().map(|done| done.end.merit);
-        let shared = self.memory.finished.iter().filter_map(|(explored, whole)| {
-            round.leaders.iter().any(|(merit, _)| is_same(*explored, *merit)).then_some(*whole)
+        let shared = self.stage.finished.iter().filter_map(|(explored, whole)| {
+            round.leaders.iter().any(|(merit, _)| is_same(explored.0, *merit)).then_some(whole.0)
         });
         own.chain(shared).fold(f64::INFINITY, f64::min)
     }

@@ -28,20 +28,19 @@ use super::atlas::Matches;
 use super::belief::{DENSE_HITS, FreeHits, NEARLY, SAME_OPTIMUM, SPARSE_HITS};
 use super::coarse::Coarse;
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive};
-use super::multistart::judged;
 use super::polish::{basins_wanted, promising};
 use super::starts::Starts;
-use super::states::{Counts, FreeState, SearchState};
+use super::states::{Counts, End, FreeState, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
 use crate::judge::rank::{exact_cost, searched};
 use crate::mechanism::dot;
-use crate::record::{Candidate, Evaluations};
+use crate::numbers::optimise::exact_float::Exact;
+use crate::record::Candidate;
 use crate::synthesis::constants::free::{
     ALIKE, BATCH, IN_NOISE, KEPT, LEAST_BATCHES, NOISE_HITS, PATIENT_BATCHES, QUIET_BATCHES, WHOLE_ELSE,
     WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
-use crate::task::forms::start::Start;
 use batch::Batch;
 use round::Setup;
 
@@ -51,41 +50,9 @@ mod required;
 mod round;
 mod state;
 
-/// The end of a fit, judged or not yet.
-#[derive(Clone, Debug)]
-struct End {
-    start: Start,
-    merit: f64,
-    /// The referee's result. `None`: not judged yet; `Some(None)`: cannot be judged.
-    verdict: Option<Option<Candidate>>,
-}
-
-/// A stage of the search (on groups of points, or on all points) with its memory.
-struct Stage<'a> {
-    setup: Setup<'a>,
-    memory: Memory,
-}
-
-/// The results of a stage's batches so far.
-#[derive(Clone, Debug)]
-struct Memory {
-    /// The least merit on the explored points.
-    bar: f64,
-    /// The best different ends on the explored points.
-    leading: Vec<(f64, Start)>,
-    /// The merits, on the explored points and on all points, of the ends that have been finished after their batch.
-    finished: Vec<(f64, f64)>,
-    /// Rounds so far.
-    index: u64,
-}
-
-impl Memory {
-    const NONE: Memory = Memory { bar: f64::INFINITY, leading: Vec::new(), finished: Vec::new(), index: 0 };
-}
-
 /// Returns whether the errors of the best acceptable end are noise.
 fn is_noise(problem: &Problem, ends: &[End]) -> bool {
-    let best = ends.iter().filter_map(|end| end.verdict.as_ref()?.as_ref()).find(|c| promising(problem, c));
+    let best = ends.iter().filter_map(|end| end.verdict.as_ref()).find(|c| promising(problem, c));
     best.is_some_and(|best| likeness(problem, best) < ALIKE)
 }
 
@@ -109,13 +76,9 @@ struct Free<'a> {
     /// Number of distinct answers wanted.
     wanted: usize,
     exact: f64,
-    stages: Vec<Stage<'a>>,
-    /// The ends, least merit first.
-    ends: Vec<End>,
-    /// The least merit of each independent round.
-    best_merits: Vec<f64>,
-    counts: Counts,
-    evaluations: Evaluations,
+    /// The setups of the stages that have begun.
+    setups: Vec<Setup<'a>>,
+    at: FreeState,
     /// The best of the judged ends that is acceptable, or would be after its polish.
     best: Option<Candidate>,
 }
@@ -132,28 +95,26 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
         whole: &whole,
         wanted: basins_wanted(problem),
         exact: exact_cost(problem),
-        stages: Vec::new(),
-        ends: Vec::new(),
-        best_merits: Vec::new(),
-        counts: Counts::default(),
-        evaluations: Evaluations::default(),
+        setups: Vec::new(),
+        at: FreeState::default(),
         best: None,
     };
     free.begin_stage(coarse.as_ref(), grouped.as_ref().unwrap_or(&whole));
     let points = coarse.as_ref().map_or(problem.task().len(), |coarse| coarse.problem.task().len());
-    let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.as_ref());
-    if let Some((state, begun)) = earlier.and_then(|state| Some((state, state.stages(problem, points)?))) {
-        if begun > 1 {
+    let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
+    if let Some(state) = earlier.filter(|state| state.is_of(problem, points)) {
+        if state.stages.len() > 1 {
             free.begin_stage(None, &whole);
         }
-        state.resume(&mut free);
+        free.at = state.judged_again(problem);
     }
     let reason = drive(context, allowance, &mut free);
     let best = free.accepted().iter().map(|c| searched(problem, c)).min_by(f64::total_cmp);
+    let merits: Vec<f64> = free.at.best_merits.iter().map(|merit| merit.0).collect();
     Some(Found {
-        repeats: best.map(|best| repeats::counted(&free.best_merits, best, free.exact)),
-        candidates: free.ends.into_iter().filter_map(|end| end.verdict.flatten()).collect(),
-        evaluations: free.evaluations,
+        repeats: best.map(|best| repeats::counted(&merits, best, free.exact)),
+        candidates: free.at.ends.into_iter().filter_map(|end| end.verdict).collect(),
+        evaluations: free.at.evaluations,
         reason,
         used: vec![Free::PHASE.into()],
     })
@@ -163,17 +124,17 @@ impl<'a> Free<'a> {
     fn begin_stage(&mut self, coarse: Option<&'a Coarse>, starts: &'a Starts<'a>) {
         let matches = (starts.arc().len() >= LEAST_MATCHED).then(|| Matches::of(starts));
         let (problem, single, exact) = (self.problem, self.wanted == 1, self.exact);
-        let setup = Setup { problem, coarse, starts, matches, single, exact };
-        self.stages.push(Stage { setup, memory: Memory::NONE });
+        self.setups.push(Setup { problem, coarse, starts, matches, single, exact });
+        self.at.stages.push(StageState::BEGUN);
     }
 
     /// Returns the index of the stage of the next batch: now and then all points are explored, to find detail that
     /// grouping blurs.
     fn next_stage(&mut self) -> usize {
         let grouped_few = self.coarse.is_some() && self.problem.task().len() <= WHOLE_MOST;
-        let on_all_at = if is_noise(self.problem, &self.ends) { WHOLE_IN_NOISE } else { WHOLE_ELSE };
-        let on_all = grouped_few && self.counts.batch % WHOLE_EVERY == on_all_at;
-        if self.stages.len() == 1 && on_all {
+        let on_all_at = if is_noise(self.problem, &self.at.ends) { WHOLE_IN_NOISE } else { WHOLE_ELSE };
+        let on_all = grouped_few && self.at.counts.batch % WHOLE_EVERY == on_all_at;
+        if self.setups.len() == 1 && on_all {
             self.begin_stage(None, self.whole);
         }
         usize::from(on_all)
@@ -181,15 +142,15 @@ impl<'a> Free<'a> {
 
     /// Sorts the ends and drops the worst. Only some of the refused ends are kept: they must not crowd out the accepted.
     fn sort_ends(&mut self) {
-        self.ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
+        let ends = &mut self.at.ends;
+        ends.sort_by(|one, other| one.merit.total_cmp(&other.merit));
         let mut refused = 0;
-        self.ends.retain(|end| {
-            let unfit =
-                end.verdict.as_ref().is_some_and(|v| v.as_ref().is_none_or(|c| !promising(self.problem, c)));
+        ends.retain(|end| {
+            let unfit = end.judged && !end.verdict.as_ref().is_some_and(|c| promising(self.problem, c));
             refused += usize::from(unfit);
             !unfit || refused <= KEPT / 4
         });
-        self.ends.truncate(KEPT);
+        ends.truncate(KEPT);
     }
 
     /// Judges ends in order of increasing merit: until the first accepted one if one answer is wanted, else all that can
@@ -200,15 +161,15 @@ impl<'a> Free<'a> {
         let mut best: Option<Candidate> = None;
         let mut count = 0;
         let enough = if self.wanted == 1 { 1 } else { 8 * self.wanted };
-        for end in &mut self.ends {
+        for end in &mut self.at.ends {
             if count >= enough {
                 break;
             }
-            if end.verdict.is_none() && !judging.may_go_on() {
+            if !end.judged && !judging.may_go_on() {
                 continue;
             }
-            let verdict = end.verdict.get_or_insert_with(|| judged(problem, &end.start));
-            let Some(candidate) = verdict.as_ref().filter(|c| promising(problem, c)) else { continue };
+            end.judge(problem);
+            let Some(candidate) = end.verdict.as_ref().filter(|c| promising(problem, c)) else { continue };
             count += 1;
             let better = best
                 .as_ref()
@@ -222,8 +183,8 @@ impl<'a> Free<'a> {
 
     /// Returns the judged candidates that are acceptable, or would be after their polish.
     fn accepted(&self) -> Vec<Candidate> {
-        let judged = self.ends.iter().filter_map(|end| end.verdict.clone().flatten());
-        judged.filter(|c| promising(self.problem, c)).collect()
+        let judged = self.at.ends.iter().filter_map(|end| end.verdict.as_ref());
+        judged.filter(|c| promising(self.problem, c)).cloned().collect()
     }
 
     fn hits_wanted(&self) -> FreeHits {
@@ -232,7 +193,8 @@ impl<'a> Free<'a> {
 
     /// Returns the number of independent rounds within a relative distance `part` of an error.
     fn within(&self, error: f64, part: f64) -> usize {
-        repeats::came(&self.best_merits, error, part, self.exact)
+        let merits = self.at.best_merits.iter().map(|merit| merit.0);
+        repeats::came(merits, error, part, self.exact)
     }
 }
 
@@ -242,7 +204,8 @@ impl Strategy for Free<'_> {
     const PHASE: &'static str = "least-squares";
 
     fn save(&self, state: &mut SearchState) {
-        state.free = Some(FreeState::from(self));
+        debug_assert!(self.at.is_counted(), "a state in the middle of a batch");
+        state.free = Some(self.at.clone());
     }
 
     fn standing(&self) -> Standing<'_> {
@@ -252,29 +215,30 @@ impl Strategy for Free<'_> {
             wanted: self.hits_wanted().same,
         });
         Standing {
-            evaluations: self.evaluations.objective,
-            draws: self.counts.draws,
+            evaluations: self.at.evaluations.objective,
+            draws: self.at.counts.draws,
             best,
-            nearest: self.ends.iter().find_map(|end| end.verdict.as_ref()?.as_ref()),
+            nearest: self.at.ends.iter().find_map(|end| end.verdict.as_ref()),
             hits,
         }
     }
 
     fn run(&mut self, context: Context<'_>, left: u64) -> (Self::Batch, bool) {
         let now = self.next_stage();
-        let Stage { setup, memory } = &self.stages[now];
-        let batch = Batch::run(context, setup, memory, self.counts.batch * BATCH, left);
+        let first = self.at.counts.batch * BATCH;
+        let batch = Batch::run(context, &self.setups[now], &self.at.stages[now], first, left);
         let ample = batch.ample;
         ((batch, now), ample)
     }
 
     fn read(&mut self, context: Context<'_>, (batch, stage): Self::Batch) {
-        self.stages[stage].memory = batch.memory;
-        self.counts.batch += 1;
-        self.counts.draws += batch.draws;
-        self.evaluations += batch.cost;
-        self.best_merits.extend(batch.best_merits);
-        self.ends.extend(batch.ends);
+        let at = &mut self.at;
+        at.stages[stage] = batch.stage;
+        at.counts.batch += 1;
+        at.counts.draws += batch.draws;
+        at.evaluations += batch.cost;
+        at.best_merits.extend(batch.best_merits.into_iter().map(Exact));
+        at.ends.extend(batch.ends);
         self.sort_ends();
         self.best = self.judge_from_the_best(context);
     }
@@ -284,7 +248,7 @@ impl Strategy for Free<'_> {
         let error = searched(self.problem, best);
         let is_exact = error <= self.exact;
         let hits = self.hits_wanted();
-        let is_noise = self.coarse.is_some() && is_noise(self.problem, &self.ends);
+        let is_noise = self.coarse.is_some() && is_noise(self.problem, &self.at.ends);
         let believed = self.within(error, SAME_OPTIMUM) >= hits.same
             || self.within(error, NEARLY) >= hits.near
             || (is_noise && self.within(error, IN_NOISE) >= NOISE_HITS);
@@ -294,11 +258,11 @@ impl Strategy for Free<'_> {
             Some(_) if is_noise => 1,
             Some(_) => PATIENT_BATCHES,
         };
-        if !((believed && self.counts.batch >= least) || (is_exact && self.wanted == 1)) {
+        if !((believed && self.at.counts.batch >= least) || (is_exact && self.wanted == 1)) {
             return false;
         }
         let accepted = if self.wanted == 1 { Vec::new() } else { self.accepted() };
-        let Counts { known, quiet, .. } = &mut self.counts;
+        let Counts { known, quiet, .. } = &mut self.at.counts;
         are_enough(context, &accepted, self.wanted, (known, quiet), QUIET_BATCHES)
     }
 }

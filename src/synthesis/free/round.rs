@@ -1,12 +1,11 @@
 //! One round of the search for free timing: starts, short fits, longer fits of the best, and the treatment of their
 //! ends.
 
-use super::End;
 use super::moves::{along_a_difference, near};
 use super::required::{led_back, strayed, worth_spending};
 use crate::judge::rank::searched;
 use crate::numbers::arithmetic::streams::{stream, uniform};
-use crate::record::Evaluations;
+use crate::record::{Candidate, Evaluations};
 use crate::synthesis::Context;
 use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
@@ -15,9 +14,10 @@ use crate::synthesis::constants::free::{
     BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED,
     SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
 };
-use crate::synthesis::multistart::{Effort, LONG_FIT, by_merit, judged, polish, promise};
+use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
 use crate::synthesis::starts::Starts;
+use crate::synthesis::states::{End, StageState};
 use crate::task::Problem;
 use crate::task::forms::start::Start;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -51,24 +51,22 @@ impl Setup<'_> {
     }
 }
 
-/// The results of earlier batches of a stage that a round uses.
-pub(super) struct Known<'a> {
-    pub(super) bar: f64,
-    pub(super) near_ends: &'a [Start],
+/// The data that all rounds of a batch share.
+pub(super) struct Common<'a> {
+    pub(super) context: Context<'a>,
+    pub(super) setup: &'a Setup<'a>,
+    /// Indices of its first round: in the whole search, for its random stream, and in its stage.
+    pub(super) first: u64,
+    pub(super) first_of_stage: u64,
+    /// The best different ends of the batches before, near which rounds start.
+    pub(super) near_ends: Vec<Start>,
 }
 
-impl Known<'_> {
-    /// Returns whether a round is independent: it uses no results of others.
-    fn is_independent(&self, index: u64) -> bool {
-        self.near_ends.is_empty() || index.is_multiple_of(2)
+impl Common<'_> {
+    /// Returns whether a round of the batch is independent: it uses no results of others.
+    fn is_independent(&self, round: u64) -> bool {
+        self.near_ends.is_empty() || (self.first_of_stage + round).is_multiple_of(2)
     }
-}
-
-/// Index of a round: in the whole search, for its random stream, and in its stage.
-#[derive(Clone, Copy)]
-pub(super) struct Place {
-    pub(super) stream: u64,
-    pub(super) index: u64,
 }
 
 #[derive(Debug)]
@@ -105,30 +103,7 @@ pub(super) struct Finished {
     pub(super) exact: bool,
 }
 
-/// Runs fits within an allowance and counts their cost.
-struct Spender<'a> {
-    context: Context<'a>,
-    cost: Evaluations,
-    allowance: u64,
-}
-
 impl Spender<'_> {
-    fn left(&self) -> u64 {
-        self.allowance.saturating_sub(self.cost.objective)
-    }
-
-    /// Fits from a start with at most `most` of the evaluations left.
-    fn fit(&mut self, problem: &Problem, start: Start, effort: Effort, most: u64) -> Option<(f64, Start)> {
-        let left = self.left().min(most);
-        if left == 0 || self.context.stopped() {
-            return None;
-        }
-        let context = self.context.of(problem);
-        let fit = polish(context, start, effort, left);
-        self.cost += context.cost(fit.evaluations);
-        fit.end.map(|end| (fit.merit, end))
-    }
-
     /// Reassigns the points of an end to their best places on its curve and fits it again, as long as that gains.
     fn at_best_places(
         &mut self,
@@ -182,36 +157,31 @@ impl Spender<'_> {
     }
 }
 
-/// Returns the starts of a round with their promise ([`promise`]) on the explored points, and the number drawn.
-fn drawn(
-    setup: &Setup<'_>,
-    Place { stream: of_search, index }: Place,
-    known: &Known<'_>,
-    spender: &mut Spender<'_>,
-) -> (Vec<(f64, Start)>, u64) {
+/// Returns the starts of a round of the batch with their promise ([`promise`]) on the explored points, and the number
+/// drawn.
+fn drawn(common: &Common<'_>, round: u64, spender: &mut Spender<'_>) -> (Vec<(f64, Start)>, u64) {
+    let Common { setup, near_ends, first, first_of_stage, .. } = common;
+    let (of_search, index) = (first + round, first_of_stage + round);
     let explored = setup.explored();
     let mut drawn: Vec<(f64, Start)> = Vec::with_capacity(SCREEN);
     let mut count = 0;
     let mut take = |spender: &mut Spender<'_>, start: Option<Start>| {
         count += 1;
         let Some(mut start) = start else { return };
-        spender.cost += spender.context.of(explored).cost(1);
-        if let Some(promise) = promise(explored, &mut start) {
-            drawn.push((promise, start));
-        }
+        spender.spend(explored, 1);
+        drawn.extend(promise(explored, &mut start).map(|promise| (promise, start)));
     };
     // Of three independent rounds two take matches, as long as there are any.
     let turn = of_search as usize / 2;
     let first = (turn - turn / 3) * MATCHED;
     let mut draws = stream(setup.problem.spec().solve.seed, of_search);
-    if !known.is_independent(index) {
-        let end = &known.near_ends[(index / 2) as usize % known.near_ends.len()];
+    if !common.is_independent(round) {
+        let end = &near_ends[(index / 2) as usize % near_ends.len()];
         for i in 0..JITTERED {
             if spender.left() == 0 {
                 break;
             }
-            let mut other =
-                || &known.near_ends[uniform(&mut draws, 0.0, known.near_ends.len() as f64) as usize];
+            let mut other = || &near_ends[uniform(&mut draws, 0.0, near_ends.len() as f64) as usize];
             let (one, other) = (other(), other());
             let start = if i % 2 == 1
                 && one.setting.side == other.setting.side
@@ -245,32 +215,27 @@ fn drawn(
     (drawn, count)
 }
 
-/// Runs a round: its ends on the explored points, and on a sparse target the finished ends. `found` is the index of the
-/// first round with an exact answer; those after it are not read and may stop.
-pub(super) fn round(
-    context: Context<'_>,
-    setup: &Setup<'_>,
-    Place { stream: of_search, index }: Place,
-    allowance: u64,
-    known: &Known<'_>,
-    found: &AtomicU64,
-) -> Round {
+/// Runs round `index` of a batch: its ends on the explored points, and on a sparse target the finished ends. `bar` is
+/// the least merit there before it; `found` is the index of the first round with an exact answer; those after it are
+/// not read and may stop.
+pub(super) fn round(common: &Common<'_>, index: u64, bar: f64, allowance: u64, found: &AtomicU64) -> Round {
+    let &Common { context, setup, .. } = common;
     let mut round = Round {
         draws: 0,
         cost: Evaluations::default(),
         leaders: Vec::new(),
         finished: Vec::new(),
-        independent: known.is_independent(index),
+        independent: common.is_independent(index),
     };
-    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
-    let beaten = || found.load(Ordering::Relaxed) < of_search;
+    let mut spender = Spender::new(context, allowance);
+    let beaten = || found.load(Ordering::Relaxed) < index;
     if beaten() {
         return round;
     }
     let (explored, dense) = (setup.explored(), setup.finishes_apart());
-    let (mut drawn, draws) = drawn(setup, Place { stream: of_search, index }, known, &mut spender);
+    let (mut drawn, draws) = drawn(common, index, &mut spender);
     round.draws = draws;
-    let first_look = setup.coarse.is_some() && index < DENSE_BATCHES * BATCH;
+    let first_look = setup.coarse.is_some() && common.first_of_stage + index < DENSE_BATCHES * BATCH;
     let (shorts, middles) = if first_look { (DENSE_SHORT, DENSE_MIDDLE) } else { (SHORT, MIDDLE) };
     by_merit(&mut drawn, shorts);
     let spare = drawn.first().cloned();
@@ -297,7 +262,7 @@ pub(super) fn round(
     by_merit(&mut middle, middles);
     round.leaders = middle;
     if !dense {
-        let best = round.explored().min(known.bar);
+        let best = round.explored().min(bar);
         for (merit, start) in &round.leaders {
             if beaten() {
                 break;
@@ -309,7 +274,7 @@ pub(super) fn round(
                 let exact = finished.exact;
                 round.finished.push(finished);
                 if exact {
-                    found.fetch_min(of_search, Ordering::Relaxed);
+                    found.fetch_min(index, Ordering::Relaxed);
                     break;
                 }
             }
@@ -330,38 +295,35 @@ fn finish(
         Some(coarse) => coarse.refine(setup.problem, start)?,
     };
     let fitted = spender.fit_as_required(setup.problem, start.clone(), LONG_FIT);
-    let (merit, start) = match fitted {
+    let mut fitted = match fitted {
         Some(end) => end,
         // Out of budget: taken as it is, with its error on all points.
         None => (promise(setup.problem, &mut start)?, start),
     };
-    let (merit, start) = if setup.finishes_apart() {
-        spender.at_best_places(setup.problem, (merit, start), LONG_FIT)
-    } else {
-        (merit, start)
-    };
-    let mut end = End { start, merit, verdict: None };
-    let mut exact = false;
-    if setup.single && merit <= setup.exact {
-        let verdict = judged(setup.problem, &end.start);
-        exact = verdict.as_ref().is_some_and(|c| c.accepted && searched(setup.problem, c) <= setup.exact);
-        end.verdict = Some(verdict);
+    if setup.finishes_apart() {
+        fitted = spender.at_best_places(setup.problem, fitted, LONG_FIT);
     }
+    let (merit, start) = fitted;
+    let mut end = End { start, merit, judged: false, verdict: None };
+    if setup.single && merit <= setup.exact {
+        end.judge(setup.problem);
+    }
+    let is_exact = |c: &Candidate| c.accepted && searched(setup.problem, c) <= setup.exact;
+    let exact = end.verdict.as_ref().is_some_and(is_exact);
     Some(Finished { explored, end, exact })
 }
 
-/// Returns the ends of rounds on the explored points that can still matter and are not among the `finished` (merits on
-/// the explored points and on all), each once, best first.
+/// Returns the ends of rounds on the explored points that can still matter and have not been finished in earlier batches
+/// of the stage, each once, best first.
 pub(super) fn unfinished<'a>(
     setup: &Setup<'_>,
     rounds: &'a [Round],
-    bar: f64,
-    finished: &[(f64, f64)],
+    stage: &StageState,
 ) -> Vec<(f64, &'a Start)> {
-    let best = rounds.iter().map(Round::explored).fold(bar, f64::min);
+    let best = rounds.iter().map(Round::explored).fold(stage.bar, f64::min);
     let mut out: Vec<(f64, &Start)> = Vec::new();
     for (merit, start) in rounds.iter().flat_map(|round| &round.leaders) {
-        let met = finished.iter().any(|(explored, _)| is_same(*explored, *merit))
+        let met = stage.finished.iter().any(|(explored, _)| is_same(explored.0, *merit))
             || out.iter().any(|(other, _)| is_same(*other, *merit));
         if !met && setup.is_worth_finishing(*merit, best) {
             out.push((*merit, start));
@@ -378,13 +340,12 @@ pub(super) fn is_same(one: f64, other: f64) -> bool {
 
 /// Finishes one of them within its allowance, unless one before it was exact.
 pub(super) fn finished(
-    context: Context<'_>,
-    setup: &Setup<'_>,
+    &Common { context, setup, .. }: &Common<'_>,
     (index, end): (u64, (f64, &Start)),
     allowance: u64,
     found: &AtomicU64,
 ) -> (Option<Finished>, Evaluations) {
-    let mut spender = Spender { context, cost: Evaluations::default(), allowance };
+    let mut spender = Spender::new(context, allowance);
     if found.load(Ordering::Relaxed) < index {
         return (None, spender.cost);
     }

@@ -8,7 +8,7 @@
 
 pub mod nine;
 
-use crate::judge::assess::assess;
+use crate::judge::loosen::judged_under;
 use crate::judge::rank::{compare, distinct, sort};
 use crate::judge::warm::start_at;
 use crate::record::Candidate;
@@ -25,11 +25,6 @@ pub struct Session {
 }
 
 impl Session {
-    /// Creates a session without candidates.
-    pub fn new() -> Self {
-        Session::default()
-    }
-
     /// Returns the candidates, better first, ranked from 1.
     pub fn candidates(&self) -> &[Candidate] {
         &self.kept
@@ -48,7 +43,9 @@ impl Session {
         let kept = std::mem::take(&mut self.kept);
         self.kept = kept.iter().filter_map(|candidate| followed(problem, candidate, budget)).collect();
         sort(problem, &mut self.kept);
-        self.number();
+        for (rank, candidate) in (1..).zip(&mut self.kept) {
+            candidate.rank = rank;
+        }
         &self.kept
     }
 
@@ -61,12 +58,6 @@ impl Session {
         self.kept = distinct(problem, all, FOLLOWING);
         &self.kept
     }
-
-    fn number(&mut self) {
-        for (rank, candidate) in (1..).zip(&mut self.kept) {
-            candidate.rank = rank;
-        }
-    }
 }
 
 /// Runs a quick search of a problem: the search that every run begins with, with a small budget and without tolerances,
@@ -77,8 +68,7 @@ pub fn first_look(problem: &Problem, budget: &Budget<'_>) -> Vec<Candidate> {
     spec.task.path.tolerance = None;
     let Ok(easier) = Problem::new(spec) else { return Vec::new() };
     let Ok(outcome) = plan::search(Context::new(&easier, budget)) else { return Vec::new() };
-    let judged = |c: &Candidate| assess(problem, &c.linkage, &c.crank_deg, &c.t1_at);
-    let found = outcome.candidates.iter().filter_map(judged).collect();
+    let found = outcome.candidates.iter().filter_map(|c| judged_under(problem, c)).collect();
     distinct(problem, found, FOLLOWING)
 }
 
@@ -134,7 +124,7 @@ mod tests {
         let cancel = AtomicBool::new(false);
         let budget = Budget::new(&cancel, None);
         let before = egg(24, 0, 0.0);
-        let mut session = Session::new();
+        let mut session = Session::default();
         session.join(&before, searched(&before));
         let stale = session.candidates()[0].clone();
         for step in 1..=10 {
@@ -175,7 +165,7 @@ mod tests {
         let found = searched(&egg(24, 0, 0.0));
         let ends: Vec<String> = (0..2)
             .map(|_| {
-                let mut session = Session::new();
+                let mut session = Session::default();
                 session.join(&egg(24, 0, 0.0), found.clone());
                 session.follow(&egg(30, 2, 0.1), &budget);
                 assert!(session.candidates().iter().all(|c| c.crank_deg.len() == 30));
@@ -183,6 +173,6 @@ mod tests {
             })
             .collect();
         assert!(ends[0].len() > 100 && ends[0] == ends[1]);
-        assert!(Session::new().follow(&egg(24, 0, 0.0), &budget).is_empty());
+        assert!(Session::default().follow(&egg(24, 0, 0.0), &budget).is_empty());
     }
 }

@@ -14,11 +14,6 @@ pub struct Nine {
 }
 
 impl Nine {
-    /// Creates a state without solutions.
-    pub fn new() -> Self {
-        Nine::default()
-    }
-
     /// Returns all real linkages through the points of a problem, judged by its requirements, better first; from the
     /// solutions before if there are any ([`resolve_from`]), else from the start set ([`solve()`]). Nothing is
     /// certified, and no distance to a whole curve is computed ([`glanced`]): that is left to a run. `None` if the
@@ -60,7 +55,7 @@ mod tests {
     #[test]
     fn moved_points_have_the_linkages_that_a_run_of_their_own_finds() {
         let cancel = AtomicBool::new(false);
-        let mut nine = Nine::new();
+        let mut nine = Nine::default();
         let first = nine.follow(&points(0.0), &cancel).expect("nine points");
         assert!(first.record.census.classes == 1442 && first.record.linkages.len() > 3);
         let moved = nine.follow(&points(0.01), &cancel).expect("nine points");

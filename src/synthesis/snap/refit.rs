@@ -35,16 +35,21 @@ impl Length {
     /// All lengths.
     pub const ALL: [Length; 6] = [Length::Ground, Length::A, Length::B, Length::C, Length::D, Length::E];
 
+    /// Returns its key in files, its value in a linkage and its place in the design table.
+    fn entry(self) -> Entry {
+        match self {
+            Length::Ground => ("ground", FourBar::ground, |design| &mut design.ground),
+            Length::A => ("a", FourBar::crank, |design| &mut design.a),
+            Length::B => ("b", FourBar::coupler, |design| &mut design.b),
+            Length::C => ("c", FourBar::follower, |design| &mut design.c),
+            Length::D => ("d", FourBar::crank_side, |design| &mut design.d),
+            Length::E => ("e", FourBar::follower_side, |design| &mut design.e),
+        }
+    }
+
     /// Returns its key in files.
     pub fn key(self) -> &'static str {
-        match self {
-            Length::Ground => "ground",
-            Length::A => "a",
-            Length::B => "b",
-            Length::C => "c",
-            Length::D => "d",
-            Length::E => "e",
-        }
+        self.entry().0
     }
 
     /// Returns the length with a key.
@@ -54,29 +59,20 @@ impl Length {
 
     /// Returns its value in a linkage.
     pub fn of(self, linkage: &FourBar) -> f64 {
-        match self {
-            Length::Ground => linkage.ground(),
-            Length::A => linkage.crank(),
-            Length::B => linkage.coupler(),
-            Length::C => linkage.follower(),
-            Length::D => linkage.crank_side(),
-            Length::E => linkage.follower_side(),
-        }
+        (self.entry().1)(linkage)
     }
 
     /// Returns the problem's limits for it; from 0 to infinity if there are none.
     pub fn limits(self, design: &DesignSpec) -> Limits {
-        let limits = match self {
-            Length::Ground => design.ground,
-            Length::A => design.a,
-            Length::B => design.b,
-            Length::C => design.c,
-            Length::D => design.d,
-            Length::E => design.e,
-        };
-        limits.unwrap_or(Limits(0.0, f64::INFINITY))
+        self.place(&mut design.clone()).unwrap_or(Limits(0.0, f64::INFINITY))
+    }
+
+    fn place(self, design: &mut DesignSpec) -> &mut Option<Limits> {
+        (self.entry().2)(design)
     }
 }
+
+type Entry = (&'static str, fn(&FourBar) -> f64, fn(&mut DesignSpec) -> &mut Option<Limits>);
 
 /// The dimensions that are fixed.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,25 +110,11 @@ impl Fixed {
         let mut fixed = design.clone();
         let at = |value: f64| Limits(value, value);
         let both = |p: [f64; 2]| p.map(at);
-        if let Some(p) = self.crank_pivot {
-            fixed.crank_pivot = Some(both(p));
-        }
-        if let Some(p) = self.follower_pivot {
-            fixed.follower_pivot = Some(both(p));
-        }
-        if let Some(angle) = self.ground_angle_deg {
-            fixed.ground_angle_deg = Some(at(angle));
-        }
+        fixed.crank_pivot = self.crank_pivot.map(both).or(fixed.crank_pivot);
+        fixed.follower_pivot = self.follower_pivot.map(both).or(fixed.follower_pivot);
+        fixed.ground_angle_deg = self.ground_angle_deg.map(at).or(fixed.ground_angle_deg);
         for &(length, value) in &self.lengths {
-            let place = match length {
-                Length::Ground => &mut fixed.ground,
-                Length::A => &mut fixed.a,
-                Length::B => &mut fixed.b,
-                Length::C => &mut fixed.c,
-                Length::D => &mut fixed.d,
-                Length::E => &mut fixed.e,
-            };
-            *place = Some(at(value));
+            *length.place(&mut fixed) = Some(at(value));
         }
         if self.get(Length::D).is_some() || self.get(Length::E).is_some() {
             // d and e are the coordinates; the problem's limits of coupler_x and coupler_y are left to the referee.

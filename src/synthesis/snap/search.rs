@@ -9,7 +9,7 @@ use crate::record::{Candidate, Evaluations, Reason};
 use crate::synthesis::Context;
 use crate::synthesis::constants::snap::{BEAM, IMPROVED, NEAR, QUICK, ROUNDS, SPARE, THOROUGH};
 use crate::task::Problem;
-use crate::task::spec::Limits;
+use crate::task::spec::{DesignSpec, Limits};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -106,16 +106,15 @@ pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> R
         let Limits(low, high) = length.limits(design);
         request.stock.near(length.of(&at.linkage), count, low, high)
     };
+    let mut plain = request.fixed.clone();
     for &length in &lengths {
-        if near(length, candidate, 1).is_empty() {
+        let Some(&value) = near(length, candidate, 1).first() else {
             let Limits(low, high) = length.limits(design);
             return Err(SnapError::NoStock { key: length.key(), stock: request.stock.words(), low, high });
-        }
+        };
+        plain = plain.with(length, value);
     }
     let mut search = Search { context, fits: 0, evaluations: 0 };
-    let plain = lengths.iter().fold(request.fixed.clone(), |fixed, &length| {
-        near(length, candidate, 1).first().map_or(fixed.clone(), |value| fixed.with(length, *value))
-    });
     let root = Choice { fixed: request.fixed.clone(), candidate: candidate.clone() };
     let at_once = search.fitted(vec![(plain, candidate)], THOROUGH);
     let mut beam = vec![root];
@@ -223,12 +222,7 @@ fn bits(fixed: &Fixed) -> Vec<u64> {
 }
 
 /// Returns the choices with one length, or two, moved a stock size up or down.
-fn neighbours(
-    choice: &Choice,
-    lengths: &[Length],
-    stock: &Stock,
-    design: &crate::task::spec::DesignSpec,
-) -> Vec<Fixed> {
+fn neighbours(choice: &Choice, lengths: &[Length], stock: &Stock, design: &DesignSpec) -> Vec<Fixed> {
     let moves: Vec<(Length, f64)> = lengths
         .iter()
         .flat_map(|&length| {
@@ -263,11 +257,8 @@ impl Search<'_> {
                 (candidate.map(|candidate| Choice { fixed, candidate }), used)
             })
             .collect();
-        let mut found = Vec::new();
-        for (choice, used) in fitted {
-            self.evaluations += used;
-            found.extend(choice);
-        }
+        self.evaluations += fitted.iter().map(|(_, used)| used).sum::<u64>();
+        let mut found: Vec<Choice> = fitted.into_iter().filter_map(|(choice, _)| choice).collect();
         self.sort(&mut found);
         found
     }
