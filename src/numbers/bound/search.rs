@@ -130,11 +130,6 @@ impl Question {
         self.class
     }
 
-    /// Returns the box of the whole chart.
-    pub fn root() -> Cell {
-        ROOT
-    }
-
     /// Returns the part of the chart that is covered.
     fn part(&self) -> Cell {
         match self.angles {
@@ -201,13 +196,7 @@ impl Question {
 
 /// Returns whether no point of the box has |d| <= min(g, pi - g).
 pub fn outside(cell: &Cell) -> bool {
-    let d = if cell.low[3] > 0.0 {
-        cell.low[3]
-    } else if cell.high[3] < 0.0 {
-        -cell.high[3]
-    } else {
-        0.0
-    };
+    let d = cell.low[3].max(-cell.high[3]).max(0.0);
     let above_pi = std::f64::consts::PI + 1e-5;
     d > cell.high[2] || d > above_pi - cell.low[2]
 }
@@ -394,11 +383,6 @@ impl Search {
         (nodes, open)
     }
 
-    /// Returns the sum behind [`Search::decided`].
-    pub fn decided_sum(&self) -> f64 {
-        self.decided
-    }
-
     /// Restores a search with the question of `like` from the state that [`Search::state`] returned; `None` if no
     /// search can be in that state.
     pub fn restored(like: &Search, nodes: &Nodes, open: &[OpenBox], decided: f64) -> Option<Self> {
@@ -439,12 +423,6 @@ impl Search {
     /// Returns the SHA-256 of the tree so far.
     pub fn leaves_sha256(&self) -> [u8; 32] {
         self.nodes().sha256()
-    }
-
-    /// Returns whether some box that waits contains the point.
-    pub fn waits_at(&self, point: [f64; 4]) -> bool {
-        let holds = |cell: &Cell| (0..4).all(|k| (cell.low[k]..=cell.high[k]).contains(&point[k]));
-        self.heap.iter().any(|waiting| holds(&waiting.cell()))
     }
 
     /// Evaluates one batch of boxes: halves the lowest ones, and decides or bounds the halves.
