@@ -442,7 +442,7 @@ fn the_same_boxes_on_any_number_of_threads_and_the_bound_rises() {
                 assert!(search.lower_bound() >= last);
                 last = search.lower_bound();
             }
-            (search.boxes(), search.lower_bound().to_bits(), search.leaves_sha256())
+            (search.boxes(), search.lower_bound().to_bits(), search.nodes().sha256())
         })
     };
     assert_eq!(run(1), run(2));
