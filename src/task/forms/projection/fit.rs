@@ -17,15 +17,12 @@
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex, turned};
-use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
+use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
 use crate::task::forms::design_space::{Shape, unit};
 use std::array::from_fn;
-
-/// A column of complex numbers: real parts and imaginary parts.
-type Column = [Vec<f64>; 2];
 
 /// The physical solution at a point of the reduced form.
 #[derive(Clone, Copy, Debug, PartialEq)]
