@@ -7,6 +7,8 @@ mod equations;
 mod known;
 mod listing;
 mod mechanisms;
+#[path = "../../examples/nine-point-start-set/monodromy.rs"]
+mod monodromy;
 mod problems;
 #[path = "../common/random.rs"]
 mod random;

@@ -1,11 +1,12 @@
 //! The certificate: chart, balls, the bound of a box, each rule that discards, the search.
 
+use crate::chart::{Point, sum_sq, waits_at};
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide, FourBar, NaturalCoordinates};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
 use linkwright::internals::numbers::bound::bound;
 use linkwright::internals::numbers::bound::search::{in_cognate_half, outside};
-use linkwright::internals::numbers::bound::{Ball, Outcome, Point, Question, Search, Target};
-use linkwright::internals::numbers::leaves::{Cell, Class};
+use linkwright::internals::numbers::bound::{Ball, Outcome, Question, Search, Target};
+use linkwright::internals::numbers::leaves::{Cell, Class, ROOT, root};
 
 pub const K18: [[f64; 2]; 18] = [
     [0.5, 1.1],
@@ -117,14 +118,13 @@ fn the_cognate_has_the_same_sum_a_shorter_coupler_and_a_shorter_arm() {
     let mut both = 0;
     for i in 0..2000 {
         let (class, direction) = KINDS[i % 4];
-        let target = Target::new(&K18, &turns(), direction).expect("a target");
         let x = point(random);
         let Some(other) = x.cognate() else { continue };
         let Some((r, s)) = x.ratios().zip(other.ratios()).filter(|(r, _)| r.coupler.max(r.follower) < 100.0)
         else {
             continue;
         };
-        let sum = |x: &Point| target.sum_sq(&directions(x, class, direction, &turns()));
+        let sum = |x: &Point| sum_sq(&K18, &turns(), direction, &directions(x, class, direction, &turns()));
         assert!((sum(&x) - sum(&other)).abs() < 1e-6 * sum(&x), "{x:?} {other:?}");
         assert!((r.coupler - s.follower).abs() < 1e-4 * r.coupler, "{r:?} {s:?}");
         // The half that the search drops is the one with b > c.
@@ -194,7 +194,7 @@ fn balls_hold_the_exact_results() {
 
 /// A box of any size anywhere in the chart, often beside what is degenerate.
 pub fn cell(random: &mut Stream) -> Cell {
-    let root = Question::root();
+    let root = ROOT;
     let size = 10.0_f64.powf(-4.0 * unit(random));
     let mut cell = root;
     for k in 0..4 {
@@ -244,7 +244,7 @@ fn no_point_of_a_box_has_a_sum_below_the_certified_one() {
         }
         certified += 1;
         for x in points_of(&cell, random).into_iter().step_by(step) {
-            let sum = target.sum_sq(&directions(&x, class, direction, &turns()));
+            let sum = sum_sq(&K18, &turns(), direction, &directions(&x, class, direction, &turns()));
             assert!(sum >= found.sum_sq * (1.0 - 1e-9), "{class:?} {cell:?} {x:?}: {sum} below {found:?}");
             tight += usize::from(sum < 1.1 * found.sum_sq);
         }
@@ -329,14 +329,12 @@ fn leaving_a_point_out_lowers_the_sum() {
     for i in 0..2000 {
         let (class, direction) = KINDS[i % 4];
         let (mut points, mut fewer) = (K18.to_vec(), turns());
-        let whole = Target::new(&points, &fewer, direction).expect("a target");
         let x = point(random);
-        let sum = whole.sum_sq(&directions(&x, class, direction, &fewer));
+        let sum = sum_sq(&points, &fewer, direction, &directions(&x, class, direction, &fewer));
         let j = i % 18;
         points.remove(j);
         fewer.remove(j);
-        let rest = Target::new(&points, &fewer, direction).expect("a target");
-        let less = rest.sum_sq(&directions(&x, class, direction, &fewer));
+        let less = sum_sq(&points, &fewer, direction, &directions(&x, class, direction, &fewer));
         assert!(less <= sum * (1.0 + 1e-12), "{x:?}: {less} above {sum}");
     }
 }
@@ -364,8 +362,7 @@ fn planted(random: &mut Stream, n: usize, noise: f64) -> (Point, Class, f64, Vec
                 [0, 1].map(|i| a[i] + crank[i] + coupler[i] + noise * off[i])
             })
             .collect::<Vec<_>>();
-        let target = Target::new(&points, &turns, direction).expect("a target");
-        let sum = target.sum_sq(&directions(&x, class, direction, &turns));
+        let sum = sum_sq(&points, &turns, direction, &directions(&x, class, direction, &turns));
         return (x, class, direction, points, turns, sum);
     }
 }
@@ -381,7 +378,11 @@ fn a_planted_better_answer_is_never_excluded() {
         let at = [x.p, x.phi, x.g, x.d];
         for _ in 0..12 {
             search.step();
-            assert!(search.waits_at(at), "{x:?} of {class:?} was excluded at {} boxes", search.boxes());
+            assert!(
+                waits_at(&search, ROOT, at),
+                "{x:?} of {class:?} was excluded at {} boxes",
+                search.boxes()
+            );
             assert!(search.lower_bound() <= sum);
         }
     }
@@ -398,7 +399,11 @@ fn a_planted_answer_from_the_ground_line_is_never_excluded() {
         let mut search = Search::new(question, 1.1 * sum);
         for _ in 0..6 {
             search.step();
-            assert!(search.waits_at([x.p, 0.0, x.g, x.d]), "{x:?} of {class:?}, {} boxes", search.boxes());
+            assert!(
+                waits_at(&search, root([0.0; 2]), [x.p, 0.0, x.g, x.d]),
+                "{x:?} of {class:?}, {} boxes",
+                search.boxes()
+            );
             assert!(search.lower_bound() <= sum);
         }
     }
@@ -410,7 +415,7 @@ fn every_box_around_a_planted_answer_stays_however_small() {
     for _ in 0..draws(500) {
         let (x, class, direction, points, turns, sum) = planted(random, 9, 0.02);
         let question = Question::new(class, direction, &points, &turns, 2.0).expect("a question");
-        let mut cell = Question::root();
+        let mut cell = ROOT;
         let at = [x.p, x.phi, x.g, x.d];
         for i in 0..80 {
             let Outcome::Open(found) = question.look(&cell, sum * (1.0 + 1e-9)) else {
@@ -437,7 +442,7 @@ fn the_same_boxes_on_any_number_of_threads_and_the_bound_rises() {
                 assert!(search.lower_bound() >= last);
                 last = search.lower_bound();
             }
-            (search.boxes(), search.lower_bound().to_bits(), search.leaves_sha256())
+            (search.boxes(), search.lower_bound().to_bits(), search.nodes().sha256())
         })
     };
     assert_eq!(run(1), run(2));

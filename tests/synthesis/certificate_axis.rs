@@ -2,12 +2,13 @@
 
 use crate::certificate::{cell, directions, draws, points_of};
 use crate::certificate_leaves::{sealed, stopped, whole};
+use crate::chart::{Point, waits_at};
 use crate::common::{job, literature};
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::judge::certificate::{CheckError, Proof, Request, check};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, stream, unit};
 use linkwright::internals::numbers::bound::absolute::{bound, exclude};
-use linkwright::internals::numbers::bound::{Outcome, Point, Question, Search, Target};
+use linkwright::internals::numbers::bound::{Outcome, Question, Search, Target};
 use linkwright::internals::numbers::checker::{
     claim::Claim,
     region::{Region, Shown},
@@ -315,7 +316,12 @@ fn a_planted_answer_is_never_excluded() {
         let mut search = Search::new(task.question(), 1.1 * sum);
         for _ in 0..5 {
             search.step();
-            assert!(search.waits_at(at), "{x:?} of {:?}, {} boxes", task.axis, search.boxes());
+            assert!(
+                waits_at(&search, root(task.axis.phi), at),
+                "{x:?} of {:?}, {} boxes",
+                task.axis,
+                search.boxes()
+            );
             assert!(search.lower_bound() <= sum * (1.0 + 1e-9));
         }
         let question = task.question();

@@ -5,7 +5,6 @@ use crate::common::{job, literature};
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::judge::certificate::{CheckError, Checked, Proof, Request, check};
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
-use linkwright::internals::numbers::bound::Question;
 use linkwright::internals::numbers::checker::{
     claim::Claim,
     region::{Region, Shown},
@@ -69,7 +68,6 @@ fn the_root_holds_the_whole_chart() {
     for (k, [low, high]) in chart.into_iter().enumerate() {
         assert!(ROOT.low[k] <= low && high <= ROOT.high[k]);
     }
-    assert_eq!(Question::root(), ROOT);
 }
 
 #[test]

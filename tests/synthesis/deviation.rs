@@ -2,6 +2,7 @@
 //! holds.
 
 use crate::common::{bytes, literature, parse, run_on};
+use crate::reduced::free;
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::judge::warm::start_at;
@@ -243,7 +244,7 @@ fn population_searches_lessen_the_largest_deviation_too() {
         let problem = Problem::new(literature("k18", &set).spec).expect("it is one");
         let fitness = PathFitness::new(&problem);
         let start = start_at(&problem, best).expect("it closes");
-        let read = fitness.read(&fitness.space(start.setting.side).to_free(&start.design)).fitness;
+        let read = fitness.read(&free(fitness.space(start.setting.side), &start.design)).fitness;
         assert!((read.cost - best.error.objective).abs() <= 1e-9 * read.cost, "{read:?}");
     }
 }

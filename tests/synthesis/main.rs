@@ -5,6 +5,7 @@ mod certificate;
 mod certificate_axis;
 mod certificate_leaves;
 mod certificate_resuming;
+mod chart;
 mod closing;
 #[path = "../common/mod.rs"]
 mod common;

@@ -4,6 +4,7 @@ use crate::common::{bytes, literature, parse, run_on};
 use linkwright::internals::files::problem_file;
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
+use linkwright::internals::mechanism::four_bar::mobility::wrapped;
 use linkwright::internals::mechanism::{AssemblyMode, CouplerSide};
 use linkwright::internals::numbers::arithmetic::streams::stream;
 use linkwright::internals::numbers::optimise::population::{PopulationProblem, draw_uniform};
@@ -11,11 +12,22 @@ use linkwright::internals::record::Record;
 use linkwright::internals::record::digest::digest;
 use linkwright::internals::synthesis::reduced::{ReducedFitness, forms};
 use linkwright::internals::task::Problem;
-use linkwright::internals::task::forms::design_space::Shape;
+use linkwright::internals::task::forms::design_space::{DESIGN, Design, DesignSpace, Shape};
 use linkwright::internals::task::forms::fitness::PathFitness;
 use linkwright::internals::task::forms::projection::{ProjectedFit, Projection};
 use linkwright::internals::task::forms::reduced::{Refusal, refusal};
 use linkwright::internals::task::spec::Variables;
+use std::f64::consts::TAU;
+
+/// Returns the numbers of a design that are not fixed, angles within half a turn.
+pub fn free(space: &DesignSpace, x: &Design) -> Vec<f64> {
+    let free = (0..DESIGN).filter(|&i| space.bounds()[i].0 < space.bounds()[i].1);
+    let within = |(i, (low, high)): (usize, (f64, f64))| {
+        let value = if space.is_angle(i) && high - low >= TAU { wrapped(x[i]) } else { x[i] };
+        value.max(low).min(high)
+    };
+    free.zip(space.free_box()).map(within).collect()
+}
 
 const DE: &str = "differential-evolution";
 
@@ -147,7 +159,7 @@ fn the_cost_is_that_of_the_linear_fit_and_of_the_nine_parameters_at_its_shape() 
         // The nine parameters take the best of both assemblies and directions.
         let space = nine.space(CouplerSide::Plus);
         let shape: Shape = solution.shape;
-        let genes = space.to_free(&space.design(&shape, solution.offset));
+        let genes = free(space, &space.design(&shape, solution.offset));
         let read = nine.read(&genes).fitness;
         assert!(read.is_feasible() && read.cost <= fitness.cost * (1.0 + 1e-9));
     }

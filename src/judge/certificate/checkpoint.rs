@@ -71,7 +71,7 @@ impl Proof {
         bytes.extend((self.searches.len() as u32).to_le_bytes());
         for (_, _, search) in &self.searches {
             let (nodes, open) = search.state();
-            bytes.extend(search.decided_sum().to_le_bytes());
+            bytes.extend(search.decided().to_le_bytes());
             bytes.extend(nodes.len().to_le_bytes());
             bytes.extend(nodes.bytes());
             for OpenBox { number, sum_sq, axis } in open {

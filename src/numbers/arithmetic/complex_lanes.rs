@@ -68,7 +68,7 @@ impl ComplexLanes {
     /// # Panics
     /// When fewer than eight are left.
     #[inline(always)]
-    pub fn load([re, im]: &[Vec<f64>; 2], at: usize) -> Self {
+    pub fn load([re, im]: &Column, at: usize) -> Self {
         ComplexLanes { re: F64x8::load(re, at), im: F64x8::load(im, at) }
     }
 
@@ -77,7 +77,7 @@ impl ComplexLanes {
     /// # Panics
     /// When there is no room for eight.
     #[inline(always)]
-    pub fn store(self, [re, im]: &mut [Vec<f64>; 2], at: usize) {
+    pub fn store(self, [re, im]: &mut Column, at: usize) {
         self.re.store(re, at);
         self.im.store(im, at);
     }
@@ -148,6 +148,19 @@ impl<L: Lane> Mul for ComplexLanes<L> {
             im: self.re * other.im + self.im * other.re,
         }
     }
+}
+
+/// A column of complex numbers: real parts and imaginary parts.
+pub type Column = [Vec<f64>; 2];
+
+/// Returns complex numbers as a column, padded to whole lanes with the last one.
+pub fn column(of: &[Complex]) -> Column {
+    let part = |part: fn(&Complex) -> f64| {
+        let mut column: Vec<f64> = of.iter().map(part).collect();
+        column.resize(of.len().next_multiple_of(LANES), of.last().map_or(0.0, part));
+        column
+    };
+    [part(|z| z.re), part(|z| z.im)]
 }
 
 /// Returns the larger of two real numbers, lane by lane.

@@ -39,15 +39,7 @@ pub struct DoubleComplex {
     pub im: DoubleDouble,
 }
 
-/// Computes a + b = fl(a + b) + error, exactly (Knuth).
-#[inline(always)]
-fn two_sum(a: f64, b: f64) -> DoubleDouble {
-    let hi = a + b;
-    let of_b = hi - a;
-    DoubleDouble { hi, lo: (a - (hi - of_b)) + (b - of_b) }
-}
-
-/// Computes the same if |a| >= |b| or a = 0 (Dekker).
+/// Computes a + b = fl(a + b) + error, exactly, if |a| >= |b| or a = 0 (Dekker).
 #[inline(always)]
 fn fast_two_sum(a: f64, b: f64) -> DoubleDouble {
     let hi = a + b;
@@ -63,31 +55,21 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// Computes a b = fl(a b) + error, exactly unless the error lies below the smallest double (Dekker).
-#[inline(always)]
-fn two_product(a: f64, b: f64) -> DoubleDouble {
-    let hi = a * b;
-    let ((a1, a2), (b1, b2)) = (split(a), split(b));
-    DoubleDouble { hi, lo: a2 * b2 - (((hi - a1 * b1) - a2 * b1) - a1 * b2) }
-}
-
 impl DoubleDouble {
-    /// Returns a + b, exactly.
+    /// Returns a + b = fl(a + b) + error, exactly (Knuth).
     #[inline(always)]
     pub fn sum_of(a: f64, b: f64) -> Self {
-        two_sum(a, b)
+        let hi = a + b;
+        let of_b = hi - a;
+        DoubleDouble { hi, lo: (a - (hi - of_b)) + (b - of_b) }
     }
 
-    /// Returns a - b, exactly.
-    #[inline(always)]
-    pub fn difference_of(a: f64, b: f64) -> Self {
-        two_sum(a, -b)
-    }
-
-    /// Returns a b, exactly unless it underflows.
+    /// Returns a b = fl(a b) + error, exactly unless the error lies below the smallest double (Dekker).
     #[inline(always)]
     pub fn product_of(a: f64, b: f64) -> Self {
-        two_product(a, b)
+        let hi = a * b;
+        let ((a1, a2), (b1, b2)) = (split(a), split(b));
+        DoubleDouble { hi, lo: a2 * b2 - (((hi - a1 * b1) - a2 * b1) - a1 * b2) }
     }
 
     /// Returns the nearest double.
@@ -113,19 +95,19 @@ impl From<f64> for DoubleDouble {
 crate::operators! { DoubleDouble:
     Neg neg(x) { DoubleDouble { hi: -x.hi, lo: -x.lo } }
     Add add(x, y) {
-        let high = two_sum(x.hi, y.hi);
-        let low = two_sum(x.lo, y.lo);
+        let high = DoubleDouble::sum_of(x.hi, y.hi);
+        let low = DoubleDouble::sum_of(x.lo, y.lo);
         let head = fast_two_sum(high.hi, high.lo + low.hi);
         fast_two_sum(head.hi, low.lo + head.lo)
     }
     Sub sub(x, y) { x + -y }
     Mul mul(x, y) {
-        let head = two_product(x.hi, y.hi);
+        let head = DoubleDouble::product_of(x.hi, y.hi);
         fast_two_sum(head.hi, head.lo + (x.hi * y.lo + x.lo * y.hi))
     }
     Div div(x, y) {
         let quotient = x.hi / y.hi;
-        let product = two_product(y.hi, quotient);
+        let product = DoubleDouble::product_of(y.hi, quotient);
         let back = fast_two_sum(product.hi, product.lo + y.lo * quotient);
         let rest = (x.hi - back.hi) + (x.lo - back.lo);
         fast_two_sum(quotient, rest / y.hi)
@@ -154,10 +136,7 @@ impl DoubleComplex {
     /// Returns a - b, exactly.
     #[inline(always)]
     pub fn difference_of(a: Complex, b: Complex) -> Self {
-        DoubleComplex {
-            re: DoubleDouble::difference_of(a.re, b.re),
-            im: DoubleDouble::difference_of(a.im, b.im),
-        }
+        DoubleComplex { re: DoubleDouble::sum_of(a.re, -b.re), im: DoubleDouble::sum_of(a.im, -b.im) }
     }
 
     /// Returns the number times a real power of two, exactly unless it underflows.
@@ -231,7 +210,8 @@ mod tests {
     }
 
     fn double_double() -> impl Strategy<Value = DoubleDouble> {
-        (double(), -1.0..1.0_f64).prop_map(|(hi, part)| two_sum(hi, hi * part * f64::EPSILON / 2.0))
+        (double(), -1.0..1.0_f64)
+            .prop_map(|(hi, part)| DoubleDouble::sum_of(hi, hi * part * f64::EPSILON / 2.0))
     }
 
     proptest! {
@@ -242,7 +222,9 @@ mod tests {
             let (sum, product) = (DoubleDouble::sum_of(a, b), DoubleDouble::product_of(a, b));
             prop_assert_eq!(sum.hi, a + b);
             prop_assert_eq!(value(sum), whole(a) + whole(b));
-            prop_assert_eq!(value(DoubleDouble::difference_of(a, b)), whole(a) - whole(b));
+            let difference = DoubleComplex::difference_of(Complex::new(a, b), Complex::new(b, a));
+            prop_assert_eq!(value(difference.re), whole(a) - whole(b));
+            prop_assert_eq!(value(difference.im), whole(b) - whole(a));
             prop_assert_eq!(product.hi, a * b);
             prop_assert_eq!(value(product) << FRACTION, whole(a) * whole(b));
             prop_assert_eq!(product.lo, a.mul_add(b, -(a * b)));
@@ -252,7 +234,7 @@ mod tests {
         fn operations_keep_their_bounds(a in double_double(), b in double_double(), near in -4..4_i32) {
             prop_assert!(within(value(a + b), value(a) + value(b), 4));
             let close = DoubleDouble { hi: -a.hi * (1.0 + f64::from(near) * f64::EPSILON), lo: b.lo };
-            let close = two_sum(close.hi, close.lo);
+            let close = DoubleDouble::sum_of(close.hi, close.lo);
             prop_assert!(within(value(a + close), value(a) + value(close), 4), "cancellation");
             prop_assert!(within(value(a * b) << FRACTION, value(a) * value(b), 7));
             prop_assume!(b.hi != 0.0);

@@ -17,9 +17,10 @@ pub(super) fn centre(cell: &Cell) -> ([f64; 4], [f64; 4]) {
     (c, h)
 }
 
-/// Returns both halves of the box, split along an axis.
+/// Returns both halves of the box, split along an axis. They meet in one number, the middle in single precision, as the
+/// boxes of a tree are stored.
 pub(super) fn split(cell: &Cell, axis: usize) -> [Cell; 2] {
-    let middle = 0.5 * (cell.low[axis] + cell.high[axis]);
+    let middle = f64::from((0.5 * (cell.low[axis] + cell.high[axis])) as f32);
     let (mut lower, mut upper) = (*cell, *cell);
     lower.high[axis] = middle;
     upper.low[axis] = middle;

@@ -25,7 +25,7 @@ pub mod absolute;
 mod affine;
 pub mod ball;
 pub mod bound;
-pub mod chart;
+mod chart;
 mod expansion;
 mod halving;
 pub mod search;
@@ -33,6 +33,5 @@ pub mod target;
 
 pub use ball::Ball;
 pub use bound::{Bound, bound};
-pub use chart::{Point, Ratios};
 pub use search::{Leaf, Outcome, Question, Search};
 pub use target::{Target, TargetError};

@@ -69,20 +69,12 @@ impl Question {
         turns_deg: &[f64],
         cap: f64,
     ) -> Result<Self, TargetError> {
-        if points.len() < 5 {
-            return Err(TargetError::Points { points: points.len() });
+        let (whole, fewer) =
+            targets(points, turns_deg, |points, turns| Target::new(points, turns, direction))?;
+        if fewer.iter().any(Option::is_none) {
+            return Err(TargetError::Degenerate);
         }
-        let whole = Target::new(points, turns_deg, direction)?;
-        let fewer = (0..points.len())
-            .map(|j| {
-                let (mut points, mut turns) = (points.to_vec(), turns_deg.to_vec());
-                points.remove(j);
-                turns.remove(j);
-                Target::new(&points, &turns, direction)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
         let turns = turns_deg.iter().map(|deg| direction.signum() * deg.to_radians()).collect();
-        let fewer = fewer.into_iter().map(Some).collect();
         Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Increments })
     }
 
@@ -97,17 +89,8 @@ impl Question {
         cap: f64,
         axis: Axis,
     ) -> Result<Self, TargetError> {
-        if points.len() < 5 {
-            return Err(TargetError::Points { points: points.len() });
-        }
-        let whole = Target::on_axis(points, angles_deg, &axis)?;
-        let but = |j: usize| {
-            let (mut points, mut angles) = (points.to_vec(), angles_deg.to_vec());
-            points.remove(j);
-            angles.remove(j);
-            Target::on_axis(&points, &angles, &axis).ok()
-        };
-        let fewer = (0..points.len()).map(but).collect();
+        let (whole, fewer) =
+            targets(points, angles_deg, |points, angles| Target::on_axis(points, angles, &axis))?;
         let line = axis.angle_deg().unwrap_or_default();
         let turns = angles_deg.iter().map(|deg| (deg - line).to_radians()).collect();
         Ok(Question { class, whole, fewer, turns, cap, angles: Angles::Axis(axis) })
@@ -118,21 +101,6 @@ impl Question {
     pub fn from_ground(mut self) -> Self {
         self.angles = Angles::Ground;
         self
-    }
-
-    /// Returns the target of all points.
-    pub fn target(&self) -> &Target {
-        &self.whole
-    }
-
-    /// Returns the class.
-    pub fn class(&self) -> Class {
-        self.class
-    }
-
-    /// Returns the box of the whole chart.
-    pub fn root() -> Cell {
-        ROOT
     }
 
     /// Returns the part of the chart that is covered.
@@ -199,15 +167,28 @@ impl Question {
     }
 }
 
+/// Creates the target of all points, and those of all but one.
+fn targets(
+    points: &[[f64; 2]],
+    turns_deg: &[f64],
+    target: impl Fn(&[[f64; 2]], &[f64]) -> Result<Target, TargetError>,
+) -> Result<(Target, Vec<Option<Target>>), TargetError> {
+    if points.len() < 5 {
+        return Err(TargetError::Points { points: points.len() });
+    }
+    let whole = target(points, turns_deg)?;
+    let but = |j: usize| {
+        let (mut points, mut turns) = (points.to_vec(), turns_deg.to_vec());
+        points.remove(j);
+        turns.remove(j);
+        target(&points, &turns).ok()
+    };
+    Ok((whole, (0..points.len()).map(but).collect()))
+}
+
 /// Returns whether no point of the box has |d| <= min(g, pi - g).
 pub fn outside(cell: &Cell) -> bool {
-    let d = if cell.low[3] > 0.0 {
-        cell.low[3]
-    } else if cell.high[3] < 0.0 {
-        -cell.high[3]
-    } else {
-        0.0
-    };
+    let d = cell.low[3].max(-cell.high[3]).max(0.0);
     let above_pi = std::f64::consts::PI + 1e-5;
     d > cell.high[2] || d > above_pi - cell.low[2]
 }
@@ -230,17 +211,19 @@ struct Waiting {
     /// The index of the box in the tree.
     node: u32,
     axis: u8,
-    cell: [f32; 8],
+    ends: Ends,
 }
 
-/// Returns the ends of a box in single precision; they have no more digits.
-fn in_single(cell: &Cell) -> [f32; 8] {
-    let mut ends = [0.0; 8];
-    for k in 0..4 {
-        ends[k] = cell.low[k] as f32;
-        ends[4 + k] = cell.high[k] as f32;
-    }
-    ends
+/// The lower and upper ends of a box in single precision; they have no more digits.
+type Ends = [[f32; 4]; 2];
+
+fn in_single(cell: &Cell) -> Ends {
+    [cell.low, cell.high].map(|ends| ends.map(|end| end as f32))
+}
+
+fn in_double(ends: &Ends) -> Cell {
+    let [low, high] = ends.map(|ends| ends.map(f64::from));
+    Cell { low, high }
 }
 
 impl Waiting {
@@ -251,13 +234,8 @@ impl Waiting {
             number,
             node: number,
             axis: axis as u8,
-            cell: in_single(cell),
+            ends: in_single(cell),
         }
-    }
-
-    fn cell(&self) -> Cell {
-        let end = |k: usize| f64::from(self.cell[k]);
-        Cell { low: [end(0), end(1), end(2), end(3)], high: [end(4), end(5), end(6), end(7)] }
     }
 }
 
@@ -338,11 +316,6 @@ impl Search {
         self.tree.len() as u64 - 1
     }
 
-    /// Returns the number of boxes that wait.
-    pub fn waiting(&self) -> usize {
-        self.heap.len()
-    }
-
     /// Returns the share of the chart that is decided.
     pub fn decided(&self) -> f64 {
         self.decided
@@ -394,11 +367,6 @@ impl Search {
         (nodes, open)
     }
 
-    /// Returns the sum behind [`Search::decided`].
-    pub fn decided_sum(&self) -> f64 {
-        self.decided
-    }
-
     /// Restores a search with the question of `like` from the state that [`Search::state`] returned; `None` if no
     /// search can be in that state.
     pub fn restored(like: &Search, nodes: &Nodes, open: &[OpenBox], decided: f64) -> Option<Self> {
@@ -423,28 +391,17 @@ impl Search {
                 let first = tree.len() as u32;
                 tree[node as usize] = halved(first, axis);
                 tree.extend([u32::from(OPEN); 2]);
-                let [lower, upper] = split(&cell, usize::from(axis)).map(|half| packed(&half));
+                let [lower, upper] = split(&cell, usize::from(axis));
                 next.extend([(first + 1, upper), (first, lower)]);
             } else if code == OPEN {
                 let OpenBox { number, sum_sq, axis } = *open.next()?;
-                waiting.push(Waiting { sum_sq, number, node, axis, cell: in_single(&cell) });
+                waiting.push(Waiting { sum_sq, number, node, axis, ends: in_single(&cell) });
             } else {
                 tree[node as usize] = u32::from(code);
             }
         }
         let heap = BinaryHeap::from(waiting);
         Some(Search { question: like.question.clone(), wanted: like.wanted, heap, decided, tree })
-    }
-
-    /// Returns the SHA-256 of the tree so far.
-    pub fn leaves_sha256(&self) -> [u8; 32] {
-        self.nodes().sha256()
-    }
-
-    /// Returns whether some box that waits contains the point.
-    pub fn waits_at(&self, point: [f64; 4]) -> bool {
-        let holds = |cell: &Cell| (0..4).all(|k| (cell.low[k]..=cell.high[k]).contains(&point[k]));
-        self.heap.iter().any(|waiting| holds(&waiting.cell()))
     }
 
     /// Evaluates one batch of boxes: halves the lowest ones, and decides or bounds the halves.
@@ -455,12 +412,8 @@ impl Search {
             batch.push(lowest);
         }
         let look = |parent: &Waiting| {
-            let halves = split(&parent.cell(), usize::from(parent.axis));
-            // The halves are rounded as they are stored, so that they meet in one number.
-            halves.map(|half| {
-                let half = packed(&half);
-                (half, self.question.look(&half, self.wanted))
-            })
+            let halves = split(&in_double(&parent.ends), usize::from(parent.axis));
+            halves.map(|half| (half, self.question.look(&half, self.wanted)))
         };
         let looked: Vec<[(Cell, Outcome); 2]> = batch.par_iter().with_min_len(16).map(look).collect();
         let whole = self.question.part();
@@ -481,12 +434,6 @@ impl Search {
             }
         }
     }
-}
-
-/// Rounds the ends of a box to the stored precision: both halves round their common end alike.
-fn packed(cell: &Cell) -> Cell {
-    let single = |x: f64| f64::from(x as f32);
-    Cell { low: cell.low.map(single), high: cell.high.map(single) }
 }
 
 fn share(cell: &Cell, whole: &Cell) -> f64 {

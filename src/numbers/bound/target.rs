@@ -184,27 +184,4 @@ impl Target {
     pub(super) fn pivot_known(&self) -> bool {
         self.pivot_known
     }
-
-    /// Computes the sum of squares left by the best A, K and Z for given directions of the coupler, in plain
-    /// arithmetic: S - |<u', T'>|^2/|u'|^2.
-    pub fn sum_sq(&self, u: &[[f64; 2]]) -> f64 {
-        let mut rest = u.to_vec();
-        let mut along = [0.0; 2];
-        for _ in 0..2 {
-            for (k, b) in self.basis.iter().enumerate() {
-                let (re, im) = b.iter().zip(&rest).fold((0.0, 0.0), |(re, im), (b, v)| {
-                    (re + b[0] * v[0] + b[1] * v[1], im + b[0] * v[1] - b[1] * v[0])
-                });
-                if k == 2 {
-                    along = [along[0] + re, along[1] + im];
-                }
-                for (b, v) in b.iter().zip(&mut rest) {
-                    *v = [v[0] - (b[0] * re - b[1] * im), v[1] - (b[0] * im + b[1] * re)];
-                }
-            }
-        }
-        let across: f64 = rest.iter().map(|v| v[0] * v[0] + v[1] * v[1]).sum();
-        let along = along[0] * along[0] + along[1] * along[1];
-        if across + along > 0.0 { self.size_sq.mid * across / (across + along) } else { self.size_sq.mid }
-    }
 }

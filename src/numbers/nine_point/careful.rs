@@ -121,22 +121,18 @@ fn change(step: &Unknowns, of: &Unknowns) -> f64 {
 }
 
 /// Computes delta_j and delta*_j at t, each with its derivative by t.
-fn displaced(along: &Segment, t: f64) -> [[(DoubleComplex, DoubleComplex); STEPS]; 2] {
+fn displaced(along: &Segment, t: f64) -> Displacements<(DoubleComplex, DoubleComplex)> {
     let (t, left) = (real(t), real(1.0) - real(t));
-    let moving = |from: &[Complex; STEPS], to: &[Complex; STEPS]| {
-        std::array::from_fn(|j| {
-            let (from, to) = (from[j].into(), to[j].into());
-            (left * from + t * to, to - from)
-        })
-    };
-    let Segment { from: Displacements { delta, starred }, to } = along;
-    [moving(delta, &to.delta), moving(starred, &to.starred)]
+    along.from.zip(&along.to, |from, to| {
+        let (from, to) = (from.into(), to.into());
+        (left * from + t * to, to - from)
+    })
 }
 
 /// Computes Newton's step at t and dz/dt.
 fn steps(z: &Unknowns, along: &Segment, t: f64) -> (Unknowns, Unknowns) {
     let zero = DoubleComplex::default();
-    let [delta, starred] = displaced(along, t);
+    let Displacements { delta, starred } = displaced(along, t);
     let mut matrix = [[zero; ORDER]; ORDER];
     let mut right = [[zero; 2]; ORDER];
     let mut legs = [[[zero; LEG]; STEPS]; 2];

@@ -40,7 +40,7 @@ use super::conjugation::Reality;
 use super::discs::{Disc, Upper};
 use super::polynomial::{ExactDisplacements, PIVOTS, UNKNOWNS, columns, derivatives, solution, unknowns};
 use super::refinement::{
-    Linearisation, Midpoint, NotRefined, Square, equations, newton, residual_error, residuals, weights,
+    Linearisation, Midpoint, NotRefined, Square, equations, newton, residual_error, residuals,
 };
 use super::target::{Displacements, Solution, Target};
 use linkwright_arithmetic::Complex;
@@ -148,7 +148,7 @@ pub fn certify_displacements(
     displacements: &Displacements,
     given: &Solution,
 ) -> Result<Certificate, Refused> {
-    certify_exact(&displacements.into(), given, false)
+    certify_exact(&displacements.map(Into::into), given, false)
 }
 
 /// Proves existence and uniqueness alone, without refinement, in the polydisc of `radius` (in weights) about
@@ -166,11 +166,7 @@ fn certify_exact(
     given: &Solution,
     real_points: bool,
 ) -> Result<Certificate, Refused> {
-    let given = unknowns(given);
-    let (midpoint, _) = newton(displacements, &given)?;
-    let weights = weights(&midpoint)?;
-    let moved =
-        (0..UNKNOWNS).map(|i| (midpoint[i].to_complex() - given[i]).norm() / weights[i]).fold(0.0, f64::max);
+    let (midpoint, _, moved) = newton(displacements, given)?;
     if moved > FARTHEST_MOVE {
         return Err(Refused::Moved { moved });
     }
@@ -196,16 +192,25 @@ fn prove(
         let contraction = contraction_bound(displacements, midpoint, &linear, &magnitudes, radius);
         let image = residual + contraction * Upper::exactly(radius);
         if contraction.get() < 1.0 && image.get() < radius {
+            // The solution lies within this of the midpoint, in weights.
             let error = residual.over((1.0 - contraction.get()).next_down());
-            return Ok(certificate(
-                displacements,
-                midpoint,
-                &linear.weights,
-                radius,
-                error,
-                contraction.get(),
-                real_points,
-            ));
+            let errors = linear.weights.map(|weight| error * Upper::exactly(weight));
+            let enclosure: [Disc; UNKNOWNS] = std::array::from_fn(|i| Disc::about(midpoint[i], errors[i]));
+            let reality = if real_points {
+                let radii = linear.weights.map(|weight| radius * weight);
+                conjugation::reality(displacements, midpoint, &errors, &radii)
+            } else {
+                Reality::Undecided
+            };
+            return Ok(Certificate {
+                refined: solution(&enclosure.map(|disc| disc.mid)),
+                radius: enclosure.iter().map(|disc| disc.radius).fold(Upper::ZERO, Upper::max).get(),
+                alone_within: radius,
+                contraction: contraction.get(),
+                reality,
+                moved: 0.0,
+                enclosure,
+            });
         }
         refusal = Refused::NotContained { radius, residual: residual.get(), contraction: contraction.get() };
     }
@@ -284,32 +289,4 @@ fn contraction_bound(
                 .fold(start, |sum, k| sum + Upper::magnitude(defect[(i, k)]) + magnitudes[(i, k)] * spread[k])
         })
         .fold(Upper::ZERO, Upper::max)
-}
-
-/// Builds the certificate once the test holds: the solution lies within `error` (in weights) of the midpoint.
-fn certificate(
-    displacements: &ExactDisplacements,
-    midpoint: &Midpoint,
-    weights: &[f64; UNKNOWNS],
-    radius: f64,
-    error: Upper,
-    contraction: f64,
-    real_points: bool,
-) -> Certificate {
-    let errors = weights.map(|weight| error * Upper::exactly(weight));
-    let enclosure: [Disc; UNKNOWNS] = std::array::from_fn(|i| Disc::about(midpoint[i], errors[i]));
-    let reality = if real_points {
-        conjugation::reality(displacements, midpoint, &errors, &weights.map(|weight| radius * weight))
-    } else {
-        Reality::Undecided
-    };
-    Certificate {
-        refined: solution(&enclosure.map(|disc| disc.mid)),
-        radius: enclosure.iter().map(|disc| disc.radius).fold(Upper::ZERO, Upper::max).get(),
-        alone_within: radius,
-        contraction,
-        reality,
-        moved: 0.0,
-        enclosure,
-    }
 }

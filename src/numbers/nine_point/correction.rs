@@ -1,8 +1,8 @@
 //! Newton's method at fixed displacements, eight solutions at once.
 
-use super::equations::{DisplacementLanes, UNKNOWNS, solution, steps, unknowns};
+use super::equations::{UNKNOWNS, solution, steps, unknowns};
 use super::target::Solution;
-use super::tracker::{Segment, add, change_sq, velocity};
+use super::tracker::{Segment, add, change_sq};
 use linkwright_arithmetic::complex_lanes::ComplexLanes;
 use linkwright_arithmetic::dispatch::vectorised;
 use linkwright_arithmetic::lane::{F64x8, LANES};
@@ -27,8 +27,8 @@ pub struct Corrected {
 pub fn correct(ends: &[Solution], along: &Segment, most: usize) -> Vec<Corrected> {
     let correct = |chunk: &[Solution]| {
         vectorised(|| {
-            let at = DisplacementLanes::splat(&along.to);
-            let velocity = DisplacementLanes::splat(&velocity(along));
+            let at = along.to.map(ComplexLanes::splat);
+            let velocity = along.velocity().map(ComplexLanes::splat);
             let mut z = [ComplexLanes::ZERO; UNKNOWNS];
             for lane in 0..LANES {
                 let from = unknowns(&chunk[lane.min(chunk.len() - 1)]);

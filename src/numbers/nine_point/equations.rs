@@ -82,24 +82,7 @@ pub fn residuals(of: &Solution, at: &Displacements) -> [[Complex; STEPS]; 2] {
 }
 
 /// The displacements of eight paths.
-#[derive(Clone, Copy, Debug)]
-pub struct DisplacementLanes {
-    /// The displacements delta_j.
-    pub delta: [ComplexLanes; STEPS],
-    /// Their starred twins delta*_j.
-    pub starred: [ComplexLanes; STEPS],
-}
-
-impl DisplacementLanes {
-    /// Returns the same displacements in every lane.
-    #[inline(always)]
-    pub fn splat(of: &Displacements) -> Self {
-        DisplacementLanes {
-            delta: of.delta.map(ComplexLanes::splat),
-            starred: of.starred.map(ComplexLanes::splat),
-        }
-    }
-}
+pub type DisplacementLanes = Displacements<ComplexLanes>;
 
 /// The linearised equation of one leg at one point: f = value + row . d(leg) + p dlog T.
 #[derive(Clone, Copy)]

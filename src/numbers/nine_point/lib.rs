@@ -31,7 +31,6 @@
 //! | [`double_discs`] | discs with double-double midpoints: enclosures that stay narrow where differences cancel |
 //! | [`equations`] | the sixteen equations, their derivatives, and the 8x8 system that is left when the rotations are eliminated |
 //! | [`live`] | homotopy path tracking from target to target: the solutions of a target that has moved a little, from those of the target before |
-//! | [`monodromy`] | monodromy: finds all classes of a target in general position, without a start set |
 //! | [`polynomial`] | the sixteen equations as polynomials, over any numbers that can be added and multiplied |
 //! | [`refinement`] | Newton's method with residuals in double-double: a solution to more digits than a double holds |
 //! | [`settle`] | homotopy path tracking of all classes: all paths are tracked together, lost ones again in further rounds, and each end is classified |
@@ -50,7 +49,6 @@ pub mod distinct;
 mod double_discs;
 pub mod equations;
 pub mod live;
-pub mod monodromy;
 mod polynomial;
 pub mod refinement;
 mod settle;

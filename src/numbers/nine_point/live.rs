@@ -34,10 +34,7 @@ pub struct Moved {
 pub fn resolve_from(previous: &Solved, target: &Target, options: &Options, cancel: &AtomicBool) -> Moved {
     let ratio = previous.target.scale / target.scale;
     // In units of the new target, both ways of measuring give the same equations.
-    let from = Displacements {
-        delta: previous.target.displacements.delta.map(|d| d * ratio),
-        starred: previous.target.displacements.starred.map(|d| d * ratio),
-    };
+    let from = previous.target.displacements.map(|d| d * ratio);
     let starts: Vec<Solution> = previous
         .classes
         .iter()

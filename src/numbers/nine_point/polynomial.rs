@@ -11,7 +11,7 @@
 //! T = 0 is no solution of the original equations; for T != 0 both forms have the same solutions. The polynomial is
 //! the better one to certify: no inverse of a disc, no quotient in double-double, and three products in all.
 
-use super::target::{Displacements, STEPS, Solution, Target};
+use super::target::{Displacements, Solution, Target};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::double_double::DoubleComplex;
 use std::ops::{Add, Mul, Sub};
@@ -26,19 +26,7 @@ pub trait Ring: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
 impl<R: Copy + Add<Output = R> + Sub<Output = R> + Mul<Output = R>> Ring for R {}
 
 /// The displacements without rounding, to which a certificate refers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ExactDisplacements {
-    /// The displacements delta_j.
-    pub delta: [DoubleComplex; STEPS],
-    /// Their starred twins delta*_j.
-    pub starred: [DoubleComplex; STEPS],
-}
-
-impl From<&Displacements> for ExactDisplacements {
-    fn from(given: &Displacements) -> Self {
-        ExactDisplacements { delta: given.delta.map(Into::into), starred: given.starred.map(Into::into) }
-    }
-}
+pub type ExactDisplacements = Displacements<DoubleComplex>;
 
 impl From<&Target> for ExactDisplacements {
     /// Computes the displacements without rounding: the difference of two doubles is a double-double, and the scale
@@ -97,6 +85,7 @@ mod tests {
     use super::*;
     use crate::discs::{Disc, Upper};
     use crate::refinement::{residual_error, residuals};
+    use crate::target::STEPS;
     use linkwright_arithmetic::streams::{Stream, stream, uniform};
     use num_bigint::BigInt;
 

@@ -74,19 +74,17 @@ pub enum NotRefined {
 ///
 /// When Newton's method does not converge.
 pub fn refine(displacements: &Displacements, given: &Solution) -> Result<Refined, NotRefined> {
-    let given = unknowns(given);
-    let (midpoint, last_step) = newton(&displacements.into(), &given)?;
-    let weights = weights(&midpoint)?;
-    let moved =
-        (0..UNKNOWNS).map(|i| (midpoint[i].to_complex() - given[i]).norm() / weights[i]).fold(0.0, f64::max);
+    let (midpoint, last_step, moved) = newton(&displacements.map(Into::into), given)?;
     Ok(Refined { solution: solution(&midpoint.map(DoubleComplex::to_complex)), last_step, moved })
 }
 
-/// Applies Newton's method; returns the refined solution and its last step in weights.
+/// Applies Newton's method; returns the refined solution, its last step, and its distance from the one given, both in
+/// weights.
 pub(super) fn newton(
     displacements: &ExactDisplacements,
-    given: &[Complex; UNKNOWNS],
-) -> Result<(Midpoint, f64), NotRefined> {
+    given: &Solution,
+) -> Result<(Midpoint, f64, f64), NotRefined> {
+    let given = unknowns(given);
     let mut midpoint: Midpoint = given.map(Into::into);
     let mut linear = Linearisation::at(displacements, &midpoint)?;
     let mut last_step = f64::INFINITY;
@@ -110,7 +108,12 @@ pub(super) fn newton(
             linear = Linearisation::at(displacements, &midpoint)?;
         }
     }
-    if last_step < CONVERGED { Ok((midpoint, last_step)) } else { Err(NotRefined::Diverged { last_step }) }
+    if last_step.is_nan() || last_step >= CONVERGED {
+        return Err(NotRefined::Diverged { last_step });
+    }
+    let weights = weights(&midpoint)?;
+    let off = |i: usize| (midpoint[i].to_complex() - given[i]).norm() / weights[i];
+    Ok((midpoint, last_step, (0..UNKNOWNS).map(off).fold(0.0, f64::max)))
 }
 
 /// The scaled Jacobian's inverse at a point, in doubles, with its scaling.

@@ -58,30 +58,32 @@ const SINGULAR_SPEED: f64 = 1e9;
 const NEAR_THE_END: f64 = 1e-3;
 /// The tolerance within which two solutions are of one class.
 const SAME: f64 = 1e-8;
-/// Classifies the end of one path.
-fn fate(end: &Tracked, corrected: &Corrected, along: &Segment) -> Fate {
-    match end.ending {
-        Ending::Cancelled => return Fate::Lost,
-        Ending::Stalled { t } | Ending::OutOfSteps { t } => {
-            return if 1.0 - t < NEAR_THE_END { Fate::Singular } else { Fate::Lost };
+
+/// Classifies the end of a path; `fastest` is the speed above which it counts as singular.
+fn fate(ending: Ending, class: Class, fastest: f64) -> Fate {
+    match ending {
+        Ending::Cancelled => Fate::Lost,
+        Ending::Stalled { t } | Ending::OutOfSteps { t } if 1.0 - t >= NEAR_THE_END => Fate::Lost,
+        Ending::Arrived if class.newton_step <= CONVERGED && class.speed <= fastest => Fate::Isolated(class),
+        _ => Fate::Singular,
+    }
+}
+
+/// Corrects and classifies the ends of tracked paths.
+fn fates_of(ends: &[Tracked], along: &Segment) -> Vec<(Fate, Corrected)> {
+    let arrived: Vec<Solution> = ends.iter().map(|end| end.solution).collect();
+    let judged = |(end, corrected): (&Tracked, Corrected)| {
+        let Corrected { mut solution, mut newton_step, speed, .. } = corrected;
+        if end.ending == Ending::Arrived && (newton_step.is_nan() || newton_step > ROUGH) {
+            match refine(&along.to, &end.solution) {
+                Ok(refined) => (solution, newton_step) = (refined.solution, refined.last_step),
+                Err(_) => return (Fate::Singular, corrected),
+            }
         }
-        Ending::Arrived => {}
-    }
-    let (mut solution, mut newton_step) = (corrected.solution, corrected.newton_step);
-    if newton_step.is_nan() || newton_step > ROUGH {
-        match refine(&along.to, &end.solution) {
-            Ok(refined) => (solution, newton_step) = (refined.solution, refined.last_step),
-            Err(_) => return Fate::Singular,
-        }
-    }
-    if newton_step.is_nan()
-        || newton_step > CONVERGED
-        || corrected.speed.is_nan()
-        || corrected.speed > SINGULAR_SPEED
-    {
-        return Fate::Singular;
-    }
-    Fate::Isolated(Class { solution, reality: Reality::Complex, newton_step, speed: corrected.speed })
+        let class = Class { solution, reality: Reality::Complex, newton_step, speed };
+        (fate(end.ending, class, SINGULAR_SPEED), corrected)
+    };
+    ends.par_iter().zip(correct(&arrived, along, CORRECTIONS)).map(judged).collect()
 }
 
 /// Rounds in which the open paths, once they are few, are tracked in double-double: one from each cognate.
@@ -93,19 +95,8 @@ const CAREFUL_SINGULAR_SPEED: f64 = 1e13;
 
 /// Classifies the end of a path in double-double.
 fn careful_fate(end: &Followed) -> Fate {
-    match end.ending {
-        Ending::Cancelled => Fate::Lost,
-        Ending::Stalled { t } | Ending::OutOfSteps { t } if 1.0 - t >= NEAR_THE_END => Fate::Lost,
-        Ending::Arrived if end.newton_step <= CONVERGED && end.speed <= CAREFUL_SINGULAR_SPEED => {
-            Fate::Isolated(Class {
-                solution: end.solution,
-                reality: Reality::Complex,
-                newton_step: end.newton_step,
-                speed: end.speed,
-            })
-        }
-        _ => Fate::Singular,
-    }
+    let Followed { ending, solution, newton_step, speed } = *end;
+    fate(ending, Class { solution, reality: Reality::Complex, newton_step, speed }, CAREFUL_SINGULAR_SPEED)
 }
 
 /// Tracks `starts` along the segment; lost and coinciding paths are tracked again, more carefully, from other images,
@@ -148,11 +139,7 @@ pub(super) fn settle(
             let images: Vec<Solution> = around.iter().map(image).collect();
             ends.extend(track_around(&images, along, round, &options.parameters.tightened(1), cancel));
             let paths: Vec<usize> = straight.into_iter().chain(around).collect();
-            let arrived: Vec<Solution> = ends.iter().map(|end| end.solution).collect();
-            let corrected = correct(&arrived, along, CORRECTIONS);
-            let judged: Vec<Fate> =
-                ends.par_iter().zip(&corrected).map(|(end, corrected)| fate(end, corrected, along)).collect();
-            for ((&path, fate), corrected) in paths.iter().zip(judged).zip(&corrected) {
+            for (path, (fate, corrected)) in paths.into_iter().zip(fates_of(&ends, along)) {
                 fates[path] = fate;
                 rough[path] = corrected.newton_step > CONVERGED && corrected.size <= MODERATE;
                 obstructed[path] |= matches!(fate, Fate::Lost | Fate::Singular);
@@ -199,11 +186,7 @@ fn track_around(
     cancel: &AtomicBool,
 ) -> Vec<Tracked> {
     let e = ASIDE * 4.0_f64.powi(round as i32 / 2 - 1) * if round.is_multiple_of(2) { 1.0 } else { -1.0 };
-    let t = Complex::new(0.5, e);
-    let middle = Displacements {
-        delta: std::array::from_fn(|j| along.from.delta[j] * (-t + 1.0) + along.to.delta[j] * t),
-        starred: std::array::from_fn(|j| along.from.starred[j] * (-t + 1.0) + along.to.starred[j] * t),
-    };
+    let middle = along.at(Complex::new(0.5, e));
     let mut ends = track(starts, &Segment { from: along.from, to: middle }, with, cancel);
     let arrived: Vec<usize> = (0..ends.len()).filter(|&at| ends[at].ending == Ending::Arrived).collect();
     for end in &mut ends {
@@ -246,13 +229,11 @@ pub(super) fn complete(
         return;
     }
     let tracked = track_around(starts, along, WIDE, &options.parameters, cancel);
-    let arrived: Vec<Solution> = tracked.iter().map(|end| end.solution).collect();
-    let corrected = correct(&arrived, along, CORRECTIONS);
-    let detour: Vec<Fate> = tracked.par_iter().zip(&corrected).map(|(end, c)| fate(end, c, along)).collect();
+    let detour = fates_of(&tracked, along).into_iter().map(|(fate, _)| fate);
     let known: Vec<Fate> =
         (0..starts.len()).filter(|&path| is_first[path]).map(|path| ends.fates[path]).collect();
     let all: Vec<Fate> =
-        known.iter().chain(&detour).copied().filter(|f| matches!(f, Fate::Isolated(_))).collect();
+        known.iter().copied().chain(detour).filter(|f| matches!(f, Fate::Isolated(_))).collect();
     let first = firsts(&solutions(&all), |s| certify_displacements(&along.to, s));
     let new = (known.len()..all.len()).filter(|&at| first[at] == at);
     for (path, at) in spare.into_iter().zip(new) {

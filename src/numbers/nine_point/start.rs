@@ -2,7 +2,7 @@
 //!
 //! The file holds single-precision pivots; the T_j follow from them (each leg gives a quadratic, the legs share one
 //! root) and Newton's method restores full precision. `cargo run --release --example nine-point-start-set -- FILE`
-//! makes it anew from nothing (see [`super::monodromy`]).
+//! makes it anew from nothing, by monodromy.
 //!
 //! | bytes | content (little endian) |
 //! |---|---|
@@ -13,9 +13,8 @@
 //! | 16..272 | delta_1 .. delta_8, delta*_1 .. delta*_8: real and imaginary part, f64 |
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
-use super::classes::first_of_class;
 use super::correction::correct;
-use super::equations::{UNKNOWNS, residuals, solution, unknowns};
+use super::equations::{UNKNOWNS, solution, unknowns};
 use super::target::{Displacements, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
@@ -73,15 +72,10 @@ impl StartSet {
     /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
     pub fn embedded() -> &'static StartSet {
         static SET: OnceLock<StartSet> = OnceLock::new();
-        SET.get_or_init(|| StartSet::built_in(EMBEDDED))
-    }
-
-    /// Reads the set within the program.
-    fn built_in(bytes: &[u8]) -> StartSet {
-        match StartSet::parse(bytes) {
+        SET.get_or_init(|| match StartSet::parse(EMBEDDED) {
             Ok(set) => set,
             Err(why) => panic!("the nine-point start set within the program is damaged: {why}"),
-        }
+        })
     }
 
     /// Reads the bytes of a start set and corrects its solutions by Newton's method.
@@ -126,24 +120,6 @@ impl StartSet {
         }
     }
 
-    /// Returns the number of classes of this set that the other does not have, both being sets of the same target;
-    /// duplicates within this set count as well.
-    pub fn distinct_from(&self, other: &StartSet) -> usize {
-        let all: Vec<Solution> = other.solutions.iter().chain(&self.solutions).copied().collect();
-        let others = other.solutions.len();
-        let first = first_of_class(&all, SAME);
-        let mut met = vec![false; others];
-        let mut new = 0;
-        for &first in &first[others..] {
-            if first < others && !met[first] {
-                met[first] = true;
-            } else {
-                new += 1;
-            }
-        }
-        new
-    }
-
     /// Returns the bytes of the file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
@@ -164,16 +140,13 @@ impl StartSet {
     }
 }
 
-/// The tolerance within which two solutions are of one class.
-const SAME: f64 = 1e-7;
-
 /// The number of Newton steps: from single precision, a few are enough.
 const NEWTON_STEPS: usize = 5;
 
 /// Computes the T_j that pivots imply: x beta T^2 + (x x* + alpha beta - U V) T + alpha x* = 0 with
 /// alpha = delta_j - a, beta = delta*_j - a*, for either leg. Of the roots of both legs the pair that is nearest to
 /// being one is taken.
-pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
+fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
     let mut answer = pivots;
     for j in 0..STEPS {
         let roots: [[Complex; 2]; 2] = std::array::from_fn(|leg| {
@@ -198,22 +171,4 @@ pub fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
         }
     }
     answer
-}
-
-/// Returns the largest |f| of the sixteen equations.
-pub fn largest_residual(of: &Solution, at: &Displacements) -> f64 {
-    residuals(of, at).iter().flatten().map(|f| f.norm()).fold(0.0, f64::max)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
-        for damaged in [&EMBEDDED[..EMBEDDED.len() - 1], &EMBEDDED[1..], &[][..]] {
-            let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
-            assert!(made.is_err(), "{} bytes", damaged.len());
-        }
-    }
 }

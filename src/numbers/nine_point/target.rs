@@ -9,11 +9,28 @@ pub const STEPS: usize = 8;
 /// delta_j = P_j - P_0 and their starred twins, j = 1 .. 8: the equations depend on nothing else of a target. Only
 /// real points have delta*_j = conj(delta_j); a path from target to target through complex numbers has not.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Displacements {
+pub struct Displacements<Z = Complex> {
     /// The displacements delta_j.
-    pub delta: [Complex; STEPS],
+    pub delta: [Z; STEPS],
     /// Their starred twins delta*_j.
-    pub starred: [Complex; STEPS],
+    pub starred: [Z; STEPS],
+}
+
+impl<Z: Copy> Displacements<Z> {
+    /// Returns the values of a function of each displacement.
+    #[inline(always)]
+    pub fn map<Y>(&self, of: impl Fn(Z) -> Y) -> Displacements<Y> {
+        Displacements { delta: self.delta.map(&of), starred: self.starred.map(&of) }
+    }
+
+    /// Returns the values of a function of each displacement and the one in its place among `others`.
+    pub fn zip<Y>(&self, others: &Self, of: impl Fn(Z, Z) -> Y) -> Displacements<Y> {
+        let both = |one: &[Z; STEPS], other: &[Z; STEPS]| std::array::from_fn(|j| of(one[j], other[j]));
+        Displacements {
+            delta: both(&self.delta, &others.delta),
+            starred: both(&self.starred, &others.starred),
+        }
+    }
 }
 
 /// Nine precision points, scaled by a power of two so that the farthest from the first is at a distance above 1/2 and

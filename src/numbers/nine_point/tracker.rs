@@ -80,6 +80,18 @@ pub struct Segment {
     pub to: Displacements,
 }
 
+impl Segment {
+    /// Returns the derivative of the displacements by t.
+    pub(super) fn velocity(&self) -> Displacements {
+        self.to.zip(&self.from, |to, from| to - from)
+    }
+
+    /// Returns the displacements at a complex t.
+    pub(super) fn at(&self, t: Complex) -> Displacements {
+        self.from.zip(&self.to, |from, to| from * (-t + 1.0) + to * t)
+    }
+}
+
 /// The reason for which a path ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
@@ -290,13 +302,6 @@ fn displaced(from: &DisplacementLanes, velocity: &DisplacementLanes, t: F64x8) -
     at
 }
 
-pub(super) fn velocity(along: &Segment) -> Displacements {
-    Displacements {
-        delta: std::array::from_fn(|j| along.to.delta[j] - along.from.delta[j]),
-        starred: std::array::from_fn(|j| along.to.starred[j] - along.from.starred[j]),
-    }
-}
-
 /// Tracks every start along the segment on the threads of the current pool; returns the ends in the order of the
 /// starts.
 ///
@@ -340,8 +345,8 @@ fn worker(
     for lane in 0..LANES {
         refill(&mut state, lane);
     }
-    let from = DisplacementLanes::splat(&along.from);
-    let velocity = DisplacementLanes::splat(&velocity(along));
+    let from = along.from.map(ComplexLanes::splat);
+    let velocity = along.velocity().map(ComplexLanes::splat);
     while state.path.iter().any(Option::is_some) && !cancel.load(Ordering::Relaxed) {
         let (mut z, to) = state.predicted();
         let at = displaced(&from, &velocity, F64x8(to));

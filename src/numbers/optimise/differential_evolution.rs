@@ -101,27 +101,24 @@ struct Strategy {
     crossover: f64,
 }
 
-/// The gain of a trial over its parent, in cost or in violation, whichever decided.
+/// The gain of a trial over its parent, in cost (kind 0) or in violation (kind 1), whichever decided.
 #[derive(Clone, Copy, Debug)]
-enum Gain {
-    Cost(f64),
-    Violation(f64),
+struct Gain {
+    kind: usize,
+    size: f64,
 }
 
 impl Gain {
+    /// Returns the gain of a trial. One from infinity or NaN has no size, and would outweigh all others: it counts as
+    /// zero.
     fn between(parent: &Fitness, trial: &Fitness) -> Self {
-        if parent.is_feasible() {
-            Self::Cost(countable(parent.cost - trial.cost))
+        let (kind, gain) = if parent.is_feasible() {
+            (0, parent.cost - trial.cost)
         } else {
-            Self::Violation(countable(parent.violation - trial.violation))
-        }
+            (1, parent.violation - trial.violation)
+        };
+        Gain { kind, size: if gain.is_finite() { gain.max(0.0) } else { 0.0 } }
     }
-}
-
-/// Returns the size of a gain. One from infinity or NaN has no size, and would outweigh all others: it counts as
-/// none.
-fn countable(gain: f64) -> f64 {
-    if gain.is_finite() { gain.max(0.0) } else { 0.0 }
 }
 
 /// The SHADE search, as the module describes.
@@ -273,21 +270,14 @@ impl DifferentialEvolution {
         if self.successes.is_empty() {
             return;
         }
-        let (mut cost, mut cost_count, mut violation, mut violation_count) = (0.0, 0.0, 0.0, 0.0);
+        let (mut sums, mut counts) = ([0.0; 2], [0.0; 2]);
         for (_, gain) in &self.successes {
-            match gain {
-                Gain::Cost(gain) => (cost, cost_count) = (cost + gain, cost_count + 1.0),
-                Gain::Violation(gain) => {
-                    (violation, violation_count) = (violation + gain, violation_count + 1.0);
-                }
-            }
+            sums[gain.kind] += gain.size;
+            counts[gain.kind] += 1.0;
         }
         let (mut total, mut crossovers, mut steps, mut squares) = (0.0, 0.0, 0.0, 0.0);
         for (strategy, gain) in &self.successes {
-            let weight = match gain {
-                Gain::Cost(gain) => weight_within(*gain, cost, cost_count),
-                Gain::Violation(gain) => weight_within(*gain, violation, violation_count),
-            };
+            let weight = weight_within(gain.size, sums[gain.kind], counts[gain.kind]);
             total += weight;
             crossovers += weight * strategy.crossover;
             steps += weight * strategy.step;
@@ -463,7 +453,8 @@ mod tests {
         let mut search = search(DifferentialEvolutionParameters::default());
         search.state.history = vec![FIRST_GUESS];
         let strategy = |step| Strategy { step, crossover: step };
-        search.successes = vec![(strategy(0.2), Gain::Cost(1e-9)), (strategy(0.6), Gain::Violation(1e9))];
+        search.successes =
+            vec![(strategy(0.2), Gain { kind: 0, size: 1e-9 }), (strategy(0.6), Gain { kind: 1, size: 1e9 })];
         search.learn();
         let Strategy { step, crossover } = search.state.history[0];
         assert!((crossover - 0.4).abs() < 4.0 * f64::EPSILON);

@@ -62,10 +62,14 @@ impl Fitness {
         self.violation <= 0.0
     }
 
-    /// Returns whether a number that decides about this fitness is missing: the violation, or the cost of a feasible
-    /// point.
-    fn is_unknown(&self) -> bool {
-        self.violation.is_nan() || (self.is_feasible() && self.cost.is_nan())
+    /// Returns the rank of a fitness, feasible before infeasible before unknown, and the number that decides within it:
+    /// the cost of a feasible point, the violation of another.
+    fn rank(&self) -> (u8, f64) {
+        match (self.is_feasible(), self.violation.is_nan()) {
+            (true, _) if !self.cost.is_nan() => (0, self.cost),
+            (false, false) => (1, self.violation),
+            _ => (2, 0.0),
+        }
     }
 
     /// Compares by Deb's order, `Less` being better: feasible before infeasible, by cost among the feasible, by
@@ -79,18 +83,8 @@ impl Fitness {
     /// assert!(infeasible.compare(&Fitness::feasible(f64::NAN)).is_lt());
     /// ```
     pub fn compare(&self, other: &Self) -> Ordering {
-        match (self.is_unknown(), other.is_unknown()) {
-            (true, true) => return Ordering::Equal,
-            (true, false) => return Ordering::Greater,
-            (false, true) => return Ordering::Less,
-            (false, false) => {}
-        }
-        match (self.is_feasible(), other.is_feasible()) {
-            (true, true) => self.cost.total_cmp(&other.cost),
-            (true, false) => Ordering::Less,
-            (false, true) => Ordering::Greater,
-            (false, false) => self.violation.total_cmp(&other.violation),
-        }
+        let ((rank, number), (others, other)) = (self.rank(), other.rank());
+        rank.cmp(&others).then(number.total_cmp(&other))
     }
 
     /// Returns whether `self` is better than `reference` by more than the share `relative` of the reference's
@@ -98,18 +92,9 @@ impl Fitness {
     ///
     /// Becoming feasible, or known, or finite, always counts.
     pub fn improves_on(&self, reference: &Self, relative: f64) -> bool {
-        if self.compare(reference).is_ge() {
-            return false;
-        }
-        if reference.is_unknown() || self.is_feasible() != reference.is_feasible() {
-            return true;
-        }
-        let (new, old) = if self.is_feasible() {
-            (self.cost, reference.cost)
-        } else {
-            (self.violation, reference.violation)
-        };
-        !old.is_finite() || old - new > relative * old.abs()
+        let ((rank, new), (was, old)) = (self.rank(), reference.rank());
+        self.compare(reference).is_lt()
+            && (rank != was || !old.is_finite() || old - new > relative * old.abs())
     }
 }
 

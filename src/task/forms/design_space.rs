@@ -11,7 +11,7 @@ use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, length, point, xy};
 use crate::task::PathTask;
 use crate::task::spec::{DEFAULT_REACH, DesignSpec, Limits};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// Dimension of a design vector; fixed numbers keep their place.
 pub const DESIGN: usize = 10;
@@ -242,35 +242,22 @@ impl DesignSpace {
     /// Returns the name of number `i` of a design in the file (a pivot's by its coordinate, such as Ax), and whether it
     /// is an angle; `None` for the crank angle's offset.
     pub fn coordinate(&self, i: usize) -> Option<(&'static str, bool)> {
-        let polar = self.ground == GroundChart::Polar;
-        let distances = self.coupler != CouplerChart::Offset;
-        let name = match i {
-            0 => "Ax",
-            1 => "Ay",
-            2 if polar => "ground",
-            2 => "Bx",
-            3 if polar => "ground_angle_deg",
-            3 => "By",
-            4 => "a",
-            5 => "b",
-            6 => "c",
-            7 if distances => "d",
-            7 => "coupler_x",
-            8 if distances => "e",
-            8 => "coupler_y",
-            _ => return None,
+        let [g_1, g_2] = match self.ground {
+            GroundChart::Pivot => ["Bx", "By"],
+            GroundChart::Polar => ["ground", "ground_angle_deg"],
         };
-        Some((name, self.is_angle(i)))
+        let [q_1, q_2] = match self.coupler {
+            CouplerChart::Offset => ["coupler_x", "coupler_y"],
+            CouplerChart::Distances(_) => ["d", "e"],
+        };
+        let names = ["Ax", "Ay", g_1, g_2, "a", "b", "c", q_1, q_2];
+        names.get(i).map(|&name| (name, self.is_angle(i)))
     }
 
     /// Returns the box of the numbers that are not fixed, for a population search: angles within half a turn.
     pub fn free_box(&self) -> Vec<(f64, f64)> {
-        self.free.iter().map(|&i| self.finite(i)).collect()
-    }
-
-    fn finite(&self, i: usize) -> (f64, f64) {
-        let (low, high) = self.bounds[i];
-        if low.is_finite() && high.is_finite() { (low, high) } else { (-PI, PI) }
+        let finite = |(low, high): (f64, f64)| low.is_finite() && high.is_finite();
+        self.free.iter().map(|&i| Some(self.bounds[i]).filter(|&b| finite(b)).unwrap_or((-PI, PI))).collect()
     }
 
     /// Returns the design vector with the numbers that are not fixed taken from `genes`.
@@ -280,18 +267,6 @@ impl DesignSpace {
             x[i] = gene;
         }
         x
-    }
-
-    /// Returns the numbers that are not fixed.
-    pub fn to_free(&self, x: &Design) -> Vec<f64> {
-        self.free
-            .iter()
-            .map(|&i| {
-                let (low, high) = self.finite(i);
-                let value = if self.is_angle(i) && high - low >= TAU { wrapped(x[i]) } else { x[i] };
-                value.max(low).min(high)
-            })
-            .collect()
     }
 
     /// Returns whether a number of the design vector is the length of a link or of a side.

@@ -17,6 +17,7 @@ use crate::mechanism::effort::{POINTS_AT_ONCE, computed};
 use crate::mechanism::four_bar::mobility::{linkage_type, wrapped};
 use crate::mechanism::four_bar::position::Kernel;
 use crate::mechanism::{AssemblyMode, Complex, CouplerSide, LinkageType, cross};
+use crate::numbers::arithmetic::complex_lanes::{Column, column};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
@@ -33,8 +34,7 @@ const CURVE_SAMPLES: usize = 128;
 /// Columns padded to a multiple of eight, the padding with weight zero.
 #[derive(Clone, Debug)]
 struct Columns {
-    x: Vec<f64>,
-    y: Vec<f64>,
+    point: Column,
     weight: Vec<f64>,
 }
 
@@ -48,10 +48,10 @@ pub struct PathFitness<'a> {
     targets: Columns,
     /// The unit of the largest deviation, if that is minimised: the least tolerance, or 1.
     deviation: Option<f64>,
-    /// The prescribed angles (*clocks*): for each direction its sign and the columns cos, sin of direction psi_j.
-    clocks: Vec<(f64, Vec<f64>, Vec<f64>)>,
-    /// The sampled crank angles of free timing (the *wheel*): cos and sin.
-    wheel: (Vec<f64>, Vec<f64>),
+    /// The prescribed angles (*clocks*): for each direction its sign and the column of e^{i direction psi_j}.
+    clocks: Vec<(f64, Column)>,
+    /// The directions of the sampled crank angles of free timing (the *wheel*).
+    wheel: Column,
     /// The least and the greatest prescribed angle as written, radians.
     span: (f64, f64),
 }
@@ -87,16 +87,8 @@ impl<'a> PathFitness<'a> {
     /// Creates the fitness of a problem.
     pub fn new(problem: &'a Problem) -> Self {
         let task = problem.task();
-        let padded = task.len().next_multiple_of(LANES);
-        let column = |of: &dyn Fn(usize) -> f64, pad: f64| -> Vec<f64> {
-            (0..padded).map(|j| if j < task.len() { of(j) } else { pad }).collect()
-        };
-        let last = task.len() - 1;
-        let targets = Columns {
-            x: column(&|j| task.points()[j].re, task.points()[last].re),
-            y: column(&|j| task.points()[j].im, task.points()[last].im),
-            weight: column(&|j| task.weights()[j], 0.0),
-        };
+        let mut targets = Columns { point: column(task.points()), weight: task.weights().to_vec() };
+        targets.weight.resize(task.len().next_multiple_of(LANES), 0.0);
         let mut clocks = Vec::new();
         let mut span = (0.0, 0.0);
         if let Timing::Prescribed { crank_angles, .. } = task.timing() {
@@ -106,14 +98,8 @@ impl<'a> PathFitness<'a> {
             if task.closed() {
                 span.1 = span.1.max(span.0 + TAU);
             }
-            for &direction in problem.directions() {
-                let phases = problem.phases(direction);
-                clocks.push((
-                    direction,
-                    column(&|j| phases[j].re, phases[last].re),
-                    column(&|j| phases[j].im, phases[last].im),
-                ));
-            }
+            let clock = |&direction: &f64| (direction, column(&problem.phases(direction)));
+            clocks = problem.directions().iter().map(clock).collect();
         }
         let wheel: Vec<Complex> = (0..CURVE_SAMPLES)
             .map(|i| Complex::from_polar(1.0, TAU * i as f64 / CURVE_SAMPLES as f64))
@@ -128,7 +114,7 @@ impl<'a> PathFitness<'a> {
             deviation: (problem.spec().solve.objective == Objective::MaxDeviation)
                 .then(|| task.tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min))),
             clocks,
-            wheel: (wheel.iter().map(|e| e.re).collect(), wheel.iter().map(|e| e.im).collect()),
+            wheel: column(&wheel),
             span,
         }
     }
@@ -175,7 +161,7 @@ impl<'a> PathFitness<'a> {
 
     /// Returns whether a sampled crank angle lies on the input arc on one side of the ground line (0: on either).
     fn on_arc(&self, ground: Complex, arc: f64, sample: usize) -> bool {
-        let crank = Complex::new(self.wheel.0[sample], self.wheel.1[sample]);
+        let crank = Complex::new(self.wheel[0][sample], self.wheel[1][sample]);
         arc == 0.0 || cross(ground, crank) * arc > 0.0
     }
 
@@ -200,11 +186,10 @@ impl<'a> PathFitness<'a> {
         direction: usize,
         assembly: AssemblyMode,
     ) -> Option<Reading> {
-        let (direction, cos, sin) = self.clocks.get(direction)?;
+        let (direction, phases) = self.clocks.get(direction)?;
         let offset = self.angle_offset(offset, shape);
         let turn = Complex::from_polar(1.0, offset);
-        let sums =
-            timed_sums(&shape.kernel(AssemblyMode::Plus), turn, cos, sin, &self.targets, self.deviation);
+        let sums = timed_sums(&shape.kernel(AssemblyMode::Plus), turn, phases, &self.targets, self.deviation);
         let aim = nearest_type(shape.links(), self.problem.types());
         let motion = self.timed_motion(*direction, offset, assembly);
         let lack = self.requirements.lack(aim, shape, &motion);
@@ -221,9 +206,9 @@ impl<'a> PathFitness<'a> {
     /// Returns the opening of the loop, summed over the points, in one direction: 0 if it closes at all of them. `turn`
     /// is added to every prescribed angle.
     pub fn open(&self, shape: &Shape, turn: f64, direction: usize) -> f64 {
-        let Some((_, cos, sin)) = self.clocks.get(direction) else { return f64::INFINITY };
+        let Some((_, phases)) = self.clocks.get(direction) else { return f64::INFINITY };
         let turn = Complex::from_polar(1.0, turn);
-        timed_sums(&shape.kernel(AssemblyMode::Plus), turn, cos, sin, &self.targets, None).open
+        timed_sums(&shape.kernel(AssemblyMode::Plus), turn, phases, &self.targets, None).open
     }
 
     /// Returns the best reading of a shape with free timing. Bounds of the design do not enter.
@@ -253,8 +238,8 @@ impl<'a> PathFitness<'a> {
         let turn = Complex::from_polar(1.0, offset);
         let aim = nearest_type(shape.links(), self.problem.types());
         let mut shared = None;
-        for (direction, cos, sin) in &self.clocks {
-            let sums = timed_sums(&kernel, turn, cos, sin, &self.targets, self.deviation);
+        for (direction, phases) in &self.clocks {
+            let sums = timed_sums(&kernel, turn, phases, &self.targets, self.deviation);
             for assembly in [AssemblyMode::Plus, AssemblyMode::Minus] {
                 let motion = self.timed_motion(*direction, offset, assembly);
                 let lack = self.lack(aim, shape, &motion, &mut shared);
@@ -268,7 +253,7 @@ impl<'a> PathFitness<'a> {
         let links = shape.links();
         let aim = nearest_type(links, self.problem.types());
         let own = linkage_type(links);
-        let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
+        let curve = Sampled::of(&kernel, &self.wheel);
         // A Grashof linkage with a rocking input has a circuit on either side of its ground line.
         let two_arcs = matches!(own, Some(LinkageType::RockerCrank | LinkageType::DoubleRocker));
         let sides: &[f64] = if two_arcs { &[1.0, -1.0] } else { &[0.0] };
@@ -324,7 +309,7 @@ impl<'a> PathFitness<'a> {
         let ground = shape.follower_pivot - shape.crank_pivot;
         let linkage = shape.linkage(assembly).ok()?;
         let kernel = shape.kernel(AssemblyMode::Plus);
-        let curve = Sampled::of(&kernel, &self.wheel.0, &self.wheel.1);
+        let curve = Sampled::of(&kernel, &self.wheel);
         self.problem
             .task()
             .points()
@@ -392,8 +377,7 @@ const BLOCK: usize = 64;
 fn timed_sums(
     kernel: &Kernel,
     turn: Complex,
-    cos: &[f64],
-    sin: &[f64],
+    phases: &Column,
     targets: &Columns,
     deviation: Option<f64>,
 ) -> TimedSums {
@@ -401,11 +385,11 @@ fn timed_sums(
     let mut sums = [F64x8::splat(0.0); 3];
     let mut largest = [0.0_f64; 2];
     let mut block = [[0.0; BLOCK]; 3];
-    for from in (0..cos.len()).step_by(BLOCK) {
-        let to = (from + BLOCK).min(cos.len());
+    for from in (0..targets.weight.len()).step_by(BLOCK) {
+        let to = (from + BLOCK).min(targets.weight.len());
         let n = to - from;
-        let (cos, sin) = (&cos[from..to], &sin[from..to]);
-        let (x, y, weight) = (&targets.x[from..to], &targets.y[from..to], &targets.weight[from..to]);
+        let [[cos, sin], [x, y]] = [phases, &targets.point].map(|[re, im]| [&re[from..to], &im[from..to]]);
+        let weight = &targets.weight[from..to];
         let [plus, minus, open] = &mut block;
         vectorised(
             #[inline(always)]
@@ -450,7 +434,7 @@ struct Sampled {
 }
 
 impl Sampled {
-    fn of(kernel: &Kernel, cos: &[f64], sin: &[f64]) -> Sampled {
+    fn of(kernel: &Kernel, [cos, sin]: &Column) -> Sampled {
         let mut out =
             Sampled { x: [[0.0; CURVE_SAMPLES]; 2], y: [[0.0; CURVE_SAMPLES]; 2], gap: [0.0; CURVE_SAMPLES] };
         vectorised(

@@ -160,12 +160,10 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
             let Some(gradient) = shape_gradient(&frame, shape.crank, shape.coupler, shape.offset) else {
                 return false;
             };
-            let mut jacobian = [[0.0; DESIGN]; 2];
-            for (axis, out) in jacobian.iter_mut().enumerate() {
-                let component = |z: Complex| if axis == 0 { z.re } else { z.im };
-                let row = gradient.shape.map(|z| -component(z));
-                *out = self.pull_back(x, &shape, row, -component(gradient.crank_angle), by_ground_angle);
-            }
+            let jacobian = [|z: Complex| -z.re, |z: Complex| -z.im].map(|component| {
+                let (row, by_crank) = (gradient.shape.map(component), component(gradient.crank_angle));
+                self.pull_back(x, &shape, row, by_crank, by_ground_angle)
+            });
             let residual = target - p;
             each(&PointBlock { residual: xy(residual), jacobian, tangent: [0.0, 0.0], weight: *weight });
         }

@@ -267,35 +267,34 @@ fn turn(x: f64, y: f64, angle: f64) -> (f64, f64) {
 }
 
 /// Positions as a structure of arrays: the loops over them are plain ones that become vector instructions.
-struct Columns {
-    ex: Vec<f64>,
-    ey: Vec<f64>,
-    ux: Vec<f64>,
-    uy: Vec<f64>,
-}
+struct Columns([Vec<f64>; 4]);
 
 impl Columns {
     fn gather(positions: &[[Complex; 2]]) -> Columns {
-        Columns {
-            ex: positions.iter().map(|p| p[0].re).collect(),
-            ey: positions.iter().map(|p| p[0].im).collect(),
-            ux: positions.iter().map(|p| p[1].re).collect(),
-            uy: positions.iter().map(|p| p[1].im).collect(),
-        }
+        let column = |of: fn(&[Complex; 2]) -> f64| positions.iter().map(of).collect();
+        Columns([column(|p| p[0].re), column(|p| p[0].im), column(|p| p[1].re), column(|p| p[1].im)])
     }
 
     fn scatter(&self, positions: &mut [[Complex; 2]]) {
+        let Columns([ex, ey, ux, uy]) = self;
         for (i, p) in positions.iter_mut().enumerate() {
-            *p = [Complex::new(self.ex[i], self.ey[i]), Complex::new(self.ux[i], self.uy[i])];
+            *p = [Complex::new(ex[i], ey[i]), Complex::new(ux[i], uy[i])];
         }
+    }
+
+    /// Returns e_x, e_y, u_x, u_y as slices of one length.
+    #[inline(always)]
+    fn parts(&mut self) -> [&mut [f64]; 4] {
+        let Columns([ex, ey, ux, uy]) = self;
+        let n = ex.len();
+        [&mut ex[..n], &mut ey[..n], &mut ux[..n], &mut uy[..n]]
     }
 
     /// Moves each position along its own curve by `forward` tau.
     #[inline(always)]
     fn step(&mut self, on: &Loop, forward: f64, tau: &[f64]) {
-        let n = self.ex.len();
-        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
-        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let [ex, ey, ux, uy] = self.parts();
+        let n = ex.len();
         let tau = &tau[..n];
         for i in 0..n {
             let (_, by_e, by_u) = on.frame([ex[i], ey[i], ux[i], uy[i]]);
@@ -309,9 +308,8 @@ impl Columns {
     /// not get there.
     #[inline(always)]
     fn settle(&mut self, on: &Loop) -> bool {
-        let n = self.ex.len();
-        let (ex, ey) = (&mut self.ex[..n], &mut self.ey[..n]);
-        let (ux, uy) = (&mut self.ux[..n], &mut self.uy[..n]);
+        let [ex, ey, ux, uy] = self.parts();
+        let n = ex.len();
         let mut limit = on.near;
         for round in 0..=RETURN_STEPS {
             let mut off = 0_u64;
@@ -422,11 +420,8 @@ impl BlockLeastSquares<DESIGN> for TorusFit<'_> {
                 u,
                 turned(u),
             ];
-            let mut jacobian = [[0.0; DESIGN]; 2];
-            for (axis, out) in jacobian.iter_mut().enumerate() {
-                let row = columns.map(|z| -if axis == 0 { z.re } else { z.im });
-                *out = self.space.pull_back(x, &shape, &row, 0.0);
-            }
+            let jacobian = [columns.map(|z| -z.re), columns.map(|z| -z.im)]
+                .map(|row| self.space.pull_back(x, &shape, &row, 0.0));
             let p = shape.crank_pivot + e * shape.crank + u * shape.offset;
             let tangent = tangent * -self.forward();
             each(&PointBlock { residual: xy(target - p), jacobian, tangent: xy(tangent), weight: *weight });

@@ -21,7 +21,10 @@
 //! to max(0, m_i - g_i) after every inner solve. Bounds are kept by an active set and projection. Damping is
 //! Nielsen's ([`super::damping`]).
 
+mod derivatives;
 mod system;
+
+pub use derivatives::derivative_error;
 
 use super::damping::{Damping, clamped, moved};
 use super::ordered::Ordered;
@@ -546,71 +549,3 @@ fn put_in_order<const N: usize, P: BlockLeastSquares<N>>(
 
 /// The number of steps in a row with hardly any reduction after which a solve counts as converged.
 const QUIET_STEPS: usize = 3;
-
-/// Collects the blocks and constraint rows of a problem at a point.
-fn linearised<const N: usize, P: BlockLeastSquares<N>>(
-    problem: &P,
-    x: &[f64; N],
-    state: &P::State,
-) -> Option<(Vec<PointBlock<N>>, Vec<ConstraintRow<N>>)> {
-    let (mut blocks, mut rows) = (Vec::new(), Vec::new());
-    if !problem.linearise(x, state, &mut |block| blocks.push(*block)) {
-        return None;
-    }
-    problem.constraints(x, state, &mut |row| rows.push(*row));
-    Some((blocks, rows))
-}
-
-/// Compares the derivatives of a problem with central differences: returns the largest |analytic - difference| /
-/// (1 + |analytic|) over all residuals and constraints (by x and along the tangents).
-///
-/// `steps` gives the difference's step for each shared unknown, 0 leaves it out; `along` is the step of the points'
-/// own unknowns. `None` if a neighbouring point cannot be evaluated. Correct derivatives leave only the error of the
-/// differences: the square of the step times the third derivative, and rounding over the step.
-pub fn derivative_error<const N: usize, P: BlockLeastSquares<N>>(
-    problem: &P,
-    x: &[f64; N],
-    state: &P::State,
-    steps: &[f64; N],
-    along: f64,
-) -> Option<f64> {
-    let (blocks, rows) = linearised(problem, x, state)?;
-    let mut worst: f64 = 0.0;
-    let mut compare = |analytic: f64, difference: f64| {
-        worst = worst.max((analytic - difference).abs() / (1.0 + analytic.abs()));
-    };
-    let still = vec![0.0; problem.points()];
-    let at = |to: &[f64; N], tau: &[f64]| {
-        let mut moved = state.clone();
-        problem.retract(x, state, tau, to, &mut moved).then(|| linearised(problem, to, &moved)).flatten()
-    };
-    for i in (0..N).filter(|&i| steps[i] != 0.0) {
-        let (mut up, mut down) = (*x, *x);
-        up[i] += steps[i];
-        down[i] -= steps[i];
-        let (above, below) = (at(&up, &still)?, at(&down, &still)?);
-        for (block, (u, d)) in blocks.iter().zip(above.0.iter().zip(&below.0)) {
-            for axis in 0..2 {
-                compare(block.jacobian[axis][i], (u.residual[axis] - d.residual[axis]) / (2.0 * steps[i]));
-            }
-        }
-        for (row, (u, d)) in rows.iter().zip(above.1.iter().zip(&below.1)) {
-            compare(row.gradient[i], (u.value - d.value) / (2.0 * steps[i]));
-        }
-    }
-    let moves = blocks.iter().any(|block| block.tangent != [0.0, 0.0]);
-    if moves {
-        let (forward, backward) = (vec![along; problem.points()], vec![-along; problem.points()]);
-        let (above, below) = (at(x, &forward)?, at(x, &backward)?);
-        for (block, (u, d)) in blocks.iter().zip(above.0.iter().zip(&below.0)) {
-            for axis in 0..2 {
-                compare(block.tangent[axis], (u.residual[axis] - d.residual[axis]) / (2.0 * along));
-            }
-        }
-        for (row, (u, d)) in rows.iter().zip(above.1.iter().zip(&below.1)) {
-            let own = row.own.iter().flatten().fold(0.0, |sum, (_, by)| sum + by);
-            compare(own, (u.value - d.value) / (2.0 * along));
-        }
-    }
-    Some(worst)
-}

@@ -17,15 +17,12 @@
 use super::{AngleRole, GroundKnown, Origin, Projection, Reduced, SINGULAR, UNKNOWNS};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex, turned};
-use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
+use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::compact_lm::{CompactLeastSquares, Normal};
 use crate::task::forms::design_space::{Shape, unit};
 use std::array::from_fn;
-
-/// A column of complex numbers: real parts and imaginary parts.
-type Column = [Vec<f64>; 2];
 
 /// The physical solution at a point of the reduced form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -281,12 +278,11 @@ impl<'a> ProjectedFit<'a> {
         };
         let angle_by_e = i_k * (on_e + on_a);
         let angle_constant = if from_b { -i_k * (on_a / p) } else { nothing };
-        let [e_p, e_q, e_r] = by_ratio.map(ComplexLanes::splat);
-        let [c_p, c_q, c_r] = ratio_constant.map(ComplexLanes::splat);
-        let (e_angle, c_angle) = (ComplexLanes::splat(angle_by_e), ComplexLanes::splat(angle_constant));
-        let (p_, q_, r_sq) = (s(p), s(q), s(r * r));
-        let angle_free = form.role != AngleRole::None;
-        let sense = s(sense);
+        let ratios: [_; 3] = from_fn(|x| [by_ratio[x], ratio_constant[x]]);
+        let terms = [ratios[0], ratios[1], ratios[2], [angle_by_e, angle_constant]];
+        let terms = terms.map(|pair| pair.map(ComplexLanes::splat));
+        let (p_, q_, r_sq, sense) = (s(p), s(q), s(r * r), s(sense));
+        let unknowns = if form.has_angle() { UNKNOWNS } else { UNKNOWNS - 1 };
         let mut mean = [zero; UNKNOWNS];
         let mut on_u = [zero; UNKNOWNS];
         let mut on_a = [zero; UNKNOWNS];
@@ -302,19 +298,14 @@ impl<'a> ProjectedFit<'a> {
             let by_q = by * q_ * (v.re * u.re + v.im * u.im);
             let by_r = -(by * r_sq);
             let turning = i_z * u;
-            let with = |by, on_e: ComplexLanes, constant| turning.scale(by) + (on_e * e + constant);
-            let moved = [
-                with(by_p, e_p, c_p),
-                with(by_q, e_q, c_q),
-                with(by_r, e_r, c_r),
-                with(by_phi * sense, e_angle, c_angle),
-            ];
+            let by = [by_p, by_q, by_r, by_phi * sense];
             let (u_off, a_off) = (ComplexLanes::load(&self.u_off, at), ComplexLanes::load(&self.a_off, at));
             for x in 0..UNKNOWNS {
-                if x == 3 && !angle_free {
+                if x >= unknowns {
                     continue;
                 }
-                let m = moved[x].scale(root);
+                let [on_e, constant] = terms[x];
+                let m = (turning.scale(by[x]) + (on_e * e + constant)).scale(root);
                 mean[x] = mean[x] + m.scale(root);
                 on_u[x] = on_u[x] + u_off.dot(m);
                 on_a[x] = on_a[x] + a_off.dot(m);
@@ -336,13 +327,12 @@ impl<'a> ProjectedFit<'a> {
                 ComplexLanes::splat(along_a),
             ];
         }
-        let unknowns = if angle_free { UNKNOWNS } else { UNKNOWNS - 1 };
         let mut matrix = [[s(0.0); UNKNOWNS]; UNKNOWNS];
         let mut gradient = [s(0.0); UNKNOWNS];
         for at in (0..n).step_by(LANES) {
             let root = F64x8::load(&c.root_weight, at);
-            let [u_off, a_off, rest] =
-                [&self.u_off, &self.a_off, &self.rest].map(|column| ComplexLanes::load(column, at));
+            let (u_off, a_off) = (ComplexLanes::load(&self.u_off, at), ComplexLanes::load(&self.a_off, at));
+            let rest = ComplexLanes::load(&self.rest, at);
             let mut off_m = [zero; UNKNOWNS];
             for x in 0..unknowns {
                 let [centre, along_u, along_a] = off[x];

@@ -40,6 +40,7 @@ pub use screen::Batch;
 
 use super::linear_fit::KnownPivots;
 use crate::mechanism::{Complex, CouplerSide};
+use crate::numbers::arithmetic::complex_lanes::{Column, column};
 use crate::numbers::arithmetic::lane::LANES;
 use crate::task::Problem;
 use crate::task::spec::Limits;
@@ -98,9 +99,9 @@ enum AngleRole {
 /// The points as columns, padded to whole lanes with weight zero.
 #[derive(Clone, Debug)]
 struct Columns {
-    phase: [Vec<f64>; 2],
+    phase: Column,
     /// The points measured from the origin.
-    target: [Vec<f64>; 2],
+    target: Column,
     weight: Vec<f64>,
     root_weight: Vec<f64>,
 }
@@ -138,8 +139,8 @@ impl Projection {
         let Timing::Prescribed { offset, .. } = task.timing() else { return None };
         let known = KnownPivots::of(problem);
         let total_weight: f64 = task.weights().iter().sum();
-        let weight = |j: usize| task.weights()[j] / total_weight;
-        let mean: Complex = (0..task.len()).map(|j| task.points()[j] * weight(j)).sum();
+        let mut weight: Vec<f64> = task.weights().iter().map(|w| w / total_weight).collect();
+        let mean: Complex = task.points().iter().zip(&weight).map(|(p, w)| p * w).sum();
         let (origin, theta, length) = match (known.crank_pivot, known.follower_pivot) {
             (Some(a), Some(b)) => (Origin::CrankPivot(a), Some((b - a).arg()), Some((b - a).norm())),
             (Some(a), None) => (Origin::CrankPivot(a), known.ground_angle, known.ground),
@@ -178,27 +179,22 @@ impl Projection {
             Origin::Mean(p) | Origin::CrankPivot(p) | Origin::FollowerPivot(p) => p,
         };
         let phases = problem.phases(direction);
-        let last = task.len() - 1;
-        let padded = task.len().next_multiple_of(LANES);
-        let column =
-            |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..padded).map(|j| of(j.min(last))).collect() };
-        let weighted = |of: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            (0..padded).map(|j| if j <= last { of(j) } else { 0.0 }).collect()
+        let targets: Vec<Complex> = task.points().iter().map(|p| p - zero).collect();
+        weight.resize(task.len().next_multiple_of(LANES), 0.0);
+        let sum = |of: &dyn Fn(Complex, Complex) -> Complex| -> Complex {
+            phases.iter().zip(&targets).zip(&weight).map(|((&e, &t), w)| of(e, t) * w).sum()
         };
         let columns = Columns {
-            phase: [column(&|j| phases[j].re), column(&|j| phases[j].im)],
-            target: [column(&|j| (task.points()[j] - zero).re), column(&|j| (task.points()[j] - zero).im)],
-            weight: weighted(&weight),
-            root_weight: weighted(&|j| weight(j).sqrt()),
-        };
-        let sum = |of: &dyn Fn(usize, Complex) -> Complex| -> Complex {
-            (0..task.len()).map(|j| of(j, task.points()[j] - zero) * weight(j)).sum()
+            phase: column(&phases),
+            target: column(&targets),
+            root_weight: weight.iter().map(|w| w.sqrt()).collect(),
+            weight: weight.clone(),
         };
         Some(Projection {
-            phase_sum: sum(&|j, _| phases[j]),
+            phase_sum: sum(&|e, _| e),
             target_sum: sum(&|_, t| t),
             target_sq: sum(&|_, t| Complex::new(t.norm_sqr(), 0.0)).re,
-            phase_target: sum(&|j, t| phases[j].conj() * t),
+            phase_target: sum(&|e, t| e.conj() * t),
             offset_free: *offset == AngleOffset::Free,
             bounds: ratio_bounds(problem, limits, role),
             limits: [limits[1], limits[0], limits[2], limits[3]],

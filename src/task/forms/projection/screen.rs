@@ -15,7 +15,7 @@
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex};
-use crate::numbers::arithmetic::complex_lanes::ComplexLanes;
+use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 
@@ -24,7 +24,7 @@ use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 pub struct Batch {
     draws: Vec<Reduced>,
     ratio: [Vec<f64>; 3],
-    angle: [Vec<f64>; 2],
+    angle: Column,
 }
 
 impl Batch {

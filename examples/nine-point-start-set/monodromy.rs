@@ -6,11 +6,11 @@
 //! keep their form under delta -> m delta, delta* -> m* delta* with x, y, a, b -> m .., starred alike) to (v D, v*
 //! D*), and goes straight back. The six images of a solution move as one, so that one of them is carried for all.
 
-use super::classes::first_of_class;
-use super::correction::correct;
-use super::target::{Displacements, STEPS, Solution};
-use super::tracker::{Ending, Parameters, Segment, track};
-use linkwright_arithmetic::Complex;
+use linkwright::internals::numbers::arithmetic::Complex;
+use linkwright::internals::numbers::nine_point::classes::first_of_class;
+use linkwright::internals::numbers::nine_point::correction::correct;
+use linkwright::internals::numbers::nine_point::target::{Displacements, STEPS, Solution};
+use linkwright::internals::numbers::nine_point::tracker::{Ending, Parameters, Segment, track};
 use std::sync::atomic::AtomicBool;
 
 /// A source of numbers uniform in [0, 1).
