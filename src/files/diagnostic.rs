@@ -178,6 +178,11 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
+/// Returns a number with its noun: `3 points`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (file, message) = (escaped(&self.file), escaped(&self.message));

@@ -1,6 +1,6 @@
 //! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
 
-use crate::files::diagnostic::{Checked, Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::input_text;
 use crate::files::toml_text::nearest;
 use crate::mechanism::MAX_MAGNITUDE;
@@ -49,13 +49,8 @@ pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
 pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
-    let header = match table.header()? {
-        Some(row) => row,
-        None => {
-            return Err(
-                table.about_file("the file is empty", "write a first line x,y and then one point a line")
-            );
-        }
+    let Some(header) = table.header()? else {
+        return Err(table.about_file("the file is empty", "write a first line x,y and then one point a line"));
     };
     let columns = Columns::of(&table, &header)?;
     let mut out = PointsFile {
@@ -76,11 +71,8 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
             return Err(table.ragged(&row, header.cells.len()));
         }
         if out.points.len() == MAX_POINTS {
-            return Err(table.at(
-                row.span,
-                format!("there are more than {MAX_POINTS} points"),
-                "leave out points: a few hundred describe any path that a four-bar can trace",
-            ));
+            let help = "leave out points: a few hundred describe any path that a four-bar can trace";
+            return Err(table.at(row.span, format!("there are more than {MAX_POINTS} points"), help));
         }
         let number =
             |column: usize| columns.place[column].map(|i| table.number(&row, i, COLUMNS[column])).transpose();
@@ -104,11 +96,8 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         out.rows.push(row.span);
     }
     if out.points.is_empty() {
-        return Err(table.at(
-            header.span,
-            "there are no points under the header",
-            "write one point a line, such as 1.5,2",
-        ));
+        let help = "write one point a line, such as 1.5,2";
+        return Err(table.at(header.span, "there are no points under the header", help));
     }
     Ok(out)
 }
@@ -205,7 +194,6 @@ impl<'a> Rows<'a> {
 
     fn ragged(&self, row: &Row, expected: usize) -> Box<Diagnostic> {
         let found = row.cells.len();
-        let count = |n: usize| if n == 1 { "1 cell".to_owned() } else { format!("{n} cells") };
         let help = if row.cells.iter().any(|c| c.contains(';')) {
             "separate cells with commas, not with semicolons"
         } else if self.text[row.span.clone()].matches('"').count() % 2 == 1 {
@@ -215,7 +203,8 @@ impl<'a> Rows<'a> {
         } else {
             "give each row a cell for each column"
         };
-        self.at(row.span.clone(), format!("this row has {}, the header has {}", count(found), expected), help)
+        let cells = counted(found, "cell");
+        self.at(row.span.clone(), format!("this row has {cells}, the header has {expected}"), help)
     }
 
     /// Returns the finite number in a cell.
@@ -281,25 +270,17 @@ struct Columns {
 
 impl Columns {
     fn of(table: &Rows<'_>, header: &Row) -> Checked<Columns> {
-        let whole = || header.span.clone();
-        if let [only] = header.cells.as_slice() {
-            for (separator, name) in [(';', "semicolons"), ('\t', "tabs")] {
-                if only.contains(separator) {
-                    return Err(table.at(
-                        whole(),
-                        format!("the columns are separated by {name}"),
-                        "separate them with commas and write numbers with a decimal point; \
-                         in a spreadsheet, save as \"CSV (comma delimited)\"",
-                    ));
-                }
-            }
+        let refuse = |message: &str, help: &str| Err(table.at(header.span.clone(), message, help));
+        if let [only] = header.cells.as_slice()
+            && let Some((_, name)) =
+                [(';', "semicolons"), ('\t', "tabs")].iter().find(|(c, _)| only.contains(*c))
+        {
+            let help = "separate them with commas and write numbers with a decimal point; \
+                        in a spreadsheet, save as \"CSV (comma delimited)\"";
+            return refuse(&format!("the columns are separated by {name}"), help);
         }
         if header.cells.iter().all(|c| c.is_empty() || c.parse::<f64>().is_ok() || is_decimal_comma(c)) {
-            return Err(table.at(
-                whole(),
-                "the header is missing: the first row holds numbers",
-                "write a first line x,y",
-            ));
+            return refuse("the header is missing: the first row holds numbers", "write a first line x,y");
         }
         let mut columns = Columns { place: [None; 5], warnings: Vec::new() };
         let mut extra = Vec::new();
@@ -307,12 +288,9 @@ impl Columns {
             let name = cell.to_lowercase();
             match COLUMNS.iter().position(|c| *c == name) {
                 Some(c) if columns.place[c].is_some() => {
-                    let span = header.cell_span(table.text, i);
-                    return Err(table.at(
-                        span,
-                        format!("there are two columns {name}"),
-                        "remove or rename one of them",
-                    ));
+                    let message = format!("there are two columns {name}");
+                    let help = "remove or rename one of them";
+                    return Err(table.at(header.cell_span(table.text, i), message, help));
                 }
                 Some(c) => columns.place[c] = Some(i),
                 None if cell.is_empty() => {}
@@ -320,14 +298,10 @@ impl Columns {
             }
         }
         columns.warnings.extend(extra_columns(table, header, &extra));
-        for (c, name) in COLUMNS.iter().enumerate().take(2) {
-            if columns.place[c].is_none() {
-                return Err(table.at(
-                    whole(),
-                    format!("there is no column {name}"),
-                    format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", ")),
-                ));
-            }
+        if let Some(c) = columns.place[..2].iter().position(Option::is_none) {
+            let help =
+                format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", "));
+            return refuse(&format!("there is no column {}", COLUMNS[c]), &help);
         }
         Ok(columns)
     }

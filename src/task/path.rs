@@ -7,7 +7,7 @@
 
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
 
-/// What the prescribed crank angles are measured from.
+/// The reference direction of prescribed crank angles.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]

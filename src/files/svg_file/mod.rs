@@ -12,6 +12,9 @@ mod pen;
 mod shape;
 mod viewport;
 
+pub use document::{MAX_DEPTH, MAX_ELEMENTS};
+pub use shape::MAX_SEGMENTS;
+
 use crate::files::diagnostic::Diagnostic;
 use crate::files::input_text;
 use crate::mechanism::{MAX_MAGNITUDE, Unit};
@@ -20,12 +23,6 @@ use std::path::Path;
 
 /// The default number of points of a drawing.
 pub const DEFAULT_SAMPLES: usize = 60;
-/// The largest number of elements of a drawing, each use of an element counted.
-pub const MAX_ELEMENTS: u32 = 200_000;
-/// The largest depth of nested elements and uses.
-pub const MAX_DEPTH: usize = 128;
-/// The largest number of segments of a shape, arcs counted once.
-pub const MAX_SEGMENTS: usize = 100_000;
 
 /// The beginning of a document type.
 const DOCTYPE: &str = "<!DOCTYPE";
