@@ -50,19 +50,11 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
     let Some(header) = table.header()? else {
-        return Err(table.about_file("the file is empty", "write a first line x,y and then one point a line"));
+        return Err(table.at(None, "the file is empty", "write a first line x,y and then one point a line"));
     };
     let columns = Columns::of(&table, &header)?;
-    let mut out = PointsFile {
-        file: file.to_owned(),
-        text: text.to_owned(),
-        points: Vec::new(),
-        crank_deg: columns.place[2].map(|_| Vec::new()),
-        weight: columns.place[3].map(|_| Vec::new()),
-        tolerance: columns.place[4].map(|_| Vec::new()),
-        rows: Vec::new(),
-        warnings: columns.warnings,
-    };
+    let mut values = columns.place.map(|place| place.map(|_| Vec::new()));
+    let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
         let beyond = row.cells.iter().skip(header.cells.len()).any(|cell| !cell.is_empty());
@@ -70,36 +62,33 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         if beyond || short {
             return Err(table.ragged(&row, header.cells.len()));
         }
-        if out.points.len() == MAX_POINTS {
+        if rows.len() == MAX_POINTS {
             let help = "leave out points: a few hundred describe any path that a four-bar can trace";
             return Err(table.at(row.span, format!("there are more than {MAX_POINTS} points"), help));
         }
-        let number =
-            |column: usize| columns.place[column].map(|i| table.number(&row, i, COLUMNS[column])).transpose();
-        if let (Some(x), Some(y)) = (number(0)?, number(1)?) {
-            out.points.push([x, y]);
-        }
-        for (column, list) in [(2, &mut out.crank_deg), (3, &mut out.weight), (4, &mut out.tolerance)] {
-            let (Some(list), Some(value), Some(i)) = (list, number(column)?, columns.place[column]) else {
-                continue;
-            };
-            let remedy = match column {
-                3 if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
-                4 if value < 0.0 => "a tolerance is 0 or more",
+        for ((name, place), list) in COLUMNS.iter().zip(columns.place).zip(&mut values) {
+            let (Some(place), Some(list)) = (place, list) else { continue };
+            let value = table.number(&row, place, name)?;
+            let remedy = match *name {
+                "weight" if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
+                "tolerance" if value < 0.0 => "a tolerance is 0 or more",
                 _ => {
                     list.push(value);
                     continue;
                 }
             };
-            return Err(table.at(row.cell_span(text, i), format!("{} = {value}", COLUMNS[column]), remedy));
+            return Err(table.at(row.cell_span(text, place), format!("{name} = {value}"), remedy));
         }
-        out.rows.push(row.span);
+        rows.push(row.span);
     }
-    if out.points.is_empty() {
+    if rows.is_empty() {
         let help = "write one point a line, such as 1.5,2";
         return Err(table.at(header.span, "there are no points under the header", help));
     }
-    Ok(out)
+    let [x, y, crank_deg, weight, tolerance] = values;
+    let points = x.into_iter().flatten().zip(y.into_iter().flatten()).map(|(x, y)| [x, y]).collect();
+    let (file, text) = (file.to_owned(), text.to_owned());
+    Ok(PointsFile { file, text, points, crank_deg, weight, tolerance, rows, warnings: columns.warnings })
 }
 
 /// A row: its cells, trimmed, and its place in the text.
@@ -170,7 +159,7 @@ impl<'a> Rows<'a> {
                 Ok(true) => {}
                 Ok(false) => return Ok(None),
                 Err(error) => {
-                    return Err(self.about_file(format!("the file is no CSV: {error}"), "check its quotes"));
+                    return Err(self.at(None, format!("the file is no CSV: {error}"), "check its quotes"));
                 }
             }
             let blank = record.iter().all(str::is_empty);
@@ -184,12 +173,14 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn at(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
+    /// Returns a diagnostic about a place, or about the whole file.
+    fn at(
+        &self,
+        span: impl Into<Option<Range<usize>>>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<Diagnostic> {
         Box::new(Diagnostic::new(self.file, self.text, message).at(span).with_help(help))
-    }
-
-    fn about_file(&self, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
-        Box::new(Diagnostic::new(self.file, self.text, message).with_help(help))
     }
 
     fn ragged(&self, row: &Row, expected: usize) -> Box<Diagnostic> {

@@ -12,9 +12,9 @@ use std::ops::Range;
 const SVG: &str = "http://www.w3.org/2000/svg";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
 /// The largest number of elements of a drawing, each use of an element counted.
-pub const MAX_ELEMENTS: u32 = 200_000;
+pub(super) const MAX_ELEMENTS: u32 = 200_000;
 /// The largest depth of nested elements and uses.
-pub const MAX_DEPTH: usize = 128;
+const MAX_DEPTH: usize = 128;
 /// The largest number of shapes that a message lists.
 const NAMED: usize = 8;
 

@@ -12,12 +12,10 @@ mod pen;
 mod shape;
 mod viewport;
 
-pub use document::{MAX_DEPTH, MAX_ELEMENTS};
-pub use shape::MAX_SEGMENTS;
-
 use crate::files::diagnostic::Diagnostic;
 use crate::files::input_text;
 use crate::mechanism::{MAX_MAGNITUDE, Unit};
+use document::MAX_ELEMENTS;
 use std::borrow::Cow;
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use svgtypes::{NumberListParser, PathParser};
 
 /// The largest number of segments of a shape, arcs counted once.
-pub const MAX_SEGMENTS: usize = 100_000;
+const MAX_SEGMENTS: usize = 100_000;
 /// The help text for lists of points.
 const PAIRS: &str = "write pairs of numbers: 0,0 10,5 20,0";
 
