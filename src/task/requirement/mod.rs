@@ -314,22 +314,9 @@ impl RequireSpec {
 }
 
 impl Default for RequireSpec {
+    /// Returns the requirements of a problem file that is silent about them.
     fn default() -> Self {
-        RequireSpec {
-            types: Vec::new(),
-            transmission_deg_min: None,
-            transmission_over: None,
-            link_ratio_max: DEFAULT_LINK_RATIO,
-            pivots_in: None,
-            footprint_in: None,
-            extent_max: None,
-            longest_max: None,
-            order: OrderPolicy::default(),
-            direction: DirectionPolicy::default(),
-            circuit: OnePolicy::default(),
-            branch: OnePolicy::default(),
-            closing: ClosingPolicy::default(),
-        }
+        RawRequire::default().into()
     }
 }
 
