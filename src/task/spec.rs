@@ -11,8 +11,8 @@ use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use crate::task::limits::Limits;
 pub use crate::task::requirement::{RequireSpec, TransmissionOver};
-pub use crate::task::values::Limits;
 
 /// A problem with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

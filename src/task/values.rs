@@ -4,10 +4,11 @@
 //! own arrays would cut without an error. A custom error is `message` or `message\nhelp`.
 
 use crate::mechanism::MAX_MAGNITUDE;
+use crate::task::limits::Limits;
 use schemars::JsonSchema;
+use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor};
-use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::marker::PhantomData;
 
@@ -180,22 +181,6 @@ impl<'de> Deserialize<'de> for BoundedXY {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         list_of(from, "a point [x, y], each a number or bounds [min, max]")
             .map(|point: [Bounds; 2]| BoundedXY(point.map(|bounds| bounds.0)))
-    }
-}
-
-/// An interval [low, high]; a fixed value has low = high.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Limits(pub f64, pub f64);
-
-impl Limits {
-    /// Returns whether it fixes a value.
-    pub fn is_fixed(&self) -> bool {
-        self.0 == self.1
-    }
-
-    /// Returns the nearest value inside.
-    pub fn clamp(&self, value: f64) -> f64 {
-        value.max(self.0).min(self.1)
     }
 }
 
