@@ -96,7 +96,7 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
         roxmltree::Document::parse_with_options(&plain, xml).map_err(|error| not_xml(file, text, &error))?;
     let mut document = document::Document::new(file, text, &parsed)?;
     let chosen = document.target(options.id)?;
-    let scale = match (document.physical(), options.unit.unwrap_or(Unit::Mm)) {
+    let scale = match (document.page.physical, options.unit.unwrap_or(Unit::Mm)) {
         (false, _) | (true, Unit::Mm) => 1.0,
         (true, Unit::Cm) => 0.1,
         (true, Unit::M) => 0.001,
@@ -131,9 +131,9 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
         file: file.to_owned(),
         points: curve.samples(options.samples),
         closed: curve.closed(),
-        unit: document.physical().then(|| options.unit.unwrap_or(Unit::Mm)),
+        unit: document.page.physical.then(|| options.unit.unwrap_or(Unit::Mm)),
         length: curve.length(),
-        warnings: document.into_warnings(),
+        warnings: chosen.warning.into_iter().collect(),
     })
 }
 
