@@ -5,7 +5,7 @@
 //! ```text
 //! arm.toml:9:5: the bounds of `a` are the wrong way round: 50 is above 10
 //! 9 | a = [50, 10]
-//!   |     ^^^^^^^^ label
+//!   |     ^^^^^^^^
 //! help: write [10, 50]
 //! ```
 //!
@@ -25,8 +25,6 @@ pub struct Diagnostic {
     pub span: Option<Range<usize>>,
     /// The fault.
     pub message: String,
-    /// A few words shown at the place itself.
-    pub label: Option<String>,
     /// The remedy.
     pub help: Option<String>,
 }
@@ -44,27 +42,13 @@ const CUT: &str = "...";
 impl Diagnostic {
     /// Returns a diagnostic about a whole file.
     pub fn new(file: impl Into<String>, text: impl Into<String>, message: impl Into<String>) -> Self {
-        Diagnostic {
-            file: file.into(),
-            text: text.into(),
-            span: None,
-            message: message.into(),
-            label: None,
-            help: None,
-        }
+        Diagnostic { file: file.into(), text: text.into(), span: None, message: message.into(), help: None }
     }
 
     /// Returns the diagnostic with a place in the text; `None`: it is about the whole file.
     #[must_use]
     pub fn at(mut self, span: impl Into<Option<Range<usize>>>) -> Self {
         self.span = span.into();
-        self
-    }
-
-    /// Returns the diagnostic with a label for the place.
-    #[must_use]
-    pub fn with_label(mut self, label: impl Into<String>) -> Self {
-        self.label = Some(label.into());
         self
     }
 
@@ -178,6 +162,11 @@ pub(crate) fn quoted(text: &str) -> String {
     }
 }
 
+/// Returns a number with its noun: `3 points`.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (file, message) = (escaped(&self.file), escaped(&self.message));
@@ -186,7 +175,7 @@ impl fmt::Display for Diagnostic {
             Some(place) => {
                 let column = place.before.chars().count() + 1;
                 writeln!(f, "{file}:{}:{column}: {message}", place.number)?;
-                write_line(f, &place, self.label.as_deref())?;
+                write_line(f, &place)?;
             }
         }
         match &self.help {
@@ -197,7 +186,7 @@ impl fmt::Display for Diagnostic {
 }
 
 /// Writes the source line, cut to a window around the caret, and the caret under it.
-fn write_line(f: &mut fmt::Formatter<'_>, place: &Place<'_>, label: Option<&str>) -> fmt::Result {
+fn write_line(f: &mut fmt::Formatter<'_>, place: &Place<'_>) -> fmt::Result {
     let (before, marked, after) = (shown(place.before), shown(place.marked), shown(place.after));
     let width = |s: &str| s.chars().count();
     let fits = width(&before) + width(&marked) + width(&after) <= WINDOW;
@@ -213,11 +202,7 @@ fn write_line(f: &mut fmt::Formatter<'_>, place: &Place<'_>, label: Option<&str>
     let line = format!("{before}{rest}");
     let carets = "^".repeat(width(&marked).clamp(1, width(&rest).max(1)));
     writeln!(f, "{number} | {}", line.trim_end())?;
-    write!(f, "{} | {}{carets}", " ".repeat(number.len()), " ".repeat(width(&before)))?;
-    match label {
-        None => Ok(()),
-        Some(label) => write!(f, " {}", escaped(label)),
-    }
+    write!(f, "{} | {}{carets}", " ".repeat(number.len()), " ".repeat(width(&before)))
 }
 
 impl std::error::Error for Diagnostic {}

@@ -28,16 +28,12 @@ pub fn read(path: &Path) -> Result<String, Box<Diagnostic>> {
     };
     let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if metadata.is_dir() {
-        return Err(refuse(
-            "this is a folder, not a file".into(),
-            "name a file in it (for a folder of results: `linkwright verify` or `compare`)",
-        ));
+        let help = "name a file in it (for a folder of results: `linkwright verify` or `compare`)";
+        return Err(refuse("this is a folder, not a file".into(), help));
     }
     let too_large = |size: String| {
-        refuse(
-            format!("the file {size}; at most 16 MB are read"),
-            "leave out points: a few hundred describe any path that a four-bar can trace",
-        )
+        let help = "leave out points: a few hundred describe any path that a four-bar can trace";
+        refuse(format!("the file {size}; at most 16 MB are read"), help)
     };
     if metadata.len() > MAX_BYTES {
         return Err(too_large(format!("has {} MB", metadata.len().div_ceil(1 << 20))));
@@ -49,23 +45,16 @@ pub fn read(path: &Path) -> Result<String, Box<Diagnostic>> {
         return Err(too_large("has more than 16 MB".into()));
     }
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(refuse(
-            "the file is in UTF-16, which is not read".into(),
-            "save it again as UTF-8 (spreadsheets call it \"CSV UTF-8\")",
-        ));
+        let help = "save it again as UTF-8 (spreadsheets call it \"CSV UTF-8\")";
+        return Err(refuse("the file is in UTF-16, which is not read".into(), help));
     }
-    match String::from_utf8(bytes) {
-        Ok(text) => Ok(without_mark(&text).to_owned()),
-        Err(error) => {
-            let at = error.utf8_error().valid_up_to();
-            let bytes = error.as_bytes();
-            let line = bytes[..at].iter().filter(|b| **b == b'\n').count() + 1;
-            Err(refuse(
-                format!("line {line} holds the byte 0x{:02x}, which is not UTF-8 text", bytes[at]),
-                "save the file as UTF-8 in your editor or spreadsheet",
-            ))
-        }
-    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
+        let line = bytes[..at].iter().filter(|b| **b == b'\n').count() + 1;
+        let message = format!("line {line} holds the byte 0x{:02x}, which is not UTF-8 text", bytes[at]);
+        refuse(message, "save the file as UTF-8 in your editor or spreadsheet")
+    })?;
+    Ok(without_mark(&text).to_owned())
 }
 
 /// Returns the text without a byte order mark.

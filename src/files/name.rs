@@ -60,12 +60,7 @@ fn is_allowed(c: char) -> bool {
 /// Superscript digits count too (Microsoft, "Naming Files, Paths, and Namespaces").
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or(name).trim_end().to_ascii_lowercase();
-    let port = |rest: &str| {
-        matches!(
-            rest,
-            "0" | "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "\u{b9}" | "\u{b2}" | "\u{b3}"
-        )
-    };
+    let port = |rest: &str| rest.chars().count() == 1 && "0123456789\u{b9}\u{b2}\u{b3}".contains(rest);
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul" | "conin$" | "conout$")
         || ["com", "lpt"].iter().any(|device| stem.strip_prefix(device).is_some_and(port))
 }

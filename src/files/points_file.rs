@@ -1,6 +1,6 @@
 //! Points files: CSV with a header row with `x,y` and optionally `crank_deg`, `weight`, `tolerance`; `#` comments.
 
-use crate::files::diagnostic::{Checked, Diagnostic, quoted};
+use crate::files::diagnostic::{Checked, Diagnostic, counted, quoted};
 use crate::files::input_text;
 use crate::files::toml_text::nearest;
 use crate::mechanism::MAX_MAGNITUDE;
@@ -49,25 +49,12 @@ pub fn load(path: &Path) -> Result<PointsFile, Box<Diagnostic>> {
 pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
     let text = input_text::without_mark(text);
     let mut table = Rows::new(file, text);
-    let header = match table.header()? {
-        Some(row) => row,
-        None => {
-            return Err(
-                table.about_file("the file is empty", "write a first line x,y and then one point a line")
-            );
-        }
+    let Some(header) = table.header()? else {
+        return Err(table.at(None, "the file is empty", "write a first line x,y and then one point a line"));
     };
     let columns = Columns::of(&table, &header)?;
-    let mut out = PointsFile {
-        file: file.to_owned(),
-        text: text.to_owned(),
-        points: Vec::new(),
-        crank_deg: columns.place[2].map(|_| Vec::new()),
-        weight: columns.place[3].map(|_| Vec::new()),
-        tolerance: columns.place[4].map(|_| Vec::new()),
-        rows: Vec::new(),
-        warnings: columns.warnings,
-    };
+    let mut values = columns.place.map(|place| place.map(|_| Vec::new()));
+    let mut rows = Vec::new();
     while let Some(row) = table.next_row()? {
         // Spreadsheets leave empty cells at the end, and leave out cells of columns that are not read.
         let beyond = row.cells.iter().skip(header.cells.len()).any(|cell| !cell.is_empty());
@@ -75,42 +62,33 @@ pub fn parse(file: &str, text: &str) -> Result<PointsFile, Box<Diagnostic>> {
         if beyond || short {
             return Err(table.ragged(&row, header.cells.len()));
         }
-        if out.points.len() == MAX_POINTS {
-            return Err(table.at(
-                row.span,
-                format!("there are more than {MAX_POINTS} points"),
-                "leave out points: a few hundred describe any path that a four-bar can trace",
-            ));
+        if rows.len() == MAX_POINTS {
+            let help = "leave out points: a few hundred describe any path that a four-bar can trace";
+            return Err(table.at(row.span, format!("there are more than {MAX_POINTS} points"), help));
         }
-        let number =
-            |column: usize| columns.place[column].map(|i| table.number(&row, i, COLUMNS[column])).transpose();
-        if let (Some(x), Some(y)) = (number(0)?, number(1)?) {
-            out.points.push([x, y]);
-        }
-        for (column, list) in [(2, &mut out.crank_deg), (3, &mut out.weight), (4, &mut out.tolerance)] {
-            let (Some(list), Some(value), Some(i)) = (list, number(column)?, columns.place[column]) else {
-                continue;
-            };
-            let remedy = match column {
-                3 if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
-                4 if value < 0.0 => "a tolerance is 0 or more",
+        for ((name, place), list) in COLUMNS.iter().zip(columns.place).zip(&mut values) {
+            let (Some(place), Some(list)) = (place, list) else { continue };
+            let value = table.number(&row, place, name)?;
+            let remedy = match *name {
+                "weight" if value <= 0.0 => "a weight is positive; leave the row out to ignore a point",
+                "tolerance" if value < 0.0 => "a tolerance is 0 or more",
                 _ => {
                     list.push(value);
                     continue;
                 }
             };
-            return Err(table.at(row.cell_span(text, i), format!("{} = {value}", COLUMNS[column]), remedy));
+            return Err(table.at(row.cell_span(text, place), format!("{name} = {value}"), remedy));
         }
-        out.rows.push(row.span);
+        rows.push(row.span);
     }
-    if out.points.is_empty() {
-        return Err(table.at(
-            header.span,
-            "there are no points under the header",
-            "write one point a line, such as 1.5,2",
-        ));
+    if rows.is_empty() {
+        let help = "write one point a line, such as 1.5,2";
+        return Err(table.at(header.span, "there are no points under the header", help));
     }
-    Ok(out)
+    let [x, y, crank_deg, weight, tolerance] = values;
+    let points = x.into_iter().flatten().zip(y.into_iter().flatten()).map(|(x, y)| [x, y]).collect();
+    let (file, text) = (file.to_owned(), text.to_owned());
+    Ok(PointsFile { file, text, points, crank_deg, weight, tolerance, rows, warnings: columns.warnings })
 }
 
 /// A row: its cells, trimmed, and its place in the text.
@@ -181,7 +159,7 @@ impl<'a> Rows<'a> {
                 Ok(true) => {}
                 Ok(false) => return Ok(None),
                 Err(error) => {
-                    return Err(self.about_file(format!("the file is no CSV: {error}"), "check its quotes"));
+                    return Err(self.at(None, format!("the file is no CSV: {error}"), "check its quotes"));
                 }
             }
             let blank = record.iter().all(str::is_empty);
@@ -195,17 +173,18 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn at(&self, span: Range<usize>, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
+    /// Returns a diagnostic about a place, or about the whole file.
+    fn at(
+        &self,
+        span: impl Into<Option<Range<usize>>>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Box<Diagnostic> {
         Box::new(Diagnostic::new(self.file, self.text, message).at(span).with_help(help))
-    }
-
-    fn about_file(&self, message: impl Into<String>, help: impl Into<String>) -> Box<Diagnostic> {
-        Box::new(Diagnostic::new(self.file, self.text, message).with_help(help))
     }
 
     fn ragged(&self, row: &Row, expected: usize) -> Box<Diagnostic> {
         let found = row.cells.len();
-        let count = |n: usize| if n == 1 { "1 cell".to_owned() } else { format!("{n} cells") };
         let help = if row.cells.iter().any(|c| c.contains(';')) {
             "separate cells with commas, not with semicolons"
         } else if self.text[row.span.clone()].matches('"').count() % 2 == 1 {
@@ -215,7 +194,8 @@ impl<'a> Rows<'a> {
         } else {
             "give each row a cell for each column"
         };
-        self.at(row.span.clone(), format!("this row has {}, the header has {}", count(found), expected), help)
+        let cells = counted(found, "cell");
+        self.at(row.span.clone(), format!("this row has {cells}, the header has {expected}"), help)
     }
 
     /// Returns the finite number in a cell.
@@ -281,25 +261,17 @@ struct Columns {
 
 impl Columns {
     fn of(table: &Rows<'_>, header: &Row) -> Checked<Columns> {
-        let whole = || header.span.clone();
-        if let [only] = header.cells.as_slice() {
-            for (separator, name) in [(';', "semicolons"), ('\t', "tabs")] {
-                if only.contains(separator) {
-                    return Err(table.at(
-                        whole(),
-                        format!("the columns are separated by {name}"),
-                        "separate them with commas and write numbers with a decimal point; \
-                         in a spreadsheet, save as \"CSV (comma delimited)\"",
-                    ));
-                }
-            }
+        let refuse = |message: &str, help: &str| Err(table.at(header.span.clone(), message, help));
+        if let [only] = header.cells.as_slice()
+            && let Some((_, name)) =
+                [(';', "semicolons"), ('\t', "tabs")].iter().find(|(c, _)| only.contains(*c))
+        {
+            let help = "separate them with commas and write numbers with a decimal point; \
+                        in a spreadsheet, save as \"CSV (comma delimited)\"";
+            return refuse(&format!("the columns are separated by {name}"), help);
         }
         if header.cells.iter().all(|c| c.is_empty() || c.parse::<f64>().is_ok() || is_decimal_comma(c)) {
-            return Err(table.at(
-                whole(),
-                "the header is missing: the first row holds numbers",
-                "write a first line x,y",
-            ));
+            return refuse("the header is missing: the first row holds numbers", "write a first line x,y");
         }
         let mut columns = Columns { place: [None; 5], warnings: Vec::new() };
         let mut extra = Vec::new();
@@ -307,12 +279,9 @@ impl Columns {
             let name = cell.to_lowercase();
             match COLUMNS.iter().position(|c| *c == name) {
                 Some(c) if columns.place[c].is_some() => {
-                    let span = header.cell_span(table.text, i);
-                    return Err(table.at(
-                        span,
-                        format!("there are two columns {name}"),
-                        "remove or rename one of them",
-                    ));
+                    let message = format!("there are two columns {name}");
+                    let help = "remove or rename one of them";
+                    return Err(table.at(header.cell_span(table.text, i), message, help));
                 }
                 Some(c) => columns.place[c] = Some(i),
                 None if cell.is_empty() => {}
@@ -320,14 +289,10 @@ impl Columns {
             }
         }
         columns.warnings.extend(extra_columns(table, header, &extra));
-        for (c, name) in COLUMNS.iter().enumerate().take(2) {
-            if columns.place[c].is_none() {
-                return Err(table.at(
-                    whole(),
-                    format!("there is no column {name}"),
-                    format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", ")),
-                ));
-            }
+        if let Some(c) = columns.place[..2].iter().position(Option::is_none) {
+            let help =
+                format!("name the columns in the first row: {} (x and y are needed)", COLUMNS.join(", "));
+            return refuse(&format!("there is no column {}", COLUMNS[c]), &help);
         }
         Ok(columns)
     }

@@ -2,7 +2,9 @@
 
 use crate::files::name;
 use crate::files::name::NameError;
+use crate::files::problem_file::is_drawing;
 use crate::task::requirement::RequirementKind;
+use std::path::Path;
 
 /// A closed path in mm that a crank-rocker of usual proportions draws.
 const SAMPLE_POINTS: &str = "\
@@ -23,9 +25,10 @@ tolerance = 0.5                 # the largest error accepted at any point; remov
 pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String, NameError> {
     name::check(name)?;
     let quoted = |text: &str| toml::Value::String(text.to_owned()).to_string();
+    let is_drawing = points_file.is_some_and(|file| is_drawing(Path::new(file)));
     let points = match points_file {
         None => SAMPLE_POINTS.to_owned(),
-        Some(file) if crate::files::problem_file::is_drawing(std::path::Path::new(file)) => format!(
+        Some(file) if is_drawing => format!(
             "# The curve to trace: the drawing's first path, polyline, polygon, circle or ellipse, as points.\n\
              svg = {}\n\
              # svg_id = \"leg\"                # the id of another shape of the drawing\n\
@@ -45,12 +48,8 @@ pub fn problem_template(name: &str, points_file: Option<&str>) -> Result<String,
         ),
     };
     // A drawing may state its unit itself.
-    let head = match points_file.map(std::path::Path::new) {
-        Some(file) if crate::files::problem_file::is_drawing(file) => {
-            HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"")
-        }
-        _ => HEAD.to_owned(),
-    };
+    let head =
+        if is_drawing { HEAD.replace("\nunit = \"mm\" ", "\n# unit = \"mm\"") } else { HEAD.to_owned() };
     let required: String = RequirementKind::all().iter().map(|kind| kind.definition().template).collect();
     Ok(head.replace("NAME", &quoted(name)) + &points + TAIL + &required + SEARCH)
 }

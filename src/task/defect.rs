@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The step of the circuit's parameter (radians) below which it counts as no step: two points may share a position.
 pub const ORDER_TOLERANCE: f64 = 1e-9;
 
-/// What can be wrong with a motion through the points, and at which points (counted from 0).
+/// A defect of a motion through the points, with the points at which it occurs (counted from 0).
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Defect {

@@ -5,6 +5,7 @@
 //! | [`builder`] | a builder of problems from points, with the defaults of a problem file |
 //! | [`defect`] | defects of a motion through target points: order, branch, circuit |
 //! | [`forms`] | the task as mathematics: design space, residuals with derivatives, requirements, fitness |
+//! | `limits` | intervals in which the parameters of a design lie |
 //! | [`path`] | the synthesis task: a path for the coupler point, with or without crank angles at its points |
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
@@ -14,6 +15,7 @@
 mod builder;
 pub mod defect;
 pub mod forms;
+mod limits;
 mod path;
 pub mod problem;
 pub mod requirement;

@@ -7,7 +7,7 @@
 
 use crate::mechanism::{Complex, MAX_MAGNITUDE};
 
-/// What the prescribed crank angles are measured from.
+/// The reference direction of prescribed crank angles.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize, schemars::JsonSchema,
 )]
@@ -84,7 +84,7 @@ pub enum TaskError {
     #[error("points {0} and {next} are equal", next = .0 + 1)]
     AdjacentEqual(usize),
     /// All points in one place, within [`SMALLEST_SIZE`].
-    #[error("all points are equal, or lie within 1e-100 of each other")]
+    #[error("all points are equal, or lie within {size:e} of each other", size = SMALLEST_SIZE)]
     NoExtent,
     /// A list beside the points has another length.
     #[error("{points} points but {values} values of {what}")]
@@ -197,15 +197,9 @@ impl PathTask {
         })
     }
 
-    /// Returns the same task with other weights, one per point.
-    ///
-    /// # Errors
-    /// [`TaskError`] if one is not positive or there are not as many as points.
-    pub fn with_weights(self, weights: Vec<f64>) -> Result<Self, TaskError> {
-        let options =
-            PathOptions { weights: Some(weights), tolerances: self.tolerances, closed: self.closed };
-        let points = self.points.into_iter().map(crate::mechanism::xy).collect();
-        Ok(PathTask::new(points, self.timing, options)?.coming_back(self.comes_back))
+    /// Returns the same task with other weights, one positive number per point.
+    pub(super) fn with_weights(self, weights: Vec<f64>) -> Self {
+        PathTask { weights, ..self }
     }
 
     /// Returns the same task with another rule for the way back to its first point.

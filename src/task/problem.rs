@@ -48,7 +48,7 @@ fn measured_by_tolerances(task: PathTask) -> Result<PathTask, TaskError> {
             tolerances.iter().map(|t| (least / t).powi(2).max(LEAST_WEIGHT)).collect()
         }
     };
-    task.with_weights(weights)
+    Ok(task.with_weights(weights))
 }
 
 /// Returns the ways in which the motion may come back to the first point, if it has to.

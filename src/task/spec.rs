@@ -11,34 +11,19 @@ use crate::task::{AngleOffset, PathOptions, PathTask, TaskError, Timing};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub use crate::task::limits::Limits;
 pub use crate::task::requirement::{RequireSpec, TransmissionOver};
-
-/// An interval [low, high]; a fixed value has low = high.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct Limits(pub f64, pub f64);
-
-impl Limits {
-    /// Returns whether it fixes a value.
-    pub fn is_fixed(&self) -> bool {
-        self.0 == self.1
-    }
-
-    /// Returns the nearest value inside.
-    pub fn clamp(&self, value: f64) -> f64 {
-        value.max(self.0).min(self.1)
-    }
-}
 
 /// A problem with every default filled in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ProblemSpec {
-    /// What is wanted.
+    /// The task.
     pub task: TaskSpec,
-    /// Where the parameters may lie.
+    /// The bounds of the parameters.
     pub design: DesignSpec,
-    /// What an acceptable linkage satisfies.
+    /// The requirements on a linkage.
     pub require: RequireSpec,
-    /// How to search.
+    /// The options of the search.
     pub solve: SolveSpec,
 }
 
@@ -70,7 +55,7 @@ pub struct TaskSpec {
     pub path: PathSpec,
 }
 
-/// A path: points and what stands beside them.
+/// A path: points with their weights, tolerances and crank angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PathSpec {
     /// The target points.
@@ -99,7 +84,7 @@ pub struct RawPoints {
     /// The standard deviation of the smoothing, a length along the path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smooth: Option<f64>,
-    /// How many points were taken evenly along the path.
+    /// The number of points taken evenly along the path.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub samples: Option<usize>,
 }
@@ -123,7 +108,7 @@ impl RawPoints {
 pub struct TimingSpec {
     /// One a point, degrees, counter-clockwise positive.
     pub crank_deg: Vec<f64>,
-    /// What they are measured from.
+    /// Their reference direction.
     pub offset: AngleOffset,
 }
 
@@ -149,7 +134,7 @@ impl PathSpec {
     }
 }
 
-/// Where the parameters may lie. A key that is absent does not bind.
+/// The bounds of the parameters. A key that is absent does not bind.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DesignSpec {
     /// The crank's pivot.
@@ -225,7 +210,7 @@ impl DesignSpec {
     }
 }
 
-/// Whether a defect is forbidden.
+/// The rule for the order of the points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrderPolicy {
@@ -236,7 +221,7 @@ pub enum OrderPolicy {
     Any,
 }
 
-/// How the motion comes back to the first point of a target that ends where it begins.
+/// The ways in which the motion may come back to the first point of a target that ends where it begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClosingPolicy {
@@ -254,7 +239,7 @@ impl ClosingPolicy {
     }
 }
 
-/// Whether the motion must stay on one circuit or branch.
+/// The rule for the circuits or the branches of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum OnePolicy {
@@ -288,7 +273,7 @@ pub enum DirectionPolicy {
     Cw,
 }
 
-/// How to search.
+/// The method of the search.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
@@ -318,7 +303,7 @@ impl Method {
     }
 }
 
-/// What is minimised.
+/// The quantity that is minimised.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Objective {
@@ -344,7 +329,7 @@ pub enum Measure {
     LargestPart,
 }
 
-/// In which variables the population searches move.
+/// The variables in which the population searches move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Variables {
@@ -370,21 +355,21 @@ fn is_advised(advice: &bool) -> bool {
     *advice
 }
 
-/// How to search and when to stop.
+/// The options and the limits of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolveSpec {
     /// The method.
     pub method: Method,
-    /// What is minimised.
+    /// The quantity that is minimised.
     pub objective: Objective,
-    /// In which variables `genetic` and `differential-evolution` move; the other methods do not read it.
+    /// The variables in which `genetic` and `differential-evolution` move; the other methods do not read it.
     #[serde(default)]
     pub variables: Variables,
     /// Every draw comes from this number.
     pub seed: u64,
-    /// How many distinct answers are wanted.
+    /// The number of distinct answers.
     pub candidates: usize,
-    /// How many evaluations of the objective at most.
+    /// The largest number of evaluations of the objective.
     pub evaluations: u64,
     /// Seconds at most, of search and advice together; when it bites the record says that the run cannot be repeated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -392,7 +377,7 @@ pub struct SolveSpec {
     /// Whether advice is worked out beside the answers: what conflicts, what to build, what limits cost.
     #[serde(default = "advised", skip_serializing_if = "is_advised")]
     pub advice: bool,
-    /// What a certificate is worked out with after the search, where one is asked for. It decides no candidate.
+    /// The options of the certificate that is worked out after the search, where one is asked for. It decides no candidate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certify: Option<CertifySpec>,
     /// The genetic algorithm's parameters.
@@ -442,12 +427,12 @@ impl Default for SolveSpec {
     }
 }
 
-/// How a certificate is worked out ([`crate::judge::certificate`]).
+/// The options of a certificate ([`crate::judge::certificate`]).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CertifySpec {
     /// The gap between the best candidate and the proved bound at which it ends, relative, in (0, 1).
     pub gap: f64,
-    /// Seconds at most; what is proved by then stands.
+    /// Seconds at most; what is proved by then counts.
     pub time_limit_s: f64,
 }
 

@@ -4,12 +4,11 @@
 //! own arrays would cut without an error. A custom error is `message` or `message\nhelp`.
 
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::spec::Limits;
+use crate::task::limits::Limits;
 use schemars::JsonSchema;
+use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{
-    self, Deserialize, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor,
-};
+use serde::de::{self, Deserializer, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor};
 use std::fmt;
 use std::marker::PhantomData;
 

@@ -63,9 +63,7 @@ pub fn diagnose(kind: ReportKind<'_>, diagnostic: &Diagnostic) {
     let mut report = Report::build(kind, (file.clone(), span.clone()))
         .with_config(Config::default().with_index_type(IndexType::Byte))
         .with_message(crate::files::diagnostic::escaped(&diagnostic.message));
-    let label = diagnostic.label.clone().unwrap_or_else(|| "here".into());
-    report
-        .add_label(Label::new((file.clone(), span)).with_message(crate::files::diagnostic::escaped(&label)));
+    report.add_label(Label::new((file.clone(), span)).with_message("here"));
     if let Some(help) = &diagnostic.help {
         report.set_help(crate::files::diagnostic::escaped(help));
     }

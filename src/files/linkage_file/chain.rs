@@ -148,7 +148,7 @@ struct RawGuide {
     block: String,
     /// The joint along the guide and to its left, from the pivot.
     at: XY,
-    /// How far to the left of the line through the pivot the block slides; 0 where this is missing.
+    /// The distance at which the block slides to the left of the line through the pivot; 0 where this is missing.
     offset: Option<Number>,
     /// 1 (default): the block is ahead of the pivot along the guide; -1: behind it.
     #[schemars(with = "Option<i64>")]
@@ -210,35 +210,33 @@ fn place<T>(
 }
 
 fn attached(toml: &TomlText<'_>, path: &str, raw: RawPoint) -> Checked<Stage> {
-    let refuse = |key: &str, message: &str, help: &str| {
-        Box::new(toml.at_key(&format!("{path}.{key}"), message).with_help(help))
-    };
+    let refuse =
+        |key: &str, message: &str, help: &str| toml.refuse_key(&format!("{path}.{key}"), message, help);
     let at = match (raw.at, raw.distances, raw.side) {
         (Some(at), None, None) => Attachment::Offset(at.0),
         (None, Some(distances), Some(side)) => Attachment::Distances(distances.0, side),
         (Some(_), Some(_), _) => {
-            return Err(refuse("distances", "two places: at and distances", "keep one of the two keys"));
+            return refuse("distances", "two places: at and distances", "keep one of the two keys");
         }
         (Some(_), None, Some(_)) => {
             let help = "remove side: the sign of the second number of at tells the side";
-            return Err(refuse("side", "side goes with distances", help));
+            return refuse("side", "side goes with distances", help);
         }
         (None, Some(_), None) => {
             let help = "add side = 1 (left of the line from the first point to the second) or side = -1";
-            return Err(refuse("distances", "distances alone fit on either side of the link", help));
+            return refuse("distances", "distances alone fit on either side of the link", help);
         }
         (None, None, _) => {
             let help = "add at = [along, across], or distances = [from first, from second] with side";
-            return Err(refuse("name", "this point has no place on its link", help));
+            return refuse("name", "this point has no place on its link", help);
         }
     };
     Ok(Stage::Point { name: raw.name, on: raw.on.0, at })
 }
 
 fn sliding(toml: &TomlText<'_>, path: &str, raw: RawSlider) -> Checked<Stage> {
-    let refuse = |key: &str, message: &str, help: &str| {
-        Box::new(toml.at_key(&format!("{path}.{key}"), message).with_help(help))
-    };
+    let refuse =
+        |key: &str, message: &str, help: &str| toml.refuse_key(&format!("{path}.{key}"), message, help);
     let line = match (raw.through, raw.angle_deg, raw.along) {
         (Some(through), Some(angle), None) if raw.offset.is_none() => {
             SliderLine::Fixed { through: through.0, angle: angle.0.to_radians() }
@@ -248,17 +246,17 @@ fn sliding(toml: &TomlText<'_>, path: &str, raw: RawSlider) -> Checked<Stage> {
         }
         (_, _, Some(_)) => {
             let help = "keep through and angle_deg (a fixed line), or along (a line on a link)";
-            return Err(refuse("along", "two lines: one that is fixed and one on a link", help));
+            return refuse("along", "two lines: one that is fixed and one on a link", help);
         }
         (Some(_), Some(_), None) => {
             let help = "remove offset: a fixed line goes through the point that you choose";
-            return Err(refuse("offset", "offset goes with along", help));
+            return refuse("offset", "offset goes with along", help);
         }
         (through, _, None) => {
             let key = if through.is_some() { "through" } else { "joint" };
             let help = "add through = [x, y] and angle_deg (a fixed line), or along = [\"D\", \"E\"] (a line \
                         on a link)";
-            return Err(refuse(key, "this slider has no line to slide along", help));
+            return refuse(key, "this slider has no line to slide along", help);
         }
     };
     Ok(Stage::Slider { joint: raw.joint, from: raw.from, length: raw.length.0, line, side: raw.side })

@@ -7,9 +7,9 @@ use crate::files::input_text;
 use crate::files::name;
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{Count, Number, OnlyTable, XY};
-use crate::mechanism::Unit;
 use crate::mechanism::{
-    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, VectorLoop,
+    AssemblyMode, CouplerSide, FourBar, Linkage, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, Unit,
+    VectorLoop,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -20,25 +20,17 @@ pub const FORMAT: u64 = 1;
 
 /// A linkage with its name and the unit of its lengths.
 #[derive(Clone, Debug, PartialEq)]
-pub struct LinkageFile {
+pub struct LinkageFile<L = FourBar> {
     /// Its name; the file stem if the file has none.
     pub name: String,
     /// The unit that labels lengths.
     pub unit: Option<Unit>,
     /// The linkage.
-    pub linkage: FourBar,
+    pub linkage: L,
 }
 
 /// A linkage of any kind with its name and the unit of its lengths.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AnyLinkageFile {
-    /// Its name; the file stem if the file has none.
-    pub name: String,
-    /// The unit that labels lengths.
-    pub unit: Option<Unit>,
-    /// The linkage.
-    pub linkage: Linkage,
-}
+pub type AnyLinkageFile = LinkageFile<Linkage>;
 
 /// A linkwright linkage file.
 #[derive(Deserialize, JsonSchema)]
@@ -170,30 +162,26 @@ pub fn parse_any(file_name: &str, text: &str) -> Result<AnyLinkageFile, Box<Diag
     let raw: RawLinkageFile = toml.read()?;
     check_format(&toml, raw.format, FORMAT)?;
     let name = checked_name(&toml, raw.name, "linkage")?;
-    let linkage = match (raw.linkage, raw.vector_loop, raw.chain) {
-        (Some(OnlyTable(natural)), None, None) => {
-            Linkage::FourBar(natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?)
-        }
-        (None, Some(OnlyTable(vector_loop)), None) => {
-            Linkage::FourBar(from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?)
-        }
-        (None, None, Some(OnlyTable(chain))) => Linkage::Chain(Box::new(chain::chain(&toml, chain)?)),
-        (None, None, None) => {
-            return toml.refuse_file("there is no linkage in this file", KINDS);
-        }
-        (natural, vector_loop, chain) => {
-            let kinds = [
-                ("linkage", natural.is_some()),
-                ("vector_loop", vector_loop.is_some()),
-                ("chain", chain.is_some()),
-            ];
-            let there: Vec<&str> = kinds.iter().filter(|(_, there)| *there).map(|(kind, _)| *kind).collect();
-            let (first, last) = (there[0], there[there.len() - 1]);
-            let both = toml.at_key(last, format!("two linkages: [{first}] and [{last}]"));
-            return Err(Box::new(both.with_help("keep one of the two tables")));
-        }
+    let given = [
+        ("linkage", raw.linkage.is_some()),
+        ("vector_loop", raw.vector_loop.is_some()),
+        ("chain", raw.chain.is_some()),
+    ];
+    let given: Vec<&str> = given.into_iter().filter(|(_, there)| *there).map(|(table, _)| table).collect();
+    if let [first, .., last] = given[..] {
+        let message = format!("two linkages: [{first}] and [{last}]");
+        return toml.refuse_key(last, message, "keep one of the two tables");
+    }
+    let linkage = if let Some(OnlyTable(natural)) = raw.linkage {
+        Linkage::FourBar(natural_linkage(natural).map_err(|e| explain(&toml, &e, "linkage"))?)
+    } else if let Some(OnlyTable(vector_loop)) = raw.vector_loop {
+        Linkage::FourBar(from_vector_loop(&vector_loop).map_err(|e| explain(&toml, &e, "vector_loop"))?)
+    } else if let Some(OnlyTable(chain)) = raw.chain {
+        Linkage::Chain(Box::new(chain::chain(&toml, chain)?))
+    } else {
+        return toml.refuse_file("there is no linkage in this file", KINDS);
     };
-    Ok(AnyLinkageFile { name, unit: raw.unit, linkage })
+    Ok(LinkageFile { name, unit: raw.unit, linkage })
 }
 
 fn natural_linkage(raw: RawLinkage) -> Result<FourBar, LinkageError> {

@@ -1,4 +1,4 @@
-//! Closed targets that nothing can close as they are asked for: said before a search looks for it in vain.
+//! Warns of closed targets that no linkage can close as asked, before a search looks for one in vain.
 
 use crate::files::diagnostic::Diagnostic;
 use crate::files::toml_text::TomlText;
@@ -7,7 +7,7 @@ use crate::task::Problem;
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::spec::{OrderPolicy, ProblemSpec};
 
-/// A warning where the motion has to come back to the first point without reversing, and the types required or the
+/// Returns a warning if the motion has to come back to the first point without reversing, and the types required or the
 /// prescribed crank angles do not let it.
 pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnostic> {
     let require = &spec.require;
@@ -39,7 +39,7 @@ pub(super) fn against(toml: &TomlText<'_>, spec: &ProblemSpec) -> Option<Diagnos
     ))
 }
 
-/// The first point that the angles reach the other way than those before it.
+/// Returns the first point whose angle lies the other way than those before it.
 fn reversal(angles: &[f64]) -> Option<usize> {
     let (first, last) = (angles.first()?, angles.last()?);
     let way = if last < first { -1.0 } else { 1.0 };

@@ -1,7 +1,6 @@
 //! The table `[expect]`: what is known of a problem's answer, for tests and the suite.
 
-use super::path::counted;
-use crate::files::diagnostic::Checked;
+use crate::files::diagnostic::{Checked, counted};
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::plain;
 use crate::mechanism::AssemblyMode;
@@ -15,10 +14,10 @@ pub struct Expect {
     /// The least sum of squared errors that is known.
     #[serde(deserialize_with = "plain::number", skip_serializing_if = "Option::is_none")]
     pub best_known_sum_sq: Option<f64>,
-    /// What a run has to reach to count as a hit; where silent, best_known_sum_sq.
+    /// The sum that a run has to reach to count as a hit; where silent, best_known_sum_sq.
     #[serde(deserialize_with = "plain::number", skip_serializing_if = "Option::is_none")]
     pub goal_sum_sq: Option<f64>,
-    /// How many linkages there are through nine points.
+    /// The number of linkages through nine points.
     #[serde(deserialize_with = "plain::table", skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExpectedCensus>,
     /// Answers that were published.
@@ -26,7 +25,7 @@ pub struct Expect {
     pub published: Vec<Published>,
 }
 
-/// How many linkages there are through nine points, up to cognates.
+/// The number of linkages through nine points, up to cognates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ExpectedCensus {
@@ -56,7 +55,7 @@ pub struct Published {
     /// r1 ground, r2 crank, r3 coupler, r4 follower, rcx, rcy, x0, y0, theta0 (radians).
     #[serde(default, deserialize_with = "plain::numbers", skip_serializing_if = "Vec::is_empty")]
     pub vector: Vec<f64>,
-    /// Which way it closes: 1: D lies left of the line from C to B; -1: right.
+    /// The side on which it closes: 1: D lies left of the line from C to B; -1: right.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(with = "Option<i64>")]
     pub t1: Option<AssemblyMode>,

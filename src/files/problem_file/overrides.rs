@@ -1,15 +1,15 @@
-//! `--set KEY=VALUE`: keys of the document replaced in its text, which is then read like any other.
+//! Applies `--set KEY=VALUE` to the text of a document, which is then read like any other.
 
 use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use crate::files::toml_text::TomlText;
 use toml_edit::{DocumentMut, Item, Key, Table, TableLike, Value};
 
-/// The name and the text of a document with the overrides written into it.
+/// Returns the name and the text of a document with the overrides written into it.
 pub(super) fn apply(toml: &TomlText<'_>, overrides: &[(String, String)]) -> Checked<(String, String)> {
     if overrides.is_empty() {
         return Ok((toml.file.to_owned(), toml.text.to_owned()));
     }
-    // A broken document is reported as it stands in the file.
+    // A broken document is reported as it is in the file.
     let _: toml::Table = toml.read()?;
     let mut document: DocumentMut =
         toml.text.parse().map_err(|e: toml_edit::TomlError| Box::new(toml.about_file(e.message())))?;
@@ -23,7 +23,7 @@ pub(super) fn apply(toml: &TomlText<'_>, overrides: &[(String, String)]) -> Chec
     Ok((file, document.to_string()))
 }
 
-/// What is wrong with an override and what to do.
+/// The fault of an override with its remedy.
 type Refusal = (String, &'static str);
 
 fn set(root: &mut Table, key: &str, value: &str) -> Result<(), Refusal> {

@@ -2,7 +2,7 @@
 
 use super::raw::RawPath;
 use super::target::{Source, Target, Whereabouts};
-use crate::files::diagnostic::{Checked, Diagnostic};
+use crate::files::diagnostic::{Checked, Diagnostic, counted};
 use crate::files::toml_text::TomlText;
 use crate::files::toml_values::{OneOrEach, OnlyTable, numbers};
 use crate::mechanism::Unit;
@@ -148,11 +148,6 @@ fn raw_of(
     target.points = raw.target(target.closed);
     target.resampled = samples.is_some();
     Ok(Some(raw))
-}
-
-/// Returns a number with its noun: `3 points`.
-pub(super) fn counted(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 /// Returns the diagnostic of a task's error, at the point that it is about.

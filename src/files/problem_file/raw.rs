@@ -1,4 +1,5 @@
-//! A problem file as it stands: every key optional, nothing judged. The JSON Schema is made from these types.
+//! The keys of a problem file as they are written: every key optional, nothing checked. The JSON Schema is made from
+//! these types.
 
 use super::Expect;
 use crate::files::toml_values::{BoundedXY, Bounds, Count, Number, OneOrEach, OnlyTable, XY};
@@ -21,30 +22,30 @@ pub(crate) struct RawProblem {
     pub format: Option<Count>,
     /// 1 to 64 letters, digits, blanks and `- _ .`, not starting with a dot; where silent, the name of the file.
     pub name: Option<String>,
-    /// Where the problem comes from, in words.
+    /// The source of the problem, in words.
     pub source: Option<String>,
     /// The unit of lengths: it labels them and scales drawings.
     pub unit: Option<Unit>,
-    /// What is wanted.
+    /// The task.
     #[schemars(required)]
     pub task: Option<OnlyTable<RawTask>>,
-    /// Where the parameters may lie.
+    /// The bounds of the parameters.
     #[serde(default)]
     pub design: OnlyTable<RawDesign>,
-    /// What an acceptable linkage satisfies.
+    /// The requirements on a linkage.
     #[serde(default)]
     pub require: OnlyTable<RawRequire>,
-    /// How to search.
+    /// The options of the search.
     #[serde(default)]
     pub solve: OnlyTable<RawSolve>,
-    /// How a certificate is worked out, where `solve.certify` asks for one.
+    /// The options of a certificate, where `solve.certify` asks for one.
     #[serde(default)]
     pub certify: Option<OnlyTable<RawCertify>>,
-    /// What is known of the answer; no search reads it.
+    /// The known facts about the answer; no search reads them.
     pub expect: Option<OnlyTable<Expect>>,
 }
 
-/// What is wanted: a path.
+/// The task: a path.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Task")]
@@ -67,7 +68,7 @@ pub(crate) struct RawPath {
     pub svg: Option<String>,
     /// The id of the drawing's shape, where it is not the first.
     pub svg_id: Option<String>,
-    /// How many points are taken evenly by arc length: of a drawing (60 where silent), or along the points.
+    /// The number of points taken evenly by arc length: of a drawing (60 where silent), or along the points.
     pub samples: Option<Count>,
     /// Smooths digitised points: the standard deviation of the window, a length along the path.
     pub smooth: Option<Number>,
@@ -88,12 +89,12 @@ pub(crate) struct RawPath {
 pub(crate) struct RawTiming {
     /// One a point, degrees, counter-clockwise positive; or a column of the CSV file.
     pub crank_deg: Option<Vec<Number>>,
-    /// What they are measured from.
+    /// Their reference direction.
     #[serde(default)]
     pub offset: AngleOffset,
 }
 
-/// Where the parameters may lie: a number fixes, [min, max] bounds.
+/// The bounds of the parameters: a number fixes, [min, max] bounds.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Design")]
@@ -124,7 +125,7 @@ pub(crate) struct RawDesign {
     pub coupler_y: Option<Bounds>,
 }
 
-/// How to search and when to stop.
+/// The options and the limits of a search.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Solve")]
@@ -132,17 +133,17 @@ pub(crate) struct RawSolve {
     /// The method.
     #[serde(default)]
     pub method: Method,
-    /// What is minimised.
+    /// The quantity that is minimised.
     #[serde(default)]
     pub objective: Objective,
-    /// In which variables genetic and differential-evolution move.
+    /// The variables in which genetic and differential-evolution move.
     #[serde(default)]
     pub variables: Variables,
     /// Every draw comes from this number; 1 where silent.
     pub seed: Option<Count>,
-    /// How many distinct answers are wanted, 1 to 100; 5 where silent.
+    /// The number of distinct answers, 1 to 100; 5 where silent.
     pub candidates: Option<Count>,
-    /// How many evaluations of the objective at most; 200000 where silent.
+    /// The largest number of evaluations of the objective; 200000 where silent.
     pub evaluations: Option<Count>,
     /// Seconds at most, of search and advice together; a run that the clock ends cannot be repeated to the digit.
     pub time_limit_s: Option<Number>,
@@ -159,13 +160,13 @@ pub(crate) struct RawSolve {
     pub differential_evolution: OnlyTable<DifferentialEvolutionParameters>,
 }
 
-/// How a certificate is worked out.
+/// The options of a certificate.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Certify")]
 pub(crate) struct RawCertify {
-    /// How far below the best candidate the proved bound may be, relative, between 0 and 1; 1e-4 where silent.
+    /// The relative gap allowed between the best candidate and the proved bound, between 0 and 1; 1e-4 where silent.
     pub gap: Option<Number>,
-    /// Seconds at most, up to 1e6; what is proved by then stands; 300 where silent.
+    /// Seconds at most, up to 1e6; what is proved by then counts; 300 where silent.
     pub time_limit_s: Option<Number>,
 }

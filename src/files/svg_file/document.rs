@@ -3,7 +3,6 @@
 use super::element::Element;
 use super::viewport;
 use super::viewport::Page;
-use super::{MAX_DEPTH, MAX_ELEMENTS};
 use crate::files::diagnostic::{Checked, Diagnostic, quoted};
 use kurbo::{Affine, BezPath, Vec2};
 use roxmltree::Node;
@@ -12,6 +11,10 @@ use std::ops::Range;
 
 const SVG: &str = "http://www.w3.org/2000/svg";
 const XLINK: &str = "http://www.w3.org/1999/xlink";
+/// The largest number of elements of a drawing, each use of an element counted.
+pub(super) const MAX_ELEMENTS: u32 = 200_000;
+/// The largest depth of nested elements and uses.
+const MAX_DEPTH: usize = 128;
 /// The largest number of shapes that a message lists.
 const NAMED: usize = 8;
 
@@ -29,17 +32,19 @@ pub(super) struct Chosen {
     pub transform: Affine,
     /// The place of its element in the text.
     pub place: Range<usize>,
+    /// A warning if there are other shapes.
+    pub warning: Option<Diagnostic>,
 }
 
 /// A drawing that is being read.
 pub(super) struct Document<'a, 'input> {
     file: &'a str,
     text: &'a str,
-    page: Page,
+    /// The placement of the drawing as a whole.
+    pub page: Page,
     root: Node<'a, 'input>,
     ids: BTreeMap<&'a str, Node<'a, 'input>>,
     visited: u32,
-    warnings: Vec<Diagnostic>,
 }
 
 /// Returns whether an element is a container: a group, a symbol or a drawing inside another.
@@ -73,31 +78,20 @@ impl<'a, 'input> Document<'a, 'input> {
                 ids.entry(id).or_insert(node);
             }
         }
-        let page = Page { affine: Affine::IDENTITY, physical: false, extent: None };
-        let mut document = Document { file, text, page, root, ids, visited: 0, warnings: Vec::new() };
-        let element = document.element(root, None);
+        let element = Element { file, text, node: root, extent: None };
         if name_of(&root) != "svg" {
             let found = quoted(root.tag_name().name());
             let message = format!("this is no SVG drawing: its first element is {found}");
             return Err(element.refuse(message, "save the drawing as (plain) SVG"));
         }
         let (width, height) = (element.page_size("width")?, element.page_size("height")?);
-        document.page = viewport::page(width, height, element.view()?, element.aspect()?);
-        Ok(document)
+        let page = viewport::page(width, height, element.view()?, element.aspect()?);
+        Ok(Document { file, text, page, root, ids, visited: 0 })
     }
 
     /// Returns an element; percentages in it refer to `extent`.
     fn element(&self, node: Node<'a, 'input>, extent: Option<Vec2>) -> Element<'a, 'input> {
         Element { file: self.file, text: self.text, node, extent }
-    }
-
-    /// Returns whether lengths are physical.
-    pub fn physical(&self) -> bool {
-        self.page.physical
-    }
-
-    pub fn into_warnings(self) -> Vec<Diagnostic> {
-        self.warnings
     }
 
     /// Returns the shape with an id, or the first.
@@ -123,14 +117,13 @@ impl<'a, 'input> Document<'a, 'input> {
                 let Some(outline) = element.outline()? else { continue };
                 // The first shape is read as a whole; of the others only the place is reported.
                 let others: Vec<Node<'_, '_>> = wanted.map(|placed| placed.element.node).collect();
-                if !others.is_empty() {
+                let warning = (!others.is_empty()).then(|| {
                     let (first, list) = (self.describe(&element.node), self.list(&others));
                     let count = 1 + others.len();
                     let message = format!("the drawing has {count} shapes; the target is the first, {first}");
-                    let help = format!("svg_id = \"..\" names another one: {list}");
-                    self.warnings.push(*element.refuse(message, &help));
-                }
-                return Ok(Chosen { outline, transform: *transform, place: element.tag() });
+                    *element.refuse(message, &format!("svg_id = \"..\" names another one: {list}"))
+                });
+                return Ok(Chosen { outline, transform: *transform, place: element.tag(), warning });
             }
         }
         Err(self.nothing_drawn(id))

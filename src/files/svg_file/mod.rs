@@ -15,17 +15,12 @@ mod viewport;
 use crate::files::diagnostic::Diagnostic;
 use crate::files::input_text;
 use crate::mechanism::{MAX_MAGNITUDE, Unit};
+use document::MAX_ELEMENTS;
 use std::borrow::Cow;
 use std::path::Path;
 
 /// The default number of points of a drawing.
 pub const DEFAULT_SAMPLES: usize = 60;
-/// The largest number of elements of a drawing, each use of an element counted.
-pub const MAX_ELEMENTS: u32 = 200_000;
-/// The largest depth of nested elements and uses.
-pub const MAX_DEPTH: usize = 128;
-/// The largest number of segments of a shape, arcs counted once.
-pub const MAX_SEGMENTS: usize = 100_000;
 
 /// The beginning of a document type.
 const DOCTYPE: &str = "<!DOCTYPE";
@@ -101,7 +96,7 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
         roxmltree::Document::parse_with_options(&plain, xml).map_err(|error| not_xml(file, text, &error))?;
     let mut document = document::Document::new(file, text, &parsed)?;
     let chosen = document.target(options.id)?;
-    let scale = match (document.physical(), options.unit.unwrap_or(Unit::Mm)) {
+    let scale = match (document.page.physical, options.unit.unwrap_or(Unit::Mm)) {
         (false, _) | (true, Unit::Mm) => 1.0,
         (true, Unit::Cm) => 0.1,
         (true, Unit::M) => 0.001,
@@ -136,9 +131,9 @@ pub fn parse(file: &str, text: &str, options: &SvgOptions<'_>) -> Result<SvgTarg
         file: file.to_owned(),
         points: curve.samples(options.samples),
         closed: curve.closed(),
-        unit: document.physical().then(|| options.unit.unwrap_or(Unit::Mm)),
+        unit: document.page.physical.then(|| options.unit.unwrap_or(Unit::Mm)),
         length: curve.length(),
-        warnings: document.into_warnings(),
+        warnings: chosen.warning.into_iter().collect(),
     })
 }
 

@@ -1,8 +1,12 @@
-//! Path data: each command draws from the current point of the pen (SVG 1.1, 8.3).
+//! Draws path data: each command draws from the current point of the pen (SVG 1.1, 8.3).
+//!
+//! Arcs become cubics whose distance from the ellipse is below 1e-11 of its radius.
 
-use super::shape::arc_to;
-use kurbo::{BezPath, PathEl, Point, QuadBez, Vec2};
+use kurbo::{Affine, Arc, BezPath, PathEl, Point, QuadBez, SvgArc, Vec2};
 use svgtypes::PathSegment;
+
+/// The largest distance of a cubic from its ellipse, in radii.
+const ARC_TOLERANCE: f64 = 1e-11;
 
 /// A pen, which draws the segments of path data.
 #[derive(Default)]
@@ -98,4 +102,48 @@ impl Pen {
             }
         }
     }
+}
+
+/// Adds an elliptical arc of a path (SVG 1.1, F.6): scaled so that its chord is 1, because kurbo's tests for straight
+/// arcs are absolute. The path ends at `from`.
+pub(super) fn arc_to(
+    path: &mut BezPath,
+    from: Point,
+    to: Point,
+    radii: Vec2,
+    rotation_deg: f64,
+    large_arc: bool,
+    sweep: bool,
+) {
+    let chord = to.distance(from);
+    let (rx, ry) = (radii.x.abs(), radii.y.abs());
+    if chord == 0.0 {
+        return;
+    }
+    if rx == 0.0 || ry == 0.0 {
+        return path.line_to(to);
+    }
+    // The standard scales up radii that are too small to reach; only their ratio matters then.
+    let largest = rx.max(ry);
+    let scale = if largest < 0.5 * chord { 0.5 / largest } else { 1.0 / chord };
+    let unit = SvgArc {
+        from: Point::ORIGIN,
+        to: ((to - from) / chord).to_point(),
+        radii: Vec2::new(rx, ry) * scale,
+        x_rotation: rotation_deg.rem_euclid(360.0).to_radians(),
+        large_arc,
+        sweep,
+    };
+    let Some(arc) = Arc::from_svg_arc(&unit) else { return path.line_to(to) };
+    let back = Affine::translate(from.to_vec2()) * Affine::scale(chord);
+    path.extend(arc.append_iter(tolerance(&arc)).map(|curve| back * curve));
+    // The end is exactly as it was written.
+    if let Some(PathEl::CurveTo(_, _, end)) = path.elements_mut().last_mut() {
+        *end = to;
+    }
+}
+
+/// Returns the tolerance of an arc's cubics.
+pub(super) fn tolerance(arc: &Arc) -> f64 {
+    ARC_TOLERANCE * arc.radii.x.abs().max(arc.radii.y.abs())
 }

@@ -1,64 +1,17 @@
 //! Converts a shape into the curve that it draws, in its own coordinates: lines and cubic curves.
-//!
-//! Arcs become cubics whose distance from the ellipse is below 1e-11 of its radius.
 
-use super::MAX_SEGMENTS;
 use super::element::Element;
-use super::pen::Pen;
+use super::pen::{Pen, arc_to, tolerance};
 use crate::files::diagnostic::{Checked, Diagnostic};
 use crate::mechanism::MAX_MAGNITUDE;
-use kurbo::{Affine, Arc, BezPath, Line, PathEl, Point, Shape, SvgArc, Vec2};
+use kurbo::{Arc, BezPath, PathEl, Point, Shape, Vec2};
 use std::f64::consts::TAU;
 use svgtypes::{NumberListParser, PathParser};
 
-/// The largest distance of a cubic from its ellipse, in radii.
-const ARC_TOLERANCE: f64 = 1e-11;
+/// The largest number of segments of a shape, arcs counted once.
+const MAX_SEGMENTS: usize = 100_000;
 /// The help text for lists of points.
 const PAIRS: &str = "write pairs of numbers: 0,0 10,5 20,0";
-
-/// Adds an elliptical arc of a path (SVG 1.1, F.6): scaled so that its chord is 1, because kurbo's tests for straight
-/// arcs are absolute. The path ends at `from`.
-pub(super) fn arc_to(
-    path: &mut BezPath,
-    from: Point,
-    to: Point,
-    radii: Vec2,
-    rotation_deg: f64,
-    large_arc: bool,
-    sweep: bool,
-) {
-    let chord = to.distance(from);
-    let (rx, ry) = (radii.x.abs(), radii.y.abs());
-    if chord == 0.0 {
-        return;
-    }
-    if rx == 0.0 || ry == 0.0 {
-        return path.line_to(to);
-    }
-    // The standard scales up radii that are too small to reach; only their ratio matters then.
-    let largest = rx.max(ry);
-    let scale = if largest < 0.5 * chord { 0.5 / largest } else { 1.0 / chord };
-    let unit = SvgArc {
-        from: Point::ORIGIN,
-        to: ((to - from) / chord).to_point(),
-        radii: Vec2::new(rx, ry) * scale,
-        x_rotation: rotation_deg.rem_euclid(360.0).to_radians(),
-        large_arc,
-        sweep,
-    };
-    let Some(arc) = Arc::from_svg_arc(&unit) else { return path.line_to(to) };
-    let back = Affine::translate(from.to_vec2()) * Affine::scale(chord);
-    path.extend(arc.append_iter(tolerance(&arc)).map(|curve| back * curve));
-    // The end is exactly as it was written.
-    if let Some(PathEl::CurveTo(_, _, end)) = path.elements_mut().last_mut() {
-        *end = to;
-    }
-}
-
-/// Returns the tolerance of an arc's cubics.
-fn tolerance(arc: &Arc) -> f64 {
-    ARC_TOLERANCE * arc.radii.x.abs().max(arc.radii.y.abs())
-}
 
 impl Element<'_, '_> {
     /// Returns the curve of a shape; `None` if it draws nothing.
@@ -85,7 +38,7 @@ impl Element<'_, '_> {
     fn line(&self) -> Checked<Option<BezPath>> {
         let from = Point::new(self.or_zero("x1", 'x')?, self.or_zero("y1", 'y')?);
         let to = Point::new(self.or_zero("x2", 'x')?, self.or_zero("y2", 'y')?);
-        Ok((from != to).then(|| Line::new(from, to).to_path(ARC_TOLERANCE)))
+        Ok((from != to).then(|| BezPath::from_vec(vec![PathEl::MoveTo(from), PathEl::LineTo(to)])))
     }
 
     fn ellipse(&self, x_radius: &str, y_radius: &str) -> Checked<Option<BezPath>> {

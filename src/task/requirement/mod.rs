@@ -223,7 +223,7 @@ impl Refusal {
     }
 }
 
-/// What an acceptable linkage satisfies.
+/// The requirements on a linkage.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Require")]
@@ -233,7 +233,7 @@ pub(crate) struct RawRequire {
     pub types: Option<OneOrMore<LinkageType>>,
     /// The least transmission angle allowed, min(mu, 180 - mu), 0 to 90 degrees; where silent, any.
     pub transmission_deg_min: Option<Number>,
-    /// Over which motion it is judged; where silent, the cycle where the crank turns fully.
+    /// The motion over which it is judged; where silent, the cycle where the crank turns fully.
     pub transmission_over: Option<TransmissionOver>,
     /// The longest over the shortest of ground, a, b, c at most; where silent, 20.
     pub link_ratio_max: Option<Number>,
@@ -248,7 +248,7 @@ pub(crate) struct RawRequire {
     /// Whether the points must be passed in order.
     #[serde(default)]
     pub order: OrderPolicy,
-    /// Which way the crank turns.
+    /// The direction in which the crank turns.
     #[serde(default)]
     pub direction: DirectionPolicy,
     /// Whether the motion must stay on one circuit.
@@ -257,12 +257,12 @@ pub(crate) struct RawRequire {
     /// Whether the motion must stay on one branch.
     #[serde(default)]
     pub branch: OnePolicy,
-    /// How a target that ends where it begins is closed.
+    /// The way back to the first point of a target that ends where it begins.
     #[serde(default)]
     pub closing: ClosingPolicy,
 }
 
-/// What an acceptable linkage satisfies.
+/// The requirements on a linkage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireSpec {
     /// The types allowed; empty: any.
@@ -271,7 +271,7 @@ pub struct RequireSpec {
     /// The least of min(mu, 180 - mu) over the motion, degrees.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transmission_deg_min: Option<f64>,
-    /// Over which motion; absent: the cycle where the input turns fully, else the used part.
+    /// The motion over which it is judged; absent: the cycle where the input turns fully, else the used part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub transmission_over: Option<TransmissionOver>,
     /// Longest over shortest of ground, a, b, c.
@@ -290,14 +290,14 @@ pub struct RequireSpec {
     pub longest_max: Option<f64>,
     /// Whether the points must be passed in order.
     pub order: OrderPolicy,
-    /// Which way the crank turns.
+    /// The direction in which the crank turns.
     pub direction: DirectionPolicy,
     /// Whether the motion must stay on one circuit.
     pub circuit: OnePolicy,
     /// Whether the motion must stay on one branch.
     pub branch: OnePolicy,
-    /// How a target that ends where it begins is closed; absent where it is the default, so that records from before
-    /// there was a choice keep their digest.
+    /// The way back to the first point of a target that ends where it begins; absent if it is the default, so that
+    /// records from before there was a choice keep their digest.
     #[serde(default, skip_serializing_if = "ClosingPolicy::is_one_way")]
     pub closing: ClosingPolicy,
 }
@@ -314,22 +314,9 @@ impl RequireSpec {
 }
 
 impl Default for RequireSpec {
+    /// Returns the requirements of a problem file that is silent about them.
     fn default() -> Self {
-        RequireSpec {
-            types: Vec::new(),
-            transmission_deg_min: None,
-            transmission_over: None,
-            link_ratio_max: DEFAULT_LINK_RATIO,
-            pivots_in: None,
-            footprint_in: None,
-            extent_max: None,
-            longest_max: None,
-            order: OrderPolicy::default(),
-            direction: DirectionPolicy::default(),
-            circuit: OnePolicy::default(),
-            branch: OnePolicy::default(),
-            closing: ClosingPolicy::default(),
-        }
+        RawRequire::default().into()
     }
 }
 

@@ -5,7 +5,7 @@ use crate::task::spec::TimingSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Over which motion the transmission angle is judged.
+/// The motion over which the transmission angle is judged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum TransmissionOver {
