@@ -12,7 +12,7 @@
 //! explain the gradient, or not uniquely, no rate is given. Errors are sqrt(f / sum_j w_j), so that d(rms) = df / (2 W
 //! rms).
 
-use super::loosen::Demand;
+use super::loosen::design_limits;
 use super::rank::exact_objective;
 use super::warm::start_at;
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
@@ -23,7 +23,7 @@ use crate::task::forms::rows::{Motion, Requirements, RowKind, Side};
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::TorusFit;
 use crate::task::requirement::RequirementKind;
-use crate::task::spec::Objective;
+use crate::task::spec::{Limits, Objective};
 use crate::task::{Problem, Setting};
 
 /// Distance from a row's limit, in parts of the target's size, within which the row is active.
@@ -157,12 +157,8 @@ impl At<'_> {
         for (place, &(i, by)) in unknowns.iter().enumerate() {
             let Some((name, is_angle)) = space.coordinate(i) else { continue };
             let (low, high) = space.bounds()[i];
-            let given = Demand::named(&format!("design.{name}"))
-                .and_then(|demand| demand.limits(self.problem.spec()))
-                .map(|limits| {
-                    let first = if matches!(name, "Ay" | "By") { 2 } else { 0 };
-                    [limits[first].value, limits[first + 1].value]
-                });
+            let row = format!("design.{name}");
+            let given = design_limits(&self.problem.spec().design, &row).map(|Limits(low, high)| [low, high]);
             let unit = if is_angle { 1f64.to_radians() } else { 1.0 };
             for (bound, sign, side) in [(low, 1.0, "min"), (high, -1.0, "max")] {
                 if (self.x[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
@@ -222,14 +218,12 @@ impl At<'_> {
                     Derived::CrankSide => "d",
                     Derived::FollowerSide => "e",
                 };
-                let demand = Demand::named(&format!("design.{name}"))?;
-                let limits = demand.limits(self.problem.spec())?;
+                let Limits(low, high) = design_limits(&spec.design, &format!("design.{name}"))?;
                 let is_angle = quantity == Derived::GroundAngle;
                 let side = if lower { "min" } else { "max" };
-                let fixed = limits[0].value == limits[1].value;
                 let by_room = if is_angle { size * 1f64.to_radians() } else { 1.0 };
-                let label = self.design_label(name, side, limits[usize::from(!lower)].value, is_angle);
-                (!fixed).then_some(Label { by_room, ..label })
+                let label = self.design_label(name, side, if lower { low } else { high }, is_angle);
+                (low != high).then_some(Label { by_room, ..label })
             }
         }
     }

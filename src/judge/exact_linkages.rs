@@ -60,8 +60,7 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
     let mut to_curve = None;
     let mut forms = Vec::with_capacity(list.len());
     for mechanism in list.iter().filter(|m| m.passes) {
-        let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
-        let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+        let (crank_deg, t1_at) = positions(problem, mechanism);
         // All six draw one curve, and on it one circuit through the first point: its distances are known after the
         // first.
         if depth == Depth::Glance {
@@ -105,6 +104,12 @@ fn at_points(
         rms: rms(error.sum_sq, problem.task().len()),
         max: error.max,
     })
+}
+
+/// Returns the crank angles, degrees, and the assemblies of a mechanism as a candidate has them.
+fn positions(problem: &Problem, mechanism: &Mechanism) -> (Vec<f64>, Vec<AssemblyMode>) {
+    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
+    unwrapped(problem, &mechanism.linkage, angles, assemblies)
 }
 
 impl Class {
@@ -212,8 +217,7 @@ fn is_settled(problem: &Problem, mechanism: &Mechanism) -> bool {
 /// Returns a mechanism with its type and its defects, its crank angles moved by `by` (radians) to and fro from point to
 /// point; `None` if its links are those of no type.
 fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> {
-    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
-    let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+    let (crank_deg, t1_at) = positions(problem, mechanism);
     let signs = [1.0, -1.0].into_iter().cycle();
     let radians: Vec<f64> =
         crank_deg.iter().zip(signs).map(|(deg, sign)| deg.to_radians() + sign * by).collect();

@@ -1,7 +1,7 @@
 //! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
 //! and by their coupler curves.
 
-use crate::mechanism::{Complex, CouplerCurve};
+use crate::mechanism::{Complex, CouplerCurve, from_segment};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -117,18 +117,8 @@ fn span(joints: &Joints) -> f64 {
 
 /// Returns whether a curve lies within `reach` of a closed polygon.
 fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
-    let near = |p: &Complex| {
-        (0..polygon.len()).any(|i| {
-            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-            let (along, v) = (to - from, p - from);
-            let length_sq = along.norm_sqr();
-            let part = if length_sq > 0.0 {
-                ((v.re * along.re + v.im * along.im) / length_sq).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            (v - along * part).norm_sqr() <= reach * reach
-        })
-    };
+    let side = |i: usize| [polygon[i], polygon[(i + 1) % polygon.len()]];
+    let near =
+        |p: &Complex| (0..polygon.len()).any(|i| from_segment(*p, side(i)).norm_sqr() <= reach * reach);
     curve.iter().step_by(PROBE_EVERY).all(near)
 }

@@ -90,7 +90,6 @@ impl Words {
     pub(super) fn layers(&self, layering: &Layering) -> Vec<String> {
         let mut out = Vec::new();
         let mut line = |text: &str| out.push(text.to_owned());
-        let (_, crossed) = layering.obstacles();
         match &layering.stack {
             Some(stack) => {
                 line(&format!("{} layers, from below: {}.", stack.layers.len(), in_layers(stack)));
@@ -109,7 +108,7 @@ impl Words {
                 for pair in &layering.free_pairs {
                     line(&self.pair(pair));
                 }
-                for p in &crossed {
+                for p in layering.crossings() {
                     line(&self.crossing(p));
                 }
                 line(
@@ -150,7 +149,7 @@ impl Words {
         &self,
         layering: &Layering,
         stack: &Stack,
-        pin: crate::judge::practicality::Pin,
+        pin: crate::judge::practicality::Joint,
         layer: usize,
     ) -> String {
         let beside: Vec<String> = stack.layers[layer]

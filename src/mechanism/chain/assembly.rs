@@ -3,9 +3,8 @@
 use super::builder::{ChainBuilder, MAX_POINT_NAME};
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
 use super::{coincident_sq, fixed_line};
-use crate::mechanism::{
-    AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, point,
-};
+use crate::mechanism::four_bar::coupler_ratio;
+use crate::mechanism::{Complex, CouplerSide, LinkageError, MAX_MAGNITUDE, point};
 use std::collections::HashMap;
 
 /// The points of a link with their places in the link's own frame.
@@ -303,27 +302,17 @@ fn offset_from_distances(
     [d, e]: [f64; 2],
     side: CouplerSide,
 ) -> Assembled<Complex> {
-    let triangle = FourBar::new(NaturalCoordinates {
-        crank_pivot: [0.0, 0.0],
-        follower_pivot: [0.0, 0.0],
-        crank: 1.0,
-        coupler: base,
-        follower: 1.0,
-        crank_side: d,
-        follower_side: e,
-        assembly: AssemblyMode::Plus,
-        side,
-    });
-    triangle.map(|t| t.coupler_offset()).map_err(|error| match error {
-        LinkageError::DistanceNegative { key, value } => {
-            site.key("distances").nth(usize::from(key == "e")).error(ChainFault::DistanceNegative { value })
+    let key = site.key("distances");
+    if !is_usable(base) {
+        return Err(key.error(ChainFault::NotFinite { value: base }));
+    }
+    coupler_ratio(base, [d, e], side).map(|z| z * base).map_err(|error| match error {
+        LinkageError::DistanceNegative { key: letter, value } => {
+            key.nth(usize::from(letter == "e")).error(ChainFault::DistanceNegative { value })
         }
-        LinkageError::NotFinite { value, .. } | LinkageError::LengthNotPositive { value, .. } => {
-            site.key("distances").error(ChainFault::NotFinite { value })
-        }
-        LinkageError::NoCouplerTriangle { b, d, e } => {
+        _ => {
             let (first, second) = (first.clone(), second.clone());
-            site.key("distances").error(ChainFault::NoTriangle { first, second, base: b, d, e })
+            key.error(ChainFault::NoTriangle { first, second, base, d, e })
         }
     })
 }
