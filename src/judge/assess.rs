@@ -53,7 +53,7 @@ pub fn assess_on_curve(
     let error = task.errors(linkage, &crank_angles, assemblies)?;
     let to_curve = match to_curve {
         Some(known) => known,
-        None => task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?,
+        None => distances_to_curve(task.points(), linkage, crank_angles[0], assemblies[0])?,
     };
     let verdict = judge(task, linkage, &crank_angles, assemblies);
     let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {

@@ -23,7 +23,7 @@ use crate::task::forms::rows::{Motion, Requirements, RowKind, Side};
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::TorusFit;
 use crate::task::requirement::RequirementKind;
-use crate::task::spec::{Limits, Objective};
+use crate::task::spec::Objective;
 use crate::task::{Problem, Setting};
 
 /// Distance from a row's limit, in parts of the target's size, within which the row is active.
@@ -158,38 +158,34 @@ impl At<'_> {
             let Some((name, is_angle)) = space.coordinate(i) else { continue };
             let (low, high) = space.bounds()[i];
             let row = format!("design.{name}");
-            let given = design_limits(&self.problem.spec().design, &row).map(|Limits(low, high)| [low, high]);
+            let given = design_limits(&self.problem.spec().design, &row);
             let unit = if is_angle { 1f64.to_radians() } else { 1.0 };
-            for (bound, sign, side) in [(low, 1.0, "min"), (high, -1.0, "max")] {
+            let sides = [(low, given.map(|g| g.0), 1.0, "min"), (high, given.map(|g| g.1), -1.0, "max")];
+            for (bound, given, sign, side) in sides {
                 if (self.x[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
                     continue;
                 }
-                let set = given.map(|limits| limits[usize::from(sign < 0.0)]);
-                let is_set = set.is_some_and(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());
-                let from_box = self.problem.spec().require.pivots_in.is_some() && i < 4 && !is_set;
-                if from_box && matches!(name, "Ax" | "Ay" | "Bx" | "By") {
+                let set = given.filter(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());
+                let is_pivot = matches!(name, "Ax" | "Ay" | "Bx" | "By");
+                if is_pivot && set.is_none() && self.problem.spec().require.pivots_in.is_some() {
                     continue;
                 }
                 let mut gradient = vec![0.0; unknowns.len()];
                 gradient[place] = sign * by;
-                let label =
-                    set.filter(|_| is_set).map(|limit| self.design_label(name, side, limit, is_angle));
-                active.push(Active {
-                    gradient,
-                    moved_by_points: false,
-                    label: label.map(|l| Label { by_room: unit, ..l }),
-                });
+                let label = set.map(|limit| self.design_label(&row, side, limit, unit));
+                active.push(Active { gradient, moved_by_points: false, label });
             }
         }
     }
 
-    fn design_label(&self, name: &str, side: &'static str, limit: f64, is_angle: bool) -> Label {
+    fn design_label(&self, name: &str, side: &'static str, limit: f64, by_room: f64) -> Label {
+        let is_angle = name == "design.ground_angle_deg";
         Label {
-            name: format!("design.{name}"),
+            name: name.to_owned(),
             side: Some(side),
             limit,
             unit: if is_angle { LimitUnit::Degree } else { LimitUnit::Length },
-            by_room: 1.0,
+            by_room,
             scale: if is_angle { 90.0 } else { self.problem.task().size() },
         }
     }
@@ -212,18 +208,15 @@ impl At<'_> {
                 Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
             }
             RowKind::Derived(quantity, lower) => {
-                let name = match quantity {
-                    Derived::Ground => "ground",
-                    Derived::GroundAngle => "ground_angle_deg",
-                    Derived::CrankSide => "d",
-                    Derived::FollowerSide => "e",
+                let (name, by_room) = match quantity {
+                    Derived::Ground => ("design.ground", 1.0),
+                    Derived::GroundAngle => ("design.ground_angle_deg", size * 1f64.to_radians()),
+                    Derived::CrankSide => ("design.d", 1.0),
+                    Derived::FollowerSide => ("design.e", 1.0),
                 };
-                let Limits(low, high) = design_limits(&spec.design, &format!("design.{name}"))?;
-                let is_angle = quantity == Derived::GroundAngle;
-                let side = if lower { "min" } else { "max" };
-                let by_room = if is_angle { size * 1f64.to_radians() } else { 1.0 };
-                let label = self.design_label(name, side, if lower { low } else { high }, is_angle);
-                (low != high).then_some(Label { by_room, ..label })
+                let limits = design_limits(&spec.design, name).filter(|limits| !limits.is_fixed())?;
+                let (side, limit) = if lower { ("min", limits.0) } else { ("max", limits.1) };
+                Some(self.design_label(name, side, limit, by_room))
             }
         }
     }

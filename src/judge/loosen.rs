@@ -1,7 +1,7 @@
 //! Relaxation of a problem: each requirement as limits with an outward side.
 
 use crate::judge::assess::assess;
-use crate::record::{Candidate, Change, Figure, TypedValue};
+use crate::record::{Candidate, Change, TypedValue};
 use crate::task::Problem;
 use crate::task::requirement::{Choice, Limit, RequirementKind};
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, ProblemSpec, RequireSpec};
@@ -144,27 +144,21 @@ impl Demand {
                 spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
             }
             (policy, TypedValue::Word(word)) if policy.is_policy() => word == "any",
-            (Demand::Design(_), to) => {
+            (demand, to) => {
+                let is_design = matches!(demand, Demand::Design(_));
                 let values = match to {
-                    TypedValue::Number(value) => vec![*value; 2],
+                    TypedValue::Number(value) => vec![*value],
                     TypedValue::Numbers(values) => values.clone(),
-                    TypedValue::Pairs(pairs) => pairs.concat(),
-                    TypedValue::Word(_) | TypedValue::Words(_) => return false,
+                    TypedValue::Pairs(pairs) if is_design => pairs.concat(),
+                    TypedValue::Pairs(_) | TypedValue::Word(_) | TypedValue::Words(_) => return false,
                 };
                 self.limits(spec).is_some_and(|limits| {
-                    // A pivot that is fixed is typed as its two coordinates.
-                    let fixed = limits.len() == 2 * values.len();
+                    // A fixed length is typed as one number, a fixed pivot as its two coordinates.
+                    let fixed = is_design && limits.len() == 2 * values.len();
                     let values = if fixed { values.iter().flat_map(|v| [*v; 2]).collect() } else { values };
                     reach_out(&limits, &values)
                 })
             }
-            (_, TypedValue::Number(value)) => {
-                self.limits(spec).is_some_and(|limits| reach_out(&limits, &[*value]))
-            }
-            (_, TypedValue::Numbers(values)) => {
-                self.limits(spec).is_some_and(|limits| reach_out(&limits, values))
-            }
-            _ => false,
         }
     }
 
@@ -180,12 +174,12 @@ impl Demand {
         };
         let mut values = Vec::new();
         for row in rows {
-            match &row?.value {
+            let numbers = row?.value.numbers();
+            match self {
+                _ if numbers.is_empty() => return None,
                 // Bounds have two limits for one value.
-                Figure::Number(value) if matches!(self, Demand::Design(_)) => values.extend([*value; 2]),
-                Figure::Number(value) => values.push(*value),
-                Figure::Numbers(several) => values.extend(several),
-                Figure::Word(_) | Figure::Words(_) => return None,
+                Demand::Design(_) => values.extend(numbers.iter().flat_map(|value| [*value; 2])),
+                Demand::Require(_) => values.extend(numbers),
             }
         }
         Some(values)

@@ -84,10 +84,7 @@ macro_rules! sign_type {
 
         impl From<$name> for i64 {
             fn from(value: $name) -> i64 {
-                match value {
-                    $name::Plus => 1,
-                    $name::Minus => -1,
-                }
+                value.sign() as i64
             }
         }
 
