@@ -231,6 +231,7 @@ impl At<'_> {
         let columns: Vec<Vec<f64>> = (0..active.len()).map(unit).collect();
         let found = nonnegative_least_squares(&columns, gradient);
         let told = !active.iter().zip(&found.values).any(|(a, m)| a.moved_by_points && *m > 0.0);
+        let size: f64 = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         let whole: f64 = self.problem.task().weights().iter().sum();
         let rms = weighted_rms(self.problem, self.candidate.error.objective);
         let mut labels: Vec<&Label> = Vec::new();
@@ -252,13 +253,14 @@ impl At<'_> {
             if -rate * label.scale <= NEGLIGIBLE * rms {
                 continue;
             }
-            if !found.sensitivity.is_finite()
-                || others_explain(active, &columns, gradient, found.residual, &own)
-            {
-                // Another limit restricts in the same way: moving this one alone gains nothing.
-                continue;
-            }
-            if told && !known {
+            // If the others explain the optimum without it, another limit restricts in the same way: moving this one
+            // alone gains nothing.
+            let others = active.iter().zip(&columns).filter(|(a, _)| !own(a));
+            let others: Vec<Vec<f64>> = others.map(|(_, column)| column.clone()).collect();
+            let without = || nonnegative_least_squares(&others, gradient).residual;
+            let explained =
+                !found.sensitivity.is_finite() || without() <= 10.0 * found.residual + 1e-9 * size;
+            if explained || told && !known {
                 continue;
             }
             costs.push(Cost {
@@ -272,19 +274,4 @@ impl At<'_> {
         }
         costs
     }
-}
-
-/// Returns whether the gradient is explained as well without the rows of a label. (Of a known multiplier the rest would
-/// be fifty times the residual.)
-fn others_explain(
-    active: &[Active],
-    columns: &[Vec<f64>],
-    gradient: &[f64],
-    residual: f64,
-    own: &dyn Fn(&Active) -> bool,
-) -> bool {
-    let others: Vec<Vec<f64>> =
-        active.iter().zip(columns).filter(|(a, _)| !own(a)).map(|(_, column)| column.clone()).collect();
-    let size: f64 = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-    nonnegative_least_squares(&others, gradient).residual <= 10.0 * residual + 1e-9 * size
 }

@@ -183,16 +183,15 @@ pub fn class_at(
         return None;
     }
     let settled: Vec<bool> = list.iter().map(|m| is_settled(problem, m)).collect();
+    let all = || list.iter().zip(settled.iter().copied());
     let beyond_doubt = |m: &Mechanism, settled: bool| settled && m.miss_over_limit <= BEYOND_DOUBT;
     let ability = |defects: &[&str]| {
         let can = |m: &Mechanism| !m.defects.iter().any(|defect| defects.contains(&defect.name()));
-        let all = || list.iter().zip(settled.iter().copied());
         Ability {
             certain: all().any(|(m, settled)| beyond_doubt(m, settled) && can(m)),
             possible: all().any(|(m, settled)| !settled || can(m)),
         }
     };
-    let forms = list.iter().zip(settled.iter().copied());
     Some(Recomputed {
         judged: assess(problem, linkage, crank_deg, t1_at),
         abilities: [
@@ -200,7 +199,7 @@ pub fn class_at(
             ability(&["circuit", "order"]),
             ability(&["circuit", "order", "branch"]),
         ],
-        forms: forms
+        forms: all()
             .filter_map(|(m, settled)| Some((form(problem, m, 0.0)?, beyond_doubt(m, settled))))
             .collect(),
     })

@@ -170,9 +170,9 @@ fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
                 assert!(p.closest.value < 0.0, "{i}: {p:?}");
             }
         }
-        for p in &found.pins {
-            let of = |j: &Joints| (p.pins[0].at(&l, j) - p.pins[1].at(&l, j)).norm() - 2.0 * build.pin_radius;
-            check("pins", &p.closest, least(&of));
+        for ([one, other], closest) in &found.pins {
+            let of = |j: &Joints| (one.at(&l, j) - other.at(&l, j)).norm() - 2.0 * build.pin_radius;
+            check("pins", closest, least(&of));
         }
     }
 }
@@ -259,7 +259,7 @@ fn the_fewest_layers_are_those_of_every_stacking_tried_by_brute_force() {
         let near =
             found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));
         if near
-            .chain(found.pins.iter().map(|p| p.closest))
+            .chain(found.pins.iter().map(|(_, closest)| *closest))
             .any(|c| c.value.abs() < 2.0 * MARGIN * l.longest_link())
         {
             continue;

@@ -65,9 +65,7 @@ impl CheckError {
     pub fn is_refuted(&self) -> bool {
         !matches!(self, CheckError::Leaf { .. } | CheckError::Stopped)
     }
-}
 
-impl CheckError {
     fn of(unproved: Unproved, part: usize) -> Self {
         match unproved {
             Unproved::Uncovered(what) => LeavesError::Uncovered { part, what }.into(),

@@ -37,15 +37,6 @@ pub struct PinPlate {
     pub closest: Closest,
 }
 
-/// Two pins, with the least distance between them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PinPair {
-    /// The two pins.
-    pub pins: [Joint; 2],
-    /// The least distance between their surfaces over the motion.
-    pub closest: Closest,
-}
-
 /// A stacking without crossings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stack {
@@ -63,7 +54,7 @@ pub struct Layering {
     /// Pins and the plates that they do not join.
     pub pins_plates: Vec<PinPlate>,
     /// Pairs of pins.
-    pub pins: Vec<PinPair>,
+    pub pins: Vec<([Joint; 2], Closest)>,
     /// The stacking of the fewest layers; of several the one whose pins pass through the fewest layers, then with the
     /// coupler outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
     pub stack: Option<Stack>,
@@ -89,7 +80,7 @@ pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
             pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
         }
         for other in Joint::PINS.into_iter().skip(i + 1) {
-            pins.push(PinPair { pins: [pin, other], closest: pieces.between_pins(pin, other)? });
+            pins.push(([pin, other], pieces.between_pins(pin, other)?));
         }
     }
     let mut layering = Layering { free_pairs, pins_plates, pins, stack: None };
@@ -153,7 +144,7 @@ impl Layering {
             let [one, other] = pins.map(|pin| between(places, pin));
             one.start.max(other.start) < one.end.min(other.end)
         };
-        let pins = self.pins.iter().all(|pair| !side_by_side(pair.pins) || clear(&pair.closest));
+        let pins = self.pins.iter().all(|(pair, closest)| !side_by_side(*pair) || clear(closest));
         apart && planes && plates && pins
     }
 

@@ -4,7 +4,7 @@ use super::Status;
 use crate::mechanism::Unit;
 use crate::mechanism::chain::{ChainInput, Motion, Outcome, PointId};
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::{Chain, Complex, least_and_greatest, xy};
+use crate::mechanism::{Chain, Complex, bounding_box, xy};
 use serde::Serialize;
 
 /// Number of crank angles from which the input range and the traced path are found.
@@ -99,9 +99,8 @@ pub fn analyze_chain(request: &ChainRequest) -> ChainAnalysis {
     let input = chain.input(CYCLE_SAMPLES);
     let path: Vec<Complex> = chain.path(chain.trace(), CYCLE_SAMPLES).into_iter().flatten().collect();
     let stroke = (!path.is_empty()).then(|| {
-        let [[x0, x1], [y0, y1]] =
-            [|p: &Complex| p.re, |p: &Complex| p.im].map(|of| least_and_greatest(path.iter().map(of)));
-        Stroke { low: [x0, y0], high: [x1, y1] }
+        let [low, high] = bounding_box(path.iter().copied()).map(xy);
+        Stroke { low, high }
     });
     let mut motion = chain.motion();
     let rows = request.crank_deg.iter().map(|deg| row(chain, *deg, request.input, &mut motion)).collect();

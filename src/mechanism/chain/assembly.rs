@@ -1,6 +1,6 @@
 //! Assembly of a chain from its named parts: every point's name resolved once, every part checked.
 
-use super::builder::{ChainBuilder, MAX_POINT_NAME};
+use super::builder::{ChainBuilder, MAX_POINT_NAME, MAX_STAGES};
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
 use super::{coincident_sq, fixed_line};
 use crate::mechanism::four_bar::coupler_ratio;
@@ -80,6 +80,10 @@ impl<'a> Assembly<'a> {
     /// Assembles the chain, without its source.
     pub(super) fn finish(mut self) -> Assembled<Chain> {
         let source = self.source;
+        let whole = Site { place: ChainPlace::Chain, joint: "" };
+        if source.stages.len() > MAX_STAGES {
+            return Err(whole.key("dyad").error(ChainFault::TooManyStages(source.stages.len())));
+        }
         for (name, at) in &source.pivots {
             let site = Site { place: ChainPlace::Pivot(name.clone()), joint: name };
             self.numbers(site.key("pivots"), at)?;
@@ -100,7 +104,6 @@ impl<'a> Assembly<'a> {
             let step = self.stage(&site, stage)?;
             self.steps.push(step);
         }
-        let whole = Site { place: ChainPlace::Chain, joint: "" };
         let trace = match &source.trace {
             Some(name) => self.find(whole.key("trace"), name)?,
             None => self.names.len() - 1,
