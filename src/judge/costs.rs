@@ -18,13 +18,14 @@ use super::warm::start_at;
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
+use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Shape};
-use crate::task::forms::rows::{Motion, Requirements, RowKind, Side};
+use crate::task::forms::rows::{Motion, RowKind, Side};
+use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::TorusFit;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
-use crate::task::{Problem, Setting};
 
 /// Distance from a row's limit, in parts of the target's size, within which the row is active.
 const ACTIVE: f64 = 1e-6;
@@ -76,27 +77,25 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
         return Vec::new();
     }
     let Some(start) = start_at(problem, candidate) else { return Vec::new() };
+    let space = problem.space(start.setting.side);
+    let Some(shape) = space.shape(&start.design) else { return Vec::new() };
+    let at = At { problem, candidate, start: &start, space: &space, shape: &shape };
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
-        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
-        let motion = fit.motion(&start.design, &shape);
-        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
-        at.costs(&fit, &(), fit.space(), fit.requirements(), &motion, false)
+        at.costs(&fit, &(), &fit.motion(&start.design, &shape))
     } else {
         let fit = TorusFit::new(problem, start.setting);
-        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
-        let motion = fit.motion(&shape, &start.positions);
-        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
-        at.costs(&fit, &start.positions, fit.space(), fit.requirements(), &motion, true)
+        at.costs(&fit, &start.positions, &fit.motion(&shape, &start.positions))
     }
 }
 
+/// A candidate with its place in the design space.
 struct At<'a> {
     problem: &'a Problem,
     candidate: &'a Candidate,
-    x: &'a Design,
+    start: &'a Start,
+    space: &'a DesignSpace,
     shape: &'a Shape,
-    setting: Setting,
 }
 
 impl At<'_> {
@@ -104,14 +103,13 @@ impl At<'_> {
         &self,
         fit: &F,
         state: &F::State,
-        space: &DesignSpace,
-        requirements: &Requirements,
         motion: &Motion<'_>,
-        free_timing: bool,
     ) -> Vec<Cost> {
         let size = self.problem.task().size();
+        let (space, design) = (self.space, &self.start.design);
+        let free_timing = !self.start.positions.is_empty();
         let mut kinds = Vec::new();
-        requirements.rows(self.setting.aim, self.shape, motion, &mut |row| {
+        self.problem.requirements(space).rows(self.start.setting.aim, self.shape, motion, &mut |row| {
             kinds.push((row.kind, free_timing && row.by_turn().abs() > MOVED_BY_POINTS * size));
         });
         // Unknowns that can move, lengths in sizes of the target.
@@ -122,7 +120,7 @@ impl At<'_> {
         let scaled = |row: &Design| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
         let mut active = Vec::new();
         let mut place = 0;
-        fit.constraints(self.x, state, &mut |row| {
+        fit.constraints(design, state, &mut |row| {
             let (kind, moved_by_points) = kinds[place];
             place += 1;
             if row.value <= ACTIVE * size {
@@ -130,12 +128,12 @@ impl At<'_> {
                 active.push(Active { gradient, moved_by_points, label: self.label(kind) });
             }
         });
-        self.bounds(space, &unknowns, &mut active);
+        self.bounds(&unknowns, &mut active);
         if active.is_empty() {
             return Vec::new();
         }
         let mut gradient = [0.0; DESIGN];
-        let complete = fit.linearise(self.x, state, &mut |block| {
+        let complete = fit.linearise(design, state, &mut |block| {
             let (t, r) = (block.tangent, block.residual);
             let t_sq = t[0] * t[0] + t[1] * t[1];
             let along = if t_sq > 0.0 { (t[0] * r[0] + t[1] * r[1]) / t_sq } else { 0.0 };
@@ -153,16 +151,16 @@ impl At<'_> {
     }
 
     /// Adds the active bounds of the design. Those that come from the box of the pivots are rows already.
-    fn bounds(&self, space: &DesignSpace, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
+    fn bounds(&self, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
         for (place, &(i, by)) in unknowns.iter().enumerate() {
-            let Some((name, is_angle)) = space.coordinate(i) else { continue };
-            let (low, high) = space.bounds()[i];
+            let Some((name, is_angle)) = self.space.coordinate(i) else { continue };
+            let (low, high) = self.space.bounds()[i];
             let row = format!("design.{name}");
             let given = design_limits(&self.problem.spec().design, &row);
             let unit = if is_angle { 1f64.to_radians() } else { 1.0 };
             let sides = [(low, given.map(|g| g.0), 1.0, "min"), (high, given.map(|g| g.1), -1.0, "max")];
             for (bound, given, sign, side) in sides {
-                if (self.x[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
+                if (self.start.design[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
                     continue;
                 }
                 let set = given.filter(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());

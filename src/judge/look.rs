@@ -93,11 +93,6 @@ impl<'a> Look<'a> {
         })
     }
 
-    /// Returns whether the two are one answer: as linkages nearer than `near`, or as curves within `reach`.
-    pub(super) fn is(&self, other: &Look<'_>, near: f64, reach: f64) -> bool {
-        other.difference(self) < near || other.draws_the_curve_of(self, reach)
-    }
-
     /// Returns whether the coupler points at the target's points, and the whole curves, lie within `reach` of each
     /// other.
     pub(super) fn draws_the_curve_of(&self, other: &Look<'_>, reach: f64) -> bool {

@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 #[error("the problem cannot be written as JSON: {0}")]
 pub struct NotWritten(String);
 
-/// The reason why a record's problem is none.
+/// The reason why a record's problem cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
     /// The task is invalid.

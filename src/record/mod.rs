@@ -8,9 +8,9 @@
 //! | [`certificate`] | what is proved about a result: no linkage of the covered kind can have a lower sum of squares |
 //! | [`digest`] | the digest of the data that determine a search |
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
-//! | [`extras`] | what stands beside a candidate's figures: warnings, the same curve by other linkages, families of answers |
+//! | [`extras`] | additions to a candidate's figures: warnings, the same curve by other linkages, families of answers |
 //! | [`limits`] | what a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file |
-//! | [`repeats`] | how often the best answer came back, and what that says of better ones that were not seen |
+//! | [`repeats`] | repeated hits of the best answer, and the chance that a better one was not seen |
 //! | [`statistics`] | statistics of many runs: medians, hits, the best run |
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
 

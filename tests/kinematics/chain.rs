@@ -491,12 +491,12 @@ fn errors_name_the_stage_the_key_and_the_point() {
         dyad("C", ["B", "E"], [1.0, 1.0]).to_string(),
         "stage 1, \"C\", from: there is no point \"E\""
     );
-    assert_eq!(dyad("B", ["B", "D"], [1.0, 1.0]).fault, ChainFault::DuplicateName { name: "B".into() });
+    assert_eq!(dyad("B", ["B", "D"], [1.0, 1.0]).fault, ChainFault::DuplicateName("B".into()));
     let error = dyad("C", ["B", "D"], [1.0, f64::NAN]);
-    assert!(matches!(error.fault, ChainFault::NotFinite { value } if value.is_nan()));
+    assert!(matches!(error.fault, ChainFault::NotFinite(value) if value.is_nan()));
     assert_eq!((error.place, error.key, error.index), (ChainPlace::Stage(0), "lengths", Some(1)));
-    assert_eq!(dyad("C", ["B", "D"], [0.0, 1.0]).fault, ChainFault::LengthNotPositive { value: 0.0 });
-    assert_eq!(dyad("C", ["B", "B"], [1.0, 1.0]).fault, ChainFault::SamePoint { name: "B".into() });
+    assert_eq!(dyad("C", ["B", "D"], [0.0, 1.0]).fault, ChainFault::LengthNotPositive(0.0));
+    assert_eq!(dyad("C", ["B", "B"], [1.0, 1.0]).fault, ChainFault::SamePoint("B".into()));
     assert!(matches!(
         dyad("C", ["C", "B"], [1.0; 2]).fault,
         ChainFault::ForwardReference { itself: true, .. }

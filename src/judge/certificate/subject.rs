@@ -112,18 +112,16 @@ impl Subject {
         let by_length = design.d.map(largest);
         let limits = [by_box, by_length].into_iter().flatten();
         let limit = limits.reduce(f64::min).ok_or(NoCertificate::NoLimits)?;
+        let (angles, classes) = match timing.offset {
+            AngleOffset::Free => (Angles::Increments, Class::ALL.to_vec()),
+            AngleOffset::Ground => (Angles::Ground, Class::ALL.to_vec()),
+            AngleOffset::Fixed => (Angles::Axis(axis_of(design)), classes(&spec.require.types)),
+        };
         Ok(Subject {
             points: task.points().iter().map(|p| [p.re, p.im]).collect(),
             turns_deg: timing.crank_deg.clone(),
-            angles: match timing.offset {
-                AngleOffset::Free => Angles::Increments,
-                AngleOffset::Ground => Angles::Ground,
-                AngleOffset::Fixed => Angles::Axis(axis_of(design)),
-            },
-            classes: match timing.offset {
-                AngleOffset::Fixed => classes(&spec.require.types),
-                AngleOffset::Free | AngleOffset::Ground => Class::ALL.to_vec(),
-            },
+            angles,
+            classes,
             directions: problem.directions().to_vec(),
             limit,
             cap: limit * (1.0 + 1e-9),

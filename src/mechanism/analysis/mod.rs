@@ -9,10 +9,12 @@ pub mod chain;
 use crate::mechanism::Unit;
 use crate::mechanism::four_bar::assembly_condition::AssemblyCondition;
 use crate::mechanism::four_bar::loop_closure::{
-    Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity,
+    Iteration, IterationOptions, IterationVerdict, LoopRoot, LoopRoots, Singularity,
 };
 use crate::mechanism::four_bar::motion::{CrankMotion, Motion};
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, xy};
+use crate::mechanism::{
+    AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, point, xy,
+};
 use serde::Serialize;
 
 /// A method of position analysis.
@@ -385,10 +387,7 @@ fn method_row(linkage: &FourBar, angle: f64, method: PositionMethod) -> MethodRo
     }
 }
 
-fn closed_form(
-    roots: LoopRoots,
-    assembly: AssemblyMode,
-) -> (&'static str, Option<crate::mechanism::four_bar::loop_closure::LoopRoot>) {
+fn closed_form(roots: LoopRoots, assembly: AssemblyMode) -> (&'static str, Option<LoopRoot>) {
     let status = match roots {
         LoopRoots::Closed(_) => "ok",
         LoopRoots::Open => "open",
@@ -421,7 +420,6 @@ pub fn mobility(linkage: &FourBar) -> MobilityRecord {
 /// position.
 pub fn joints_of(linkage: &FourBar, row: &Row) -> Option<[Complex; 5]> {
     let pose = row.pose?;
-    let point = crate::mechanism::point;
     Some([
         linkage.crank_pivot(),
         linkage.follower_pivot(),

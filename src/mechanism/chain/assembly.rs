@@ -171,7 +171,7 @@ impl<'a> Assembly<'a> {
                 let p = self.find(site.key("pivot"), pivot)?;
                 let q = self.find(site.key("block"), block)?;
                 if p == q {
-                    return Err(site.key("block").error(ChainFault::SamePoint { name: block.clone() }));
+                    return Err(site.key("block").error(ChainFault::SamePoint(block.clone())));
                 }
                 self.numbers(site.key("at"), at)?;
                 self.number(site.key("offset"), *offset)?;
@@ -190,7 +190,7 @@ impl<'a> Assembly<'a> {
             SliderLine::Fixed { through, angle } => {
                 self.numbers(site.key("through"), through)?;
                 if !is_usable(*angle) {
-                    return Err(site.key("angle_deg").error(ChainFault::NotFinite { value: *angle }));
+                    return Err(site.key("angle_deg").error(ChainFault::NotFinite(*angle)));
                 }
                 Ok(fixed_line(*through, *angle))
             }
@@ -207,11 +207,11 @@ impl<'a> Assembly<'a> {
     fn name(&mut self, key: Key<'_>, name: &str) -> Assembled<usize> {
         let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         if name.is_empty() || name.chars().count() > MAX_POINT_NAME || !name.chars().all(allowed) {
-            return Err(key.error(ChainFault::BadName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::BadName(name.to_owned())));
         }
         let id = self.names.len();
         if self.known.insert(name.to_owned(), id).is_some() {
-            return Err(key.error(ChainFault::DuplicateName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::DuplicateName(name.to_owned())));
         }
         self.names.push(name.to_owned());
         self.links_of.push(Vec::new());
@@ -237,7 +237,7 @@ impl<'a> Assembly<'a> {
         let p = self.find(key.nth(0), first)?;
         let q = self.find(key.nth(1), second)?;
         if p == q {
-            return Err(key.nth(1).error(ChainFault::SamePoint { name: second.clone() }));
+            return Err(key.nth(1).error(ChainFault::SamePoint(second.clone())));
         }
         Ok([p, q])
     }
@@ -249,16 +249,13 @@ impl<'a> Assembly<'a> {
         [first, second]: &[String; 2],
         [p, q]: [usize; 2],
     ) -> Assembled<(usize, [Complex; 2])> {
-        let names = || (first.clone(), second.clone());
         let Some(&link) = self.links_of[p].iter().find(|l| self.links_of[q].contains(l)) else {
-            let (first, second) = names();
-            return Err(key.error(ChainFault::NotOnOneLink { first, second }));
+            return Err(key.error(ChainFault::NotOnOneLink(first.clone(), second.clone())));
         };
         let place = |of: usize| self.links[link].0.iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
         let [from, to] = [place(p), place(q)];
         if (to - from).norm_sqr() <= coincident_sq(self.scale) {
-            let (first, second) = names();
-            return Err(key.error(ChainFault::Coincident { first, second }));
+            return Err(key.error(ChainFault::Coincident(first.clone(), second.clone())));
         }
         Ok((link, [from, to]))
     }
@@ -278,7 +275,7 @@ impl<'a> Assembly<'a> {
 
     fn number(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
         if !is_usable(value) {
-            return Err(key.error(ChainFault::NotFinite { value }));
+            return Err(key.error(ChainFault::NotFinite(value)));
         }
         self.scale = self.scale.max(value.abs());
         Ok(())
@@ -291,7 +288,7 @@ impl<'a> Assembly<'a> {
     fn length(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
         self.number(key, value)?;
         if value <= 0.0 {
-            return Err(key.error(ChainFault::LengthNotPositive { value }));
+            return Err(key.error(ChainFault::LengthNotPositive(value)));
         }
         Ok(())
     }
@@ -307,11 +304,11 @@ fn offset_from_distances(
 ) -> Assembled<Complex> {
     let key = site.key("distances");
     if !is_usable(base) {
-        return Err(key.error(ChainFault::NotFinite { value: base }));
+        return Err(key.error(ChainFault::NotFinite(base)));
     }
     coupler_ratio(base, [d, e], side).map(|z| z * base).map_err(|error| match error {
         LinkageError::DistanceNegative { key: letter, value } => {
-            key.nth(usize::from(letter == "e")).error(ChainFault::DistanceNegative { value })
+            key.nth(usize::from(letter == "e")).error(ChainFault::DistanceNegative(value))
         }
         _ => {
             let (first, second) = (first.clone(), second.clone());
