@@ -121,19 +121,14 @@ pub(super) fn severity(candidate: &Candidate) -> usize {
 
 /// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
 fn missed(candidate: &Candidate) -> (bool, f64) {
-    let row = candidate
-        .requirements
-        .iter()
-        .find(|r| !candidate.accepted && r.name == RequirementKind::Tolerance.name());
-    row.map_or((false, 0.0), |row| {
-        let otherwise =
-            candidate.requirements.iter().all(|r| r.met || r.name == RequirementKind::Tolerance.name());
-        let part = match (&row.value, &row.limit) {
-            (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
-            _ => 0.0,
-        };
-        (!otherwise, part)
-    })
+    let tolerance = RequirementKind::Tolerance.name();
+    let row = candidate.requirements.iter().find(|r| r.name == tolerance);
+    let Some(row) = row.filter(|_| !candidate.accepted) else { return (false, 0.0) };
+    let others = candidate.requirements.iter().any(|r| !r.met && r.name != tolerance);
+    match (&row.value, &row.limit) {
+        (Figure::Number(value), Figure::Number(limit)) if !row.met => (others, value / limit),
+        _ => (others, 0.0),
+    }
 }
 
 /// Returns the longest of the links and the coupler's side.

@@ -130,14 +130,9 @@ impl Layering {
 
     /// Returns whether no parts cross in a stacking.
     fn works(&self, places: &Places) -> bool {
-        let apart = Joint::PINS.iter().all(|pin| {
-            let [one, other] = pin.joins();
-            layer(places, one) != layer(places, other)
-        });
-        let planes = self.free_pairs.iter().all(|pair| {
-            let [one, other] = pair.plates;
-            layer(places, one) != layer(places, other) || clear(&pair.closest)
-        });
+        let together = |[one, other]: [Link; 2]| layer(places, one) == layer(places, other);
+        let apart = !Joint::PINS.iter().any(|pin| together(pin.joins()));
+        let planes = self.free_pairs.iter().all(|pair| !together(pair.plates) || clear(&pair.closest));
         let crossed = |pin: Joint, plate: Link| between(places, pin).contains(&layer(places, plate));
         let plates = self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
         let side_by_side = |pins: [Joint; 2]| {

@@ -1,14 +1,14 @@
 //! Assembly of a chain from its named parts: every point's name resolved once, every part checked.
 
 use super::builder::{ChainBuilder, MAX_POINT_NAME, MAX_STAGES};
+use super::coincident_sq;
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
-use super::{coincident_sq, fixed_line};
 use crate::mechanism::four_bar::coupler_ratio;
 use crate::mechanism::{Complex, CouplerSide, LinkageError, MAX_MAGNITUDE, point};
 use std::collections::HashMap;
 
 /// The points of a link with their places in the link's own frame.
-struct Link(Vec<(usize, Complex)>);
+type Link = Vec<(usize, Complex)>;
 
 /// A chain that is being assembled.
 pub(super) struct Assembly<'a> {
@@ -70,7 +70,7 @@ impl<'a> Assembly<'a> {
             source,
             names: Vec::new(),
             known: HashMap::new(),
-            links: vec![Link(Vec::new())],
+            links: vec![Link::new()],
             links_of: Vec::new(),
             scale: 0.0,
             steps: Vec::new(),
@@ -108,7 +108,7 @@ impl<'a> Assembly<'a> {
             Some(name) => self.find(whole.key("trace"), name)?,
             None => self.names.len() - 1,
         };
-        let as_ids = |link: &Link| link.0.iter().map(|(i, _)| PointId(*i)).collect();
+        let as_ids = |link: &Link| link.iter().map(|(i, _)| PointId(*i)).collect();
         Ok(Chain {
             pivots: source.pivots.iter().map(|(_, at)| point(*at)).collect(),
             crank_pivot,
@@ -192,7 +192,7 @@ impl<'a> Assembly<'a> {
                 if !is_usable(*angle) {
                     return Err(site.key("angle_deg").error(ChainFault::NotFinite(*angle)));
                 }
-                Ok(fixed_line(*through, *angle))
+                Ok(Line::Fixed { origin: point(*through), direction: Complex::from_polar(1.0, *angle) })
             }
             SliderLine::OnLink { along, offset } => {
                 let [p, q] = self.two(site.key("along"), along)?;
@@ -252,7 +252,7 @@ impl<'a> Assembly<'a> {
         let Some(&link) = self.links_of[p].iter().find(|l| self.links_of[q].contains(l)) else {
             return Err(key.error(ChainFault::NotOnOneLink(first.clone(), second.clone())));
         };
-        let place = |of: usize| self.links[link].0.iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
+        let place = |of: usize| self.links[link].iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
         let [from, to] = [place(p), place(q)];
         if (to - from).norm_sqr() <= coincident_sq(self.scale) {
             return Err(key.error(ChainFault::Coincident(first.clone(), second.clone())));
@@ -261,13 +261,13 @@ impl<'a> Assembly<'a> {
     }
 
     fn attach(&mut self, link: usize, id: usize, at: Complex) {
-        self.links[link].0.push((id, at));
+        self.links[link].push((id, at));
         self.links_of[id].push(link);
     }
 
     /// Adds a new link from one point to another, which lies at `at` in its frame.
     fn link(&mut self, from: usize, to: usize, at: Complex) {
-        self.links.push(Link(Vec::new()));
+        self.links.push(Link::new());
         let link = self.links.len() - 1;
         self.attach(link, from, ZERO);
         self.attach(link, to, at);
