@@ -4,6 +4,7 @@
 //! optimiser.
 
 use crate::judge::error::{distances_to_curve, rms};
+use crate::judge::loosen::design_limits;
 use crate::judge::referee::judge;
 use crate::judge::requirement::{Judged, at_least, at_most};
 use crate::mechanism::{AssemblyMode, Complex, FourBar, point};
@@ -52,7 +53,7 @@ pub fn assess_on_curve(
     let error = task.errors(linkage, &crank_angles, assemblies)?;
     let to_curve = match to_curve {
         Some(known) => known,
-        None => task.errors_to_curve(linkage, crank_angles[0], assemblies[0])?,
+        None => distances_to_curve(task.points(), linkage, crank_angles[0], assemblies[0])?,
     };
     let verdict = judge(task, linkage, &crank_angles, assemblies);
     let over = problem.spec().require.transmission_over.unwrap_or(if linkage_type.input_turns_fully() {
@@ -129,39 +130,38 @@ fn requirements(judged: &Judged<'_>) -> Vec<Requirement> {
 
 /// Returns the design table's limits, each with the linkage's own value.
 fn design_rows(problem: &Problem, linkage: &FourBar) -> Vec<Requirement> {
-    let design = &problem.spec().design;
-    let offset = linkage.coupler_offset();
     let (a, b) = (linkage.crank_pivot(), linkage.follower_pivot());
-    let mut rows = Vec::new();
-    let mut push = |name: &str, value: f64, limits: Option<Limits>| {
-        if let Some(Limits(low, high)) = limits {
-            rows.push(Requirement {
-                name: format!("design.{name}"),
-                value: Figure::Number(value),
-                limit: Figure::Numbers(vec![low, high]),
-                met: at_least(value, low) && at_most(value, high),
-            });
-        }
+    let offset = linkage.coupler_offset();
+    let values = [
+        ("design.Ax", a.re),
+        ("design.Ay", a.im),
+        ("design.Bx", b.re),
+        ("design.By", b.im),
+        ("design.a", linkage.crank()),
+        ("design.b", linkage.coupler()),
+        ("design.c", linkage.follower()),
+        ("design.d", linkage.crank_side()),
+        ("design.e", linkage.follower_side()),
+        ("design.ground", linkage.ground()),
+        ("design.ground_angle_deg", linkage.ground_angle().to_degrees()),
+        ("design.coupler_x", offset.re),
+        ("design.coupler_y", offset.im),
+    ];
+    let row = |(name, value): (&str, f64)| {
+        let Limits(low, high) = design_limits(&problem.spec().design, name)?;
+        // The angle nearest to the middle of its limits.
+        let turns = if name == "design.ground_angle_deg" {
+            ((0.5 * (low + high) - value) / 360.0).round()
+        } else {
+            0.0
+        };
+        let value = value + 360.0 * turns;
+        Some(Requirement {
+            name: name.into(),
+            value: Figure::Number(value),
+            limit: Figure::Numbers(vec![low, high]),
+            met: at_least(value, low) && at_most(value, high),
+        })
     };
-    let axis = |p: Option<[Limits; 2]>, i: usize| p.map(|p| p[i]);
-    push("Ax", a.re, axis(design.crank_pivot, 0));
-    push("Ay", a.im, axis(design.crank_pivot, 1));
-    push("Bx", b.re, axis(design.follower_pivot, 0));
-    push("By", b.im, axis(design.follower_pivot, 1));
-    push("a", linkage.crank(), design.a);
-    push("b", linkage.coupler(), design.b);
-    push("c", linkage.follower(), design.c);
-    push("d", linkage.crank_side(), design.d);
-    push("e", linkage.follower_side(), design.e);
-    push("ground", linkage.ground(), design.ground);
-    if let Some(Limits(low, high)) = design.ground_angle_deg {
-        // The turn of the ground line that lies nearest to the limits.
-        let middle = 0.5 * (low + high);
-        let angle = linkage.ground_angle().to_degrees();
-        let value = angle + 360.0 * ((middle - angle) / 360.0).round();
-        push("ground_angle_deg", value, Some(Limits(low, high)));
-    }
-    push("coupler_x", offset.re, design.coupler_x);
-    push("coupler_y", offset.im, design.coupler_y);
-    rows
+    values.into_iter().filter_map(row).collect()
 }

@@ -127,9 +127,13 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     };
     let found = candidate.linkage.with_assembly(*t1).cognates_at(angle.to_radians());
     let judged = |cognate: Cognate| {
-        let (linkage, crank_deg, t1_at) = match problem.task().timing() {
-            Timing::Free => placed(problem, candidate, &cognate)?,
-            Timing::Prescribed { offset, .. } => in_step(problem, candidate, &cognate, *offset)?,
+        let (angles, t1_at) = positions(candidate, &cognate)?;
+        let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
+        let (crank_deg, t1_at) = match problem.task().timing() {
+            Timing::Free => unwrapped(problem, &linkage, angles, t1_at),
+            Timing::Prescribed { offset, .. } => {
+                (in_step(problem, candidate, &cognate, (*offset, linkage.ground_angle()))?, t1_at)
+            }
         };
         let to_curve = Some(candidate.error.to_curve);
         assess_on_curve(problem, &linkage, &crank_deg, &t1_at, to_curve)
@@ -138,45 +142,34 @@ pub fn cognates(problem: &Problem, candidate: &Candidate) -> Vec<Candidate> {
     found.into_iter().flatten().filter_map(judged).collect()
 }
 
-type Placed = (FourBar, Vec<f64>, Vec<AssemblyMode>);
-
-/// Returns the cognate's crank angles and assemblies at the candidate's positions.
-fn positions(candidate: &Candidate, cognate: &Cognate) -> Option<Vec<(f64, AssemblyMode)>> {
+/// Returns the cognate's crank angles, radians, and assemblies at the candidate's positions.
+fn positions(candidate: &Candidate, cognate: &Cognate) -> Option<(Vec<f64>, Vec<AssemblyMode>)> {
     let at = |(deg, t1): (&f64, &AssemblyMode)| cognate.position_of(deg.to_radians(), *t1);
     candidate.crank_deg.iter().zip(&candidate.t1_at).map(at).collect()
 }
 
-fn placed(problem: &Problem, candidate: &Candidate, cognate: &Cognate) -> Option<Placed> {
-    let (angles, t1_at): (Vec<f64>, Vec<AssemblyMode>) = positions(candidate, cognate)?.into_iter().unzip();
-    let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
-    let (crank_deg, t1_at) = unwrapped(problem, &linkage, angles, t1_at);
-    Some((linkage, crank_deg, t1_at))
-}
-
+/// Returns the prescribed crank angles, degrees, of a cognate that is driven in step with the crank; `None` for others.
 fn in_step(
     problem: &Problem,
     candidate: &Candidate,
     cognate: &Cognate,
-    offset: AngleOffset,
-) -> Option<Placed> {
+    (offset, ground_angle): (AngleOffset, f64),
+) -> Option<Vec<f64>> {
     if cognate.crank.with != OriginalLink::Crank {
         return None;
     }
-    let t1_at: Vec<AssemblyMode> = positions(candidate, cognate)?.into_iter().map(|(_, t1)| t1).collect();
-    let linkage = cognate.linkage.with_assembly(*t1_at.first()?);
     let written = &problem.spec().task.path.timing.as_ref()?.crank_deg;
     let direction = direction(written, &candidate.crank_deg);
     let base = match offset {
         AngleOffset::Fixed if cognate.crank.phase.abs() > NO_PHASE => return None,
         AngleOffset::Fixed => 0.0,
-        AngleOffset::Ground => linkage.ground_angle().to_degrees(),
+        AngleOffset::Ground => ground_angle.to_degrees(),
         AngleOffset::Free => {
             let own = candidate.crank_deg.first()? - direction * written.first()?;
             wrapped(own.to_radians() + cognate.crank.phase).to_degrees()
         }
     };
-    let crank_deg = written.iter().map(|deg| base + direction * deg).collect();
-    Some((linkage, crank_deg, t1_at))
+    Some(written.iter().map(|deg| base + direction * deg).collect())
 }
 
 /// Returns +1 if the crank runs through the prescribed angles as they are written, -1 if it runs the other way.

@@ -12,19 +12,20 @@
 //! explain the gradient, or not uniquely, no rate is given. Errors are sqrt(f / sum_j w_j), so that d(rms) = df / (2 W
 //! rms).
 
-use super::loosen::Demand;
+use super::loosen::design_limits;
 use super::rank::exact_objective;
 use super::warm::start_at;
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
 use crate::numbers::optimise::nonnegative::nonnegative_least_squares;
 use crate::record::{Candidate, Cost, LimitUnit};
+use crate::task::Problem;
 use crate::task::forms::design_space::{DESIGN, Derived, Design, DesignSpace, Shape};
-use crate::task::forms::rows::{Motion, Requirements, RowKind, Side};
+use crate::task::forms::rows::{Motion, RowKind, Side};
+use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
 use crate::task::forms::torus::TorusFit;
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::Objective;
-use crate::task::{Problem, Setting};
 
 /// Distance from a row's limit, in parts of the target's size, within which the row is active.
 const ACTIVE: f64 = 1e-6;
@@ -76,27 +77,25 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
         return Vec::new();
     }
     let Some(start) = start_at(problem, candidate) else { return Vec::new() };
+    let space = problem.space(start.setting.side);
+    let Some(shape) = space.shape(&start.design) else { return Vec::new() };
+    let at = At { problem, candidate, start: &start, space: &space, shape: &shape };
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
-        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
-        let motion = fit.motion(&start.design, &shape);
-        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
-        at.costs(&fit, &(), fit.space(), fit.requirements(), &motion, false)
+        at.costs(&fit, &(), &fit.motion(&start.design, &shape))
     } else {
         let fit = TorusFit::new(problem, start.setting);
-        let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
-        let motion = fit.motion(&shape, &start.positions);
-        let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
-        at.costs(&fit, &start.positions, fit.space(), fit.requirements(), &motion, true)
+        at.costs(&fit, &start.positions, &fit.motion(&shape, &start.positions))
     }
 }
 
+/// A candidate with its place in the design space.
 struct At<'a> {
     problem: &'a Problem,
     candidate: &'a Candidate,
-    x: &'a Design,
+    start: &'a Start,
+    space: &'a DesignSpace,
     shape: &'a Shape,
-    setting: Setting,
 }
 
 impl At<'_> {
@@ -104,14 +103,13 @@ impl At<'_> {
         &self,
         fit: &F,
         state: &F::State,
-        space: &DesignSpace,
-        requirements: &Requirements,
         motion: &Motion<'_>,
-        free_timing: bool,
     ) -> Vec<Cost> {
         let size = self.problem.task().size();
+        let (space, design) = (self.space, &self.start.design);
+        let free_timing = !self.start.positions.is_empty();
         let mut kinds = Vec::new();
-        requirements.rows(self.setting.aim, self.shape, motion, &mut |row| {
+        self.problem.requirements(space).rows(self.start.setting.aim, self.shape, motion, &mut |row| {
             kinds.push((row.kind, free_timing && row.by_turn().abs() > MOVED_BY_POINTS * size));
         });
         // Unknowns that can move, lengths in sizes of the target.
@@ -122,7 +120,7 @@ impl At<'_> {
         let scaled = |row: &Design| unknowns.iter().map(|&(i, by)| by * row[i]).collect::<Vec<f64>>();
         let mut active = Vec::new();
         let mut place = 0;
-        fit.constraints(self.x, state, &mut |row| {
+        fit.constraints(design, state, &mut |row| {
             let (kind, moved_by_points) = kinds[place];
             place += 1;
             if row.value <= ACTIVE * size {
@@ -130,12 +128,12 @@ impl At<'_> {
                 active.push(Active { gradient, moved_by_points, label: self.label(kind) });
             }
         });
-        self.bounds(space, &unknowns, &mut active);
+        self.bounds(&unknowns, &mut active);
         if active.is_empty() {
             return Vec::new();
         }
         let mut gradient = [0.0; DESIGN];
-        let complete = fit.linearise(self.x, state, &mut |block| {
+        let complete = fit.linearise(design, state, &mut |block| {
             let (t, r) = (block.tangent, block.residual);
             let t_sq = t[0] * t[0] + t[1] * t[1];
             let along = if t_sq > 0.0 { (t[0] * r[0] + t[1] * r[1]) / t_sq } else { 0.0 };
@@ -153,47 +151,39 @@ impl At<'_> {
     }
 
     /// Adds the active bounds of the design. Those that come from the box of the pivots are rows already.
-    fn bounds(&self, space: &DesignSpace, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
+    fn bounds(&self, unknowns: &[(usize, f64)], active: &mut Vec<Active>) {
         for (place, &(i, by)) in unknowns.iter().enumerate() {
-            let Some((name, is_angle)) = space.coordinate(i) else { continue };
-            let (low, high) = space.bounds()[i];
-            let given = Demand::named(&format!("design.{name}"))
-                .and_then(|demand| demand.limits(self.problem.spec()))
-                .map(|limits| {
-                    let first = if matches!(name, "Ay" | "By") { 2 } else { 0 };
-                    [limits[first].value, limits[first + 1].value]
-                });
+            let Some((name, is_angle)) = self.space.coordinate(i) else { continue };
+            let (low, high) = self.space.bounds()[i];
+            let row = format!("design.{name}");
+            let given = design_limits(&self.problem.spec().design, &row);
             let unit = if is_angle { 1f64.to_radians() } else { 1.0 };
-            for (bound, sign, side) in [(low, 1.0, "min"), (high, -1.0, "max")] {
-                if (self.x[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
+            let sides = [(low, given.map(|g| g.0), 1.0, "min"), (high, given.map(|g| g.1), -1.0, "max")];
+            for (bound, given, sign, side) in sides {
+                if (self.start.design[i] - bound).abs() > ON_BOUND * by.max(bound.abs()) {
                     continue;
                 }
-                let set = given.map(|limits| limits[usize::from(sign < 0.0)]);
-                let is_set = set.is_some_and(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());
-                let from_box = self.problem.spec().require.pivots_in.is_some() && i < 4 && !is_set;
-                if from_box && matches!(name, "Ax" | "Ay" | "Bx" | "By") {
+                let set = given.filter(|limit| (limit * unit - bound).abs() <= 1e-12 * bound.abs());
+                let is_pivot = matches!(name, "Ax" | "Ay" | "Bx" | "By");
+                if is_pivot && set.is_none() && self.problem.spec().require.pivots_in.is_some() {
                     continue;
                 }
                 let mut gradient = vec![0.0; unknowns.len()];
                 gradient[place] = sign * by;
-                let label =
-                    set.filter(|_| is_set).map(|limit| self.design_label(name, side, limit, is_angle));
-                active.push(Active {
-                    gradient,
-                    moved_by_points: false,
-                    label: label.map(|l| Label { by_room: unit, ..l }),
-                });
+                let label = set.map(|limit| self.design_label(&row, side, limit, unit));
+                active.push(Active { gradient, moved_by_points: false, label });
             }
         }
     }
 
-    fn design_label(&self, name: &str, side: &'static str, limit: f64, is_angle: bool) -> Label {
+    fn design_label(&self, name: &str, side: &'static str, limit: f64, by_room: f64) -> Label {
+        let is_angle = name == "design.ground_angle_deg";
         Label {
-            name: format!("design.{name}"),
+            name: name.to_owned(),
             side: Some(side),
             limit,
             unit: if is_angle { LimitUnit::Degree } else { LimitUnit::Length },
-            by_room: 1.0,
+            by_room,
             scale: if is_angle { 90.0 } else { self.problem.task().size() },
         }
     }
@@ -216,20 +206,15 @@ impl At<'_> {
                 Some(Label { name: name.into(), side: side.map(Side::name), limit, unit, by_room, scale })
             }
             RowKind::Derived(quantity, lower) => {
-                let name = match quantity {
-                    Derived::Ground => "ground",
-                    Derived::GroundAngle => "ground_angle_deg",
-                    Derived::CrankSide => "d",
-                    Derived::FollowerSide => "e",
+                let (name, by_room) = match quantity {
+                    Derived::Ground => ("design.ground", 1.0),
+                    Derived::GroundAngle => ("design.ground_angle_deg", size * 1f64.to_radians()),
+                    Derived::CrankSide => ("design.d", 1.0),
+                    Derived::FollowerSide => ("design.e", 1.0),
                 };
-                let demand = Demand::named(&format!("design.{name}"))?;
-                let limits = demand.limits(self.problem.spec())?;
-                let is_angle = quantity == Derived::GroundAngle;
-                let side = if lower { "min" } else { "max" };
-                let fixed = limits[0].value == limits[1].value;
-                let by_room = if is_angle { size * 1f64.to_radians() } else { 1.0 };
-                let label = self.design_label(name, side, limits[usize::from(!lower)].value, is_angle);
-                (!fixed).then_some(Label { by_room, ..label })
+                let limits = design_limits(&spec.design, name).filter(|limits| !limits.is_fixed())?;
+                let (side, limit) = if lower { ("min", limits.0) } else { ("max", limits.1) };
+                Some(self.design_label(name, side, limit, by_room))
             }
         }
     }
@@ -244,6 +229,7 @@ impl At<'_> {
         let columns: Vec<Vec<f64>> = (0..active.len()).map(unit).collect();
         let found = nonnegative_least_squares(&columns, gradient);
         let told = !active.iter().zip(&found.values).any(|(a, m)| a.moved_by_points && *m > 0.0);
+        let size: f64 = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
         let whole: f64 = self.problem.task().weights().iter().sum();
         let rms = weighted_rms(self.problem, self.candidate.error.objective);
         let mut labels: Vec<&Label> = Vec::new();
@@ -265,13 +251,14 @@ impl At<'_> {
             if -rate * label.scale <= NEGLIGIBLE * rms {
                 continue;
             }
-            if !found.sensitivity.is_finite()
-                || others_explain(active, &columns, gradient, found.residual, &own)
-            {
-                // Another limit restricts in the same way: moving this one alone gains nothing.
-                continue;
-            }
-            if told && !known {
+            // If the others explain the optimum without it, another limit restricts in the same way: moving this one
+            // alone gains nothing.
+            let others = active.iter().zip(&columns).filter(|(a, _)| !own(a));
+            let others: Vec<Vec<f64>> = others.map(|(_, column)| column.clone()).collect();
+            let without = || nonnegative_least_squares(&others, gradient).residual;
+            let explained =
+                !found.sensitivity.is_finite() || without() <= 10.0 * found.residual + 1e-9 * size;
+            if explained || told && !known {
                 continue;
             }
             costs.push(Cost {
@@ -285,19 +272,4 @@ impl At<'_> {
         }
         costs
     }
-}
-
-/// Returns whether the gradient is explained as well without the rows of a label. (Of a known multiplier the rest would
-/// be fifty times the residual.)
-fn others_explain(
-    active: &[Active],
-    columns: &[Vec<f64>],
-    gradient: &[f64],
-    residual: f64,
-    own: &dyn Fn(&Active) -> bool,
-) -> bool {
-    let others: Vec<Vec<f64>> =
-        active.iter().zip(columns).filter(|(a, _)| !own(a)).map(|(_, column)| column.clone()).collect();
-    let size: f64 = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
-    nonnegative_least_squares(&others, gradient).residual <= 10.0 * residual + 1e-9 * size
 }

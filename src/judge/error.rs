@@ -66,17 +66,6 @@ impl PathTask {
         }
         Some(error)
     }
-
-    /// Returns the distances from the points to the coupler curve of the circuit that holds the given position; `None`
-    /// if that circuit has no point.
-    pub fn errors_to_curve(
-        &self,
-        linkage: &FourBar,
-        crank_angle: f64,
-        assembly: AssemblyMode,
-    ) -> Option<CurveErrorRecord> {
-        distances_to_curve(self.points(), linkage, crank_angle, assembly)
-    }
 }
 
 /// The cost of finding the nearest point of a curve, in positions: 720 samples are compared, and one or two minima

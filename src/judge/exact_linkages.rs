@@ -60,8 +60,7 @@ pub fn class(problem: &Problem, target: &Target, solution: &Solution, depth: Dep
     let mut to_curve = None;
     let mut forms = Vec::with_capacity(list.len());
     for mechanism in list.iter().filter(|m| m.passes) {
-        let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
-        let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+        let (crank_deg, t1_at) = positions(problem, mechanism);
         // All six draw one curve, and on it one circuit through the first point: its distances are known after the
         // first.
         if depth == Depth::Glance {
@@ -105,6 +104,12 @@ fn at_points(
         rms: rms(error.sum_sq, problem.task().len()),
         max: error.max,
     })
+}
+
+/// Returns the crank angles, degrees, and the assemblies of a mechanism as a candidate has them.
+fn positions(problem: &Problem, mechanism: &Mechanism) -> (Vec<f64>, Vec<AssemblyMode>) {
+    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
+    unwrapped(problem, &mechanism.linkage, angles, assemblies)
 }
 
 impl Class {
@@ -178,16 +183,15 @@ pub fn class_at(
         return None;
     }
     let settled: Vec<bool> = list.iter().map(|m| is_settled(problem, m)).collect();
+    let all = || list.iter().zip(settled.iter().copied());
     let beyond_doubt = |m: &Mechanism, settled: bool| settled && m.miss_over_limit <= BEYOND_DOUBT;
     let ability = |defects: &[&str]| {
         let can = |m: &Mechanism| !m.defects.iter().any(|defect| defects.contains(&defect.name()));
-        let all = || list.iter().zip(settled.iter().copied());
         Ability {
             certain: all().any(|(m, settled)| beyond_doubt(m, settled) && can(m)),
             possible: all().any(|(m, settled)| !settled || can(m)),
         }
     };
-    let forms = list.iter().zip(settled.iter().copied());
     Some(Recomputed {
         judged: assess(problem, linkage, crank_deg, t1_at),
         abilities: [
@@ -195,7 +199,7 @@ pub fn class_at(
             ability(&["circuit", "order"]),
             ability(&["circuit", "order", "branch"]),
         ],
-        forms: forms
+        forms: all()
             .filter_map(|(m, settled)| Some((form(problem, m, 0.0)?, beyond_doubt(m, settled))))
             .collect(),
     })
@@ -212,8 +216,7 @@ fn is_settled(problem: &Problem, mechanism: &Mechanism) -> bool {
 /// Returns a mechanism with its type and its defects, its crank angles moved by `by` (radians) to and fro from point to
 /// point; `None` if its links are those of no type.
 fn form(problem: &Problem, mechanism: &Mechanism, by: f64) -> Option<ExactForm> {
-    let (angles, assemblies) = (mechanism.crank_angles.to_vec(), mechanism.assemblies.to_vec());
-    let (crank_deg, t1_at) = unwrapped(problem, &mechanism.linkage, angles, assemblies);
+    let (crank_deg, t1_at) = positions(problem, mechanism);
     let signs = [1.0, -1.0].into_iter().cycle();
     let radians: Vec<f64> =
         crank_deg.iter().zip(signs).map(|(deg, sign)| deg.to_radians() + sign * by).collect();

@@ -36,15 +36,12 @@ pub fn family(problem: &Problem, best: &Candidate) -> Option<Family> {
 pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
     let mut rows: Vec<[f64; DESIGN]> = Vec::new();
-    let space = if start.positions.is_empty() {
-        let fit = TimedFit::new(problem, start.setting)?;
-        linearised(&fit, &start.design, &(), &mut rows)?;
-        fit.space().clone()
+    if start.positions.is_empty() {
+        linearised(&TimedFit::new(problem, start.setting)?, &start.design, &(), &mut rows)?;
     } else {
-        let fit = TorusFit::new(problem, start.setting);
-        linearised(&fit, &start.design, &start.positions, &mut rows)?;
-        fit.space().clone()
-    };
+        linearised(&TorusFit::new(problem, start.setting), &start.design, &start.positions, &mut rows)?;
+    }
+    let space = problem.space(start.setting.side);
     let shape = space.shape(&start.design)?;
     for bound in space.derived().iter().filter(|bound| bound.limits.is_fixed()) {
         rows.push(space.pull_back(&start.design, &shape, &gradient(bound.quantity, &shape), 0.0));

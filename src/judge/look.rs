@@ -1,7 +1,7 @@
 //! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
 //! and by their coupler curves.
 
-use crate::mechanism::{Complex, CouplerCurve};
+use crate::mechanism::{Complex, CouplerCurve, from_segment};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -93,11 +93,6 @@ impl<'a> Look<'a> {
         })
     }
 
-    /// Returns whether the two are one answer: as linkages nearer than `near`, or as curves within `reach`.
-    pub(super) fn is(&self, other: &Look<'_>, near: f64, reach: f64) -> bool {
-        other.difference(self) < near || other.draws_the_curve_of(self, reach)
-    }
-
     /// Returns whether the coupler points at the target's points, and the whole curves, lie within `reach` of each
     /// other.
     pub(super) fn draws_the_curve_of(&self, other: &Look<'_>, reach: f64) -> bool {
@@ -117,18 +112,8 @@ fn span(joints: &Joints) -> f64 {
 
 /// Returns whether a curve lies within `reach` of a closed polygon.
 fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
-    let near = |p: &Complex| {
-        (0..polygon.len()).any(|i| {
-            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
-            let (along, v) = (to - from, p - from);
-            let length_sq = along.norm_sqr();
-            let part = if length_sq > 0.0 {
-                ((v.re * along.re + v.im * along.im) / length_sq).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            (v - along * part).norm_sqr() <= reach * reach
-        })
-    };
+    let side = |i: usize| [polygon[i], polygon[(i + 1) % polygon.len()]];
+    let near =
+        |p: &Complex| (0..polygon.len()).any(|i| from_segment(*p, side(i)).norm_sqr() <= reach * reach);
     curve.iter().step_by(PROBE_EVERY).all(near)
 }

@@ -1,7 +1,7 @@
 //! Relaxation of a problem: each requirement as limits with an outward side.
 
 use crate::judge::assess::assess;
-use crate::record::{Candidate, Change, Figure, TypedValue};
+use crate::record::{Candidate, Change, TypedValue};
 use crate::task::Problem;
 use crate::task::requirement::{Choice, Limit, RequirementKind};
 use crate::task::spec::{DEFAULT_REACH, DEFAULT_SHORTEST, DesignSpec, Limits, ProblemSpec, RequireSpec};
@@ -42,18 +42,25 @@ pub enum DesignKey {
     CouplerY,
 }
 
-const DESIGN_KEYS: [DesignKey; 11] = [
-    DesignKey::CrankPivot,
-    DesignKey::FollowerPivot,
-    DesignKey::Ground,
-    DesignKey::GroundAngle,
-    DesignKey::Crank,
-    DesignKey::Coupler,
-    DesignKey::Follower,
-    DesignKey::CrankSide,
-    DesignKey::FollowerSide,
-    DesignKey::CouplerX,
-    DesignKey::CouplerY,
+/// The place of a key's limits in the specification: of both coordinates of a pivot, or of one number.
+enum Place {
+    Pivot(fn(&mut DesignSpec) -> &mut Option<[Limits; 2]>),
+    One(fn(&mut DesignSpec) -> &mut Option<Limits>),
+}
+
+/// The keys of `[design]` in the order of their declaration, each with the rows of its limits among the requirements.
+const DESIGN_KEYS: [(DesignKey, &[&str], Place); 11] = [
+    (DesignKey::CrankPivot, &["design.Ax", "design.Ay"], Place::Pivot(|d| &mut d.crank_pivot)),
+    (DesignKey::FollowerPivot, &["design.Bx", "design.By"], Place::Pivot(|d| &mut d.follower_pivot)),
+    (DesignKey::Ground, &["design.ground"], Place::One(|d| &mut d.ground)),
+    (DesignKey::GroundAngle, &["design.ground_angle_deg"], Place::One(|d| &mut d.ground_angle_deg)),
+    (DesignKey::Crank, &["design.a"], Place::One(|d| &mut d.a)),
+    (DesignKey::Coupler, &["design.b"], Place::One(|d| &mut d.b)),
+    (DesignKey::Follower, &["design.c"], Place::One(|d| &mut d.c)),
+    (DesignKey::CrankSide, &["design.d"], Place::One(|d| &mut d.d)),
+    (DesignKey::FollowerSide, &["design.e"], Place::One(|d| &mut d.e)),
+    (DesignKey::CouplerX, &["design.coupler_x"], Place::One(|d| &mut d.coupler_x)),
+    (DesignKey::CouplerY, &["design.coupler_y"], Place::One(|d| &mut d.coupler_y)),
 ];
 
 /// The bound of a dropped design key, in sizes of the target.
@@ -70,12 +77,12 @@ impl Demand {
         let asked = |kind: &RequirementKind| (kind.definition().is_asked)(problem);
         let given = |key: &DesignKey| !key.get(&problem.spec().design).is_empty();
         let requirements = RequirementKind::IN_CONFLICTS.into_iter().filter(asked).map(Demand::Require);
-        requirements.chain(DESIGN_KEYS.into_iter().filter(given).map(Demand::Design)).collect()
+        requirements.chain(DesignKey::all().filter(given).map(Demand::Design)).collect()
     }
 
     /// Returns the demand that a requirement of the record belongs to.
     pub fn named(name: &str) -> Option<Demand> {
-        let design = || DESIGN_KEYS.into_iter().find(|key| key.rows().contains(&name)).map(Demand::Design);
+        let design = || DesignKey::all().find(|key| key.rows().contains(&name)).map(Demand::Design);
         RequirementKind::named(name).map(Demand::Require).or_else(design)
     }
 
@@ -137,27 +144,21 @@ impl Demand {
                 spec.require.types.iter().all(|kind| names.iter().any(|name| name == kind.name()))
             }
             (policy, TypedValue::Word(word)) if policy.is_policy() => word == "any",
-            (Demand::Design(_), to) => {
+            (demand, to) => {
+                let is_design = matches!(demand, Demand::Design(_));
                 let values = match to {
-                    TypedValue::Number(value) => vec![*value; 2],
+                    TypedValue::Number(value) => vec![*value],
                     TypedValue::Numbers(values) => values.clone(),
-                    TypedValue::Pairs(pairs) => pairs.concat(),
-                    TypedValue::Word(_) | TypedValue::Words(_) => return false,
+                    TypedValue::Pairs(pairs) if is_design => pairs.concat(),
+                    TypedValue::Pairs(_) | TypedValue::Word(_) | TypedValue::Words(_) => return false,
                 };
                 self.limits(spec).is_some_and(|limits| {
-                    // A pivot that is fixed is typed as its two coordinates.
-                    let fixed = limits.len() == 2 * values.len();
+                    // A fixed length is typed as one number, a fixed pivot as its two coordinates.
+                    let fixed = is_design && limits.len() == 2 * values.len();
                     let values = if fixed { values.iter().flat_map(|v| [*v; 2]).collect() } else { values };
                     reach_out(&limits, &values)
                 })
             }
-            (_, TypedValue::Number(value)) => {
-                self.limits(spec).is_some_and(|limits| reach_out(&limits, &[*value]))
-            }
-            (_, TypedValue::Numbers(values)) => {
-                self.limits(spec).is_some_and(|limits| reach_out(&limits, values))
-            }
-            _ => false,
         }
     }
 
@@ -173,12 +174,12 @@ impl Demand {
         };
         let mut values = Vec::new();
         for row in rows {
-            match &row?.value {
+            let numbers = row?.value.numbers();
+            match self {
+                _ if numbers.is_empty() => return None,
                 // Bounds have two limits for one value.
-                Figure::Number(value) if matches!(self, Demand::Design(_)) => values.extend([*value; 2]),
-                Figure::Number(value) => values.push(*value),
-                Figure::Numbers(several) => values.extend(several),
-                Figure::Word(_) | Figure::Words(_) => return None,
+                Demand::Design(_) => values.extend(numbers.iter().flat_map(|value| [*value; 2])),
+                Demand::Require(_) => values.extend(numbers),
             }
         }
         Some(values)
@@ -230,52 +231,27 @@ impl DesignKey {
         }
     }
 
+    fn all() -> impl Iterator<Item = DesignKey> {
+        DESIGN_KEYS.iter().map(|(key, ..)| *key)
+    }
+
+    /// Returns the names of its rows among the requirements.
     fn rows(self) -> &'static [&'static str] {
-        match self {
-            DesignKey::CrankPivot => &["design.Ax", "design.Ay"],
-            DesignKey::FollowerPivot => &["design.Bx", "design.By"],
-            DesignKey::Ground => &["design.ground"],
-            DesignKey::GroundAngle => &["design.ground_angle_deg"],
-            DesignKey::Crank => &["design.a"],
-            DesignKey::Coupler => &["design.b"],
-            DesignKey::Follower => &["design.c"],
-            DesignKey::CrankSide => &["design.d"],
-            DesignKey::FollowerSide => &["design.e"],
-            DesignKey::CouplerX => &["design.coupler_x"],
-            DesignKey::CouplerY => &["design.coupler_y"],
-        }
+        DESIGN_KEYS[self as usize].1
     }
 
     /// Returns its limits: none if the problem does not contain the key, two of a pivot, else one.
     pub fn get(self, design: &DesignSpec) -> Vec<Limits> {
-        match self {
-            DesignKey::CrankPivot => design.crank_pivot.into_iter().flatten().collect(),
-            DesignKey::FollowerPivot => design.follower_pivot.into_iter().flatten().collect(),
-            DesignKey::Ground => design.ground.into_iter().collect(),
-            DesignKey::GroundAngle => design.ground_angle_deg.into_iter().collect(),
-            DesignKey::Crank => design.a.into_iter().collect(),
-            DesignKey::Coupler => design.b.into_iter().collect(),
-            DesignKey::Follower => design.c.into_iter().collect(),
-            DesignKey::CrankSide => design.d.into_iter().collect(),
-            DesignKey::FollowerSide => design.e.into_iter().collect(),
-            DesignKey::CouplerX => design.coupler_x.into_iter().collect(),
-            DesignKey::CouplerY => design.coupler_y.into_iter().collect(),
+        match DESIGN_KEYS[self as usize].2 {
+            Place::Pivot(of) => of(&mut design.clone()).iter().flatten().copied().collect(),
+            Place::One(of) => of(&mut design.clone()).iter().copied().collect(),
         }
     }
 
     fn set(self, design: &mut DesignSpec, limits: impl Fn(usize) -> Limits) {
-        match self {
-            DesignKey::CrankPivot => design.crank_pivot = Some([limits(0), limits(1)]),
-            DesignKey::FollowerPivot => design.follower_pivot = Some([limits(0), limits(1)]),
-            DesignKey::Ground => design.ground = Some(limits(0)),
-            DesignKey::GroundAngle => design.ground_angle_deg = Some(limits(0)),
-            DesignKey::Crank => design.a = Some(limits(0)),
-            DesignKey::Coupler => design.b = Some(limits(0)),
-            DesignKey::Follower => design.c = Some(limits(0)),
-            DesignKey::CrankSide => design.d = Some(limits(0)),
-            DesignKey::FollowerSide => design.e = Some(limits(0)),
-            DesignKey::CouplerX => design.coupler_x = Some(limits(0)),
-            DesignKey::CouplerY => design.coupler_y = Some(limits(0)),
+        match DESIGN_KEYS[self as usize].2 {
+            Place::Pivot(of) => *of(design) = Some([limits(0), limits(1)]),
+            Place::One(of) => *of(design) = Some(limits(0)),
         }
     }
 
@@ -301,6 +277,14 @@ impl DesignKey {
             _ => self.set(design, |i| Limits(0.0, old[i].1.max(far))),
         }
     }
+}
+
+/// Returns the limits that the design gives to one row of the requirements, such as `design.Ax`.
+pub fn design_limits(design: &DesignSpec, row: &str) -> Option<Limits> {
+    DESIGN_KEYS.iter().find_map(|(key, rows, _)| {
+        let place = rows.iter().position(|name| *name == row)?;
+        key.get(design).get(place).copied()
+    })
 }
 
 /// Returns the changes to type that lead from a problem to one in which `demands` have been loosened.

@@ -28,22 +28,9 @@ const ROUNDED: f64 = 16.0 * f64::EPSILON;
 /// The length, relative to the span, up to which a link counts as having none: its length is rounding.
 pub const NO_LENGTH: f64 = 1e-9;
 
-/// The driven link, one of the two on the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Driven {
-    /// The link from a to x.
-    First,
-    /// The link from b to y.
-    Second,
-}
-
 /// One of the six ways to build a class, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mechanism {
-    /// Index of the cognate: 0 is the solution itself, 1 and 2 follow by [`Solution::cognate`].
-    pub cognate: usize,
-    /// The link of that cognate that is the crank.
-    pub driven: Driven,
     /// The linkage; its assembly t1 is that of the first point.
     pub linkage: FourBar,
     /// The crank angle at each point, radians in (-pi, pi].
@@ -100,20 +87,11 @@ impl Real {
         }
     }
 
-    /// Builds the mechanism with its positions; `None` if its lengths make no linkage.
-    fn mechanism(
-        &self,
-        task: &PathTask,
-        target: &Target,
-        cognate: usize,
-        driven: Driven,
-    ) -> Option<Mechanism> {
-        let (first, second) = match driven {
-            Driven::First => (0, 1),
-            Driven::Second => (1, 0),
-        };
-        let (x, y) = (self.pins[first], self.pins[second]);
-        let (a, b) = (self.grounds[first], self.grounds[second]);
+    /// Builds the mechanism whose crank is the `driven` one of the two links on the ground, with its positions; `None`
+    /// if its lengths make no linkage.
+    fn mechanism(&self, task: &PathTask, target: &Target, driven: usize) -> Option<Mechanism> {
+        let (x, y) = (self.pins[driven], self.pins[1 - driven]);
+        let (a, b) = (self.grounds[driven], self.grounds[1 - driven]);
         let scale = target.scale;
         let pivots = [target.points[0] + a * scale, target.points[0] + b * scale];
         let along = (y - x) / (y - x).norm();
@@ -151,9 +129,7 @@ impl Real {
         }
         let defects = judge(task, &linkage, &crank_angles, &assemblies).defects;
         let passes = miss_over_limit <= 1.0;
-        let mechanism = Mechanism {
-            cognate,
-            driven,
+        Some(Mechanism {
             linkage,
             crank_angles,
             assemblies,
@@ -162,8 +138,7 @@ impl Real {
             least_sine,
             passes,
             defects,
-        };
-        Some(mechanism)
+        })
     }
 }
 
@@ -172,10 +147,9 @@ impl Real {
 pub fn mechanisms(task: &PathTask, target: &Target, solution: &Solution) -> Vec<Mechanism> {
     let mut form = *solution;
     let mut list = Vec::with_capacity(6);
-    for cognate in 0..3 {
-        let both = [Driven::First, Driven::Second];
+    for _ in 0..3 {
         let real = Real::of(&form);
-        list.extend(both.into_iter().filter_map(|driven| real.mechanism(task, target, cognate, driven)));
+        list.extend((0..2).filter_map(|driven| real.mechanism(task, target, driven)));
         form = form.cognate(&target.displacements);
     }
     list

@@ -121,19 +121,14 @@ pub(super) fn severity(candidate: &Candidate) -> usize {
 
 /// Returns the key by which, of candidates that meet all other requirements, the nearest to the tolerances comes first.
 fn missed(candidate: &Candidate) -> (bool, f64) {
-    let row = candidate
-        .requirements
-        .iter()
-        .find(|r| !candidate.accepted && r.name == RequirementKind::Tolerance.name());
-    row.map_or((false, 0.0), |row| {
-        let otherwise =
-            candidate.requirements.iter().all(|r| r.met || r.name == RequirementKind::Tolerance.name());
-        let part = match (&row.value, &row.limit) {
-            (Figure::Number(value), Figure::Number(limit)) if !row.met => value / limit,
-            _ => 0.0,
-        };
-        (!otherwise, part)
-    })
+    let tolerance = RequirementKind::Tolerance.name();
+    let row = candidate.requirements.iter().find(|r| r.name == tolerance);
+    let Some(row) = row.filter(|_| !candidate.accepted) else { return (false, 0.0) };
+    let others = candidate.requirements.iter().any(|r| !r.met && r.name != tolerance);
+    match (&row.value, &row.limit) {
+        (Figure::Number(value), Figure::Number(limit)) if !row.met => (others, value / limit),
+        _ => (others, 0.0),
+    }
 }
 
 /// Returns the longest of the links and the coupler's side.
@@ -158,7 +153,7 @@ pub fn sort(problem: &Problem, candidates: &mut [Candidate]) {
 /// If at least one is accepted, only accepted ones are given. If one answer is wanted, no curve is computed and nothing
 /// compared but the ranks.
 pub fn chosen(problem: &Problem, found: &[Candidate], wanted: usize) -> Vec<usize> {
-    chosen_but_for(problem, &Symmetries::none(), found, wanted)
+    chosen_but_for(problem, &Symmetries::default(), found, wanted)
 }
 
 /// As [`chosen`]; images under a symmetry of the target count as the same answer too.
@@ -203,8 +198,11 @@ fn chosen_but_for(
             if least < apart {
                 continue;
             }
-            dropped[i] = taken.iter().any(|&k| looks[i].draws_the_curve_of(&looks[k], reach))
-                || images.iter().any(|image| image.is(&looks[i], NEAR, reach));
+            let own = &looks[i];
+            dropped[i] = taken.iter().any(|&k| own.draws_the_curve_of(&looks[k], reach))
+                || images
+                    .iter()
+                    .any(|image| own.difference(image) < NEAR || own.draws_the_curve_of(image, reach));
             if !dropped[i] {
                 taken.push(i);
                 images.extend(symmetries.images(problem, &found[i]).map(|c| Look::of(Cow::Owned(c))));
@@ -231,20 +229,10 @@ pub fn count_distinct(problem: &Problem, found: &[Candidate], wanted: usize) -> 
 /// images that a symmetric target allows one is given.
 pub fn divided(problem: &Problem, found: Vec<Candidate>, wanted: usize) -> (Vec<Candidate>, Vec<Candidate>) {
     let places = chosen_but_for(problem, &Symmetries::of(problem), &found, wanted);
-    let mut rank_of = vec![0; found.len()];
-    for (rank, &place) in (1..).zip(&places) {
-        rank_of[place] = rank;
-    }
-    let (mut best, mut others) = (Vec::with_capacity(places.len()), Vec::with_capacity(found.len()));
-    for (candidate, rank) in found.into_iter().zip(rank_of) {
-        if rank > 0 {
-            best.push(Candidate { rank, ..candidate });
-        } else {
-            others.push(candidate);
-        }
-    }
-    best.sort_by_key(|candidate| candidate.rank);
-    (best, others)
+    let mut found: Vec<Option<Candidate>> = found.into_iter().map(Some).collect();
+    let ranked = (1..).zip(places);
+    let best = ranked.filter_map(|(rank, place)| Some(Candidate { rank, ..found[place].take()? })).collect();
+    (best, found.into_iter().flatten().collect())
 }
 
 /// Returns the best distinct candidates, at most `wanted`, ranked from 1.

@@ -17,7 +17,9 @@
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::mobility::{step_along, wrapped};
 use crate::mechanism::four_bar::transmission::TransmissionExtremes;
-use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Joints, OnCircuit, least_and_greatest};
+use crate::mechanism::{
+    AssemblyMode, FourBar, InputArc, Joints, OnCircuit, bounding_box, least_and_greatest,
+};
 use crate::task::Defect;
 use crate::task::defect::ORDER_TOLERANCE;
 use crate::task::{PathTask, Return, Timing};
@@ -242,12 +244,7 @@ impl UsedMotion {
     pub fn footprint(&self) -> [f64; 4] {
         const SAMPLES: usize = 720;
         let joints_of = |j: &Joints| [j.crank_pin, j.follower_pin, j.coupler_point];
-        let mut bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
-        let mut hold = |p: Complex| {
-            bounds = [bounds[0].min(p.re), bounds[1].min(p.im), bounds[2].max(p.re), bounds[3].max(p.im)];
-        };
-        hold(self.on.linkage.crank_pivot());
-        hold(self.on.linkage.follower_pivot());
+        let mut reached = vec![self.on.linkage.crank_pivot(), self.on.linkage.follower_pivot()];
         let step = (self.range[1] - self.range[0]) / SAMPLES as f64;
         // Each sample once, for all joints and directions.
         let [low, high] = self.range;
@@ -278,13 +275,11 @@ impl UsedMotion {
                         low += third;
                     }
                 }
-                for t in [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])] {
-                    if let Some(j) = self.on.joints_at(t) {
-                        hold(joints_of(&j)[joint]);
-                    }
-                }
+                let ends = [best, (0.5 * (low + high)).clamp(self.range[0], self.range[1])];
+                reached.extend(ends.iter().filter_map(|t| Some(joints_of(&self.on.joints_at(*t)?)[joint])));
             }
         }
-        bounds
+        let [low, high] = bounding_box(reached.into_iter());
+        [low.re, low.im, high.re, high.im]
     }
 }

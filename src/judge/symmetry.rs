@@ -46,17 +46,12 @@ struct Symmetry {
 pub struct Symmetries(Vec<Symmetry>);
 
 impl Symmetries {
-    /// Returns an empty set of symmetries.
-    pub fn none() -> Self {
-        Symmetries::default()
-    }
-
     /// Finds the symmetries of a problem's target: of its points, weights and tolerances.
     pub fn of(problem: &Problem) -> Self {
         let task = problem.task();
         let all = task.points();
         if all.len() > MOST_POINTS {
-            return Symmetries::none();
+            return Symmetries::default();
         }
         // The closing point is the first one again.
         let points = if task.repeats_first() { &all[..all.len() - 1] } else { all };

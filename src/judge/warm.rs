@@ -54,12 +54,8 @@ fn direction_and_offset(problem: &Problem, crank_deg: &[f64]) -> (f64, f64) {
             .map(|(has, asks)| ((has - crank_deg[0]) - direction * (asks - written[0])).abs())
             .fold(0.0, f64::max)
     };
-    let mut direction = 1.0;
-    for &other in problem.directions() {
-        if off(other) < off(direction) || !problem.directions().contains(&direction) {
-            direction = other;
-        }
-    }
+    let directions = problem.directions().iter().copied();
+    let direction = directions.min_by(|one, other| off(*one).total_cmp(&off(*other))).unwrap_or(1.0);
     let offset = (crank_deg[0] - direction * written[0]).to_radians();
     (direction, if problem.offset_is_free() { offset } else { 0.0 })
 }

@@ -18,7 +18,9 @@ pub mod four_bar;
 pub mod plates;
 mod unit;
 
-pub use crate::numbers::arithmetic::{Complex, cross, dot, least_and_greatest, length, point, turned, xy};
+pub use crate::numbers::arithmetic::{
+    Complex, bounding_box, cross, dot, from_segment, least_and_greatest, length, point, turned, xy,
+};
 pub use any::Linkage;
 pub use chain::{Chain, ChainBuilder};
 pub use four_bar::{

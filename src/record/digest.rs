@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 #[error("the problem cannot be written as JSON: {0}")]
 pub struct NotWritten(String);
 
-/// The reason why a record's problem is none.
+/// The reason why a record's problem cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ProblemError {
     /// The task is invalid.
@@ -55,5 +55,10 @@ pub fn digest(spec: &ProblemSpec) -> Result<String, NotWritten> {
         seed: solve.seed,
     })
     .map_err(|e| NotWritten(e.to_string()))?;
-    Ok(Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(hex(&Sha256::digest(&text)))
+}
+
+/// Returns bytes as lower-case hexadecimal digits.
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

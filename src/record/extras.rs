@@ -1,4 +1,4 @@
-//! What stands beside a candidate's figures: warnings, the same curve by other linkages, families of answers.
+//! Additions to a candidate's figures: warnings, the same curve by other linkages, families of answers.
 
 use crate::mechanism::{AssemblyMode, FourBar, LinkageType};
 use serde::{Deserialize, Serialize};

@@ -8,9 +8,9 @@
 //! | [`certificate`] | what is proved about a result: no linkage of the covered kind can have a lower sum of squares |
 //! | [`digest`] | the digest of the data that determine a search |
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
-//! | [`extras`] | what stands beside a candidate's figures: warnings, the same curve by other linkages, families of answers |
+//! | [`extras`] | additions to a candidate's figures: warnings, the same curve by other linkages, families of answers |
 //! | [`limits`] | what a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file |
-//! | [`repeats`] | how often the best answer came back, and what that says of better ones that were not seen |
+//! | [`repeats`] | repeated hits of the best answer, and the chance that a better one was not seen |
 //! | [`statistics`] | statistics of many runs: medians, hits, the best run |
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
 
@@ -352,6 +352,12 @@ pub enum Figure {
     Words(Vec<String>),
 }
 
+/// Returns a list as it is typed: `[1, 2]`.
+fn list(items: impl IntoIterator<Item: ToString>) -> String {
+    let items: Vec<String> = items.into_iter().map(|item| item.to_string()).collect();
+    format!("[{}]", items.join(", "))
+}
+
 impl Figure {
     /// Returns the number or numbers; none for words.
     pub fn numbers(&self) -> &[f64] {
@@ -365,12 +371,11 @@ impl Figure {
 
 impl std::fmt::Display for Figure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
         match self {
             Figure::Number(number) => write!(f, "{number}"),
-            Figure::Numbers(numbers) => f.write_str(&list(numbers.iter().map(f64::to_string).collect())),
+            Figure::Numbers(numbers) => f.write_str(&list(numbers)),
             Figure::Word(word) => f.write_str(word),
-            Figure::Words(words) => f.write_str(&list(words.clone())),
+            Figure::Words(words) => f.write_str(&list(words)),
         }
     }
 }
@@ -459,16 +464,12 @@ pub enum TypedValue {
 
 impl std::fmt::Display for TypedValue {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let list = |items: Vec<String>| format!("[{}]", items.join(", "));
-        let numbers = |numbers: &[f64]| list(numbers.iter().map(f64::to_string).collect());
         match self {
             TypedValue::Number(number) => write!(f, "{number}"),
-            TypedValue::Numbers(values) => f.write_str(&numbers(values)),
-            TypedValue::Pairs(pairs) => f.write_str(&list(pairs.iter().map(|p| numbers(p)).collect())),
+            TypedValue::Numbers(values) => f.write_str(&list(values)),
+            TypedValue::Pairs(pairs) => f.write_str(&list(pairs.iter().map(list))),
             TypedValue::Word(word) => f.write_str(word),
-            TypedValue::Words(words) => {
-                f.write_str(&list(words.iter().map(|w| format!("\"{w}\"")).collect()))
-            }
+            TypedValue::Words(words) => f.write_str(&list(words.iter().map(|w| format!("\"{w}\"")))),
         }
     }
 }

@@ -1,8 +1,8 @@
-//! How often the best answer came back, and what that says of better ones that were not seen.
+//! Repeated hits of the best answer, and the chance that a better one was not seen.
 //!
 //! A *start* is one independent draw of a search: it ends in one of the basins of the objective, in each with a
 //! probability of its own, its *share*. Of n starts h ended in the best basin. Nothing below is a proof: each figure
-//! holds under the assumptions that stand beside it.
+//! holds under the assumptions that are given beside it.
 //!
 //! ```text
 //! as_likely     = 2^-h              a better basin with the same share as the best: of the starts that end in one of
@@ -21,11 +21,11 @@
 //! ```
 //!
 //! and each of the K is the best one with the same probability, so that it is among those seen with w/K. Gauss's sum of
-//! the hypergeometric series gives E(w/K) = (m-w-1)/(m-1), and one minus that stands above.
+//! the hypergeometric series gives E(w/K) = (m-w-1)/(m-1), and `unseen_better` is one minus that.
 
 use serde::{Deserialize, Serialize};
 
-/// What a share is seen with: 1 - 0.05.
+/// The probability with which a basin of the given share is missed.
 const MISSED: f64 = 0.05;
 
 /// How often the best answer came back from independent starts.
@@ -54,7 +54,7 @@ pub struct Repeats {
 }
 
 impl Repeats {
-    /// Of `starts` starts `hits` came to the best and `near` near it.
+    /// Returns the figures of `starts` starts, of which `hits` came to the best and `near` near it.
     pub fn new(starts: u64, hits: u64, near: u64) -> Self {
         Repeats {
             starts,
@@ -68,7 +68,7 @@ impl Repeats {
         }
     }
 
-    /// The same with `followed` of the starts that came to `basins` different basins.
+    /// Adds that `followed` of the starts came to `basins` different basins.
     #[must_use]
     pub fn with_basins(self, followed: u64, basins: u64) -> Self {
         let few = basins > 0 && followed >= basins + 2;
@@ -76,7 +76,7 @@ impl Repeats {
         Repeats { followed: Some(followed), basins: Some(basins), unseen_better, ..self }
     }
 
-    /// The same counts with every figure that follows from them worked out anew.
+    /// Returns the same counts with every figure that follows from them recomputed.
     #[must_use]
     pub fn recomputed(&self) -> Self {
         let counted = Repeats::new(self.starts, self.hits, self.near);

@@ -8,7 +8,7 @@ use crate::judge::practicality::clearance::PivotDistance;
 use crate::judge::practicality::layers::{Layering, PinPlate, PlatePair, Stack, clear};
 use crate::judge::practicality::sensitivity::{Crank, Dimension, Sensitivity};
 use crate::judge::practicality::sweep::Stretch;
-use crate::judge::practicality::{Closest, Pin, Practicality};
+use crate::judge::practicality::{Closest, Joint, Practicality};
 use crate::mechanism::Unit;
 use crate::mechanism::plates::Link;
 
@@ -96,12 +96,11 @@ impl Words {
         out.extend(layering.free_pairs.iter().map(|pair| self.pair(pair)));
         match &layering.stack {
             Some(stack) => {
-                let through = |(pin, layer): &(Pin, usize)| self.through(layering, stack, *pin, *layer);
+                let through = |(pin, layer): &(Joint, usize)| self.through(layering, stack, *pin, *layer);
                 out.extend(stack.through.iter().map(through));
             }
             None => {
-                let (_, crossed) = layering.obstacles();
-                out.extend(crossed.iter().map(|p| self.crossing(p)));
+                out.extend(layering.crossings().map(|p| self.crossing(p)));
                 out.push(ALWAYS.to_owned());
             }
         }
@@ -131,7 +130,7 @@ impl Words {
         )
     }
 
-    fn through(&self, layering: &Layering, stack: &Stack, pin: Pin, layer: usize) -> String {
+    fn through(&self, layering: &Layering, stack: &Stack, pin: Joint, layer: usize) -> String {
         let beside: Vec<String> = stack.layers[layer]
             .iter()
             .filter_map(|plate| layering.pins_plates.iter().find(|p| p.pin == pin && p.plate == *plate))

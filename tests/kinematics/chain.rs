@@ -467,9 +467,14 @@ fn the_input_range_of_a_four_bar_is_its_mobility() {
         side: CouplerSide::Plus,
     })
     .unwrap();
-    let ChainInput::Arcs(arcs) = as_chain(&linkage).input(720) else { panic!("it rocks") };
+    let chain = as_chain(&linkage);
+    let ChainInput::Arcs(arcs) = chain.input(720) else { panic!("it rocks") };
     let limit = ((36.0_f64 + 16.0 - 6.5 * 6.5) / 48.0).acos();
-    let [ChainArc { from, to, limited_before: 0, limited_after: 0 }] = arcs[..] else { panic!("{arcs:?}") };
+    let [ChainArc { from, to }] = arcs[..] else { panic!("{arcs:?}") };
+    // On either side the first stage opens.
+    for beside in [from - 1e-9, to + 1e-9] {
+        assert_eq!(chain.position(beside, &mut chain.pose()), Outcome::Open { stage: 0 });
+    }
     // Within the tolerance for flat triangles, 1e-12 of b^2.
     assert!((from - (TAU - limit)).abs() < 1e-10 && (to - TAU - limit).abs() < 1e-10, "{from} {to} {limit}");
 }
@@ -486,12 +491,12 @@ fn errors_name_the_stage_the_key_and_the_point() {
         dyad("C", ["B", "E"], [1.0, 1.0]).to_string(),
         "stage 1, \"C\", from: there is no point \"E\""
     );
-    assert_eq!(dyad("B", ["B", "D"], [1.0, 1.0]).fault, ChainFault::DuplicateName { name: "B".into() });
+    assert_eq!(dyad("B", ["B", "D"], [1.0, 1.0]).fault, ChainFault::DuplicateName("B".into()));
     let error = dyad("C", ["B", "D"], [1.0, f64::NAN]);
-    assert!(matches!(error.fault, ChainFault::NotFinite { value } if value.is_nan()));
+    assert!(matches!(error.fault, ChainFault::NotFinite(value) if value.is_nan()));
     assert_eq!((error.place, error.key, error.index), (ChainPlace::Stage(0), "lengths", Some(1)));
-    assert_eq!(dyad("C", ["B", "D"], [0.0, 1.0]).fault, ChainFault::LengthNotPositive { value: 0.0 });
-    assert_eq!(dyad("C", ["B", "B"], [1.0, 1.0]).fault, ChainFault::SamePoint { name: "B".into() });
+    assert_eq!(dyad("C", ["B", "D"], [0.0, 1.0]).fault, ChainFault::LengthNotPositive(0.0));
+    assert_eq!(dyad("C", ["B", "B"], [1.0, 1.0]).fault, ChainFault::SamePoint("B".into()));
     assert!(matches!(
         dyad("C", ["C", "B"], [1.0; 2]).fault,
         ChainFault::ForwardReference { itself: true, .. }

@@ -3,6 +3,7 @@
 //! they should.
 
 use crate::reference::{linkage, shipped_linkage};
+use linkwright::internals::judge::error::distances_to_curve;
 use linkwright::internals::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar, LinkageType};
 use linkwright::internals::task::{AngleOffset, PathOptions, PathTask, Timing};
 use std::f64::consts::{PI, TAU};
@@ -61,7 +62,9 @@ fn least(f: impl Fn(f64) -> f64) -> f64 {
 /// What a linkage gives on a problem, as the problem's timing asks.
 fn sum_of(task: &PathTask, linkage: &FourBar) -> f64 {
     match task.timing() {
-        Timing::Free => task.errors_to_curve(linkage, 0.0, linkage.assembly()).expect("a curve").sum_sq,
+        Timing::Free => {
+            distances_to_curve(task.points(), linkage, 0.0, linkage.assembly()).expect("a curve").sum_sq
+        }
         Timing::Prescribed { crank_angles, offset } => {
             let shifted = |by: f64, direction: f64| {
                 let angles: Vec<f64> = crank_angles.iter().map(|angle| by + direction * angle).collect();

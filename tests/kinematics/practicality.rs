@@ -1,14 +1,14 @@
 //! Layers and least distances against a brute-force sweep of the plates' outlines; sensitivities against Monte Carlo.
 
 use crate::random::{TYPES, linkage};
-use linkwright::internals::judge::practicality::clearance::{MARGIN, Workpieces, pivot_distances};
-use linkwright::internals::judge::practicality::closest::RELATIVE;
+use linkwright::internals::judge::practicality::clearance::{Workpieces, pivot_distances};
+use linkwright::internals::judge::practicality::closest::{MARGIN, RELATIVE};
 use linkwright::internals::judge::practicality::layers::{FREE_PAIRS, clear, layering};
 use linkwright::internals::judge::practicality::sensitivity::{
     At, Crank, Sensitivity, along, is_flat, sensitivity,
 };
 use linkwright::internals::judge::practicality::sweep::Stretch;
-use linkwright::internals::judge::practicality::{Build, Pin, Sweep};
+use linkwright::internals::judge::practicality::{Build, Joint, Sweep};
 use linkwright::internals::mechanism::plates::{Edge, Link, Plate};
 use linkwright::internals::mechanism::{
     AssemblyMode, Complex, CouplerCurve, CouplerSide, FourBar, Joints, LinkageType, NaturalCoordinates,
@@ -170,9 +170,9 @@ fn no_distance_is_below_its_bound_and_each_is_near_the_least_of_a_fine_sweep() {
                 assert!(p.closest.value < 0.0, "{i}: {p:?}");
             }
         }
-        for p in &found.pins {
-            let of = |j: &Joints| (p.pins[0].at(&l, j) - p.pins[1].at(&l, j)).norm() - 2.0 * build.pin_radius;
-            check("pins", &p.closest, least(&of));
+        for ([one, other], closest) in &found.pins {
+            let of = |j: &Joints| (one.at(&l, j) - other.at(&l, j)).norm() - 2.0 * build.pin_radius;
+            check("pins", closest, least(&of));
         }
     }
 }
@@ -213,7 +213,7 @@ fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usi
     let free = [plate_clear(Link::Crank, Link::Follower), plate_clear(Link::Coupler, Link::Ground)];
     let ends: [[usize; 2]; 4] = [[0, 1], [0, 3], [1, 2], [2, 3]];
     let mut pin_plate = [[false; 4]; 4];
-    for (p, pin) in Pin::ALL.into_iter().enumerate() {
+    for (p, pin) in Joint::PINS.into_iter().enumerate() {
         for (q, plate) in Link::ALL.into_iter().enumerate() {
             pin_plate[p][q] = least(&|j| {
                 to_hull(pin.at(l, j), &holes(l, plate, j)) - build.plate_radius - build.pin_radius
@@ -221,7 +221,7 @@ fn fewest_by_brute_force(l: &FourBar, sweep: &Sweep, build: Build) -> Option<usi
         }
     }
     let pin_pin = |p: usize, q: usize| {
-        least(&|j| (Pin::ALL[p].at(l, j) - Pin::ALL[q].at(l, j)).norm() - 2.0 * build.pin_radius) > 0.0
+        least(&|j| (Joint::PINS[p].at(l, j) - Joint::PINS[q].at(l, j)).norm() - 2.0 * build.pin_radius) > 0.0
     };
     let mut fewest = None;
     for code in 0..256_usize {
@@ -259,7 +259,7 @@ fn the_fewest_layers_are_those_of_every_stacking_tried_by_brute_force() {
         let near =
             found.free_pairs.iter().map(|p| p.closest).chain(found.pins_plates.iter().map(|p| p.closest));
         if near
-            .chain(found.pins.iter().map(|p| p.closest))
+            .chain(found.pins.iter().map(|(_, closest)| *closest))
             .any(|c| c.value.abs() < 2.0 * MARGIN * l.longest_link())
         {
             continue;
@@ -300,7 +300,7 @@ fn a_drag_link_stands_on_its_ground_from_both_sides_and_a_small_crank_takes_thre
         found.layers,
         [[Link::Crank], [Link::Ground], [Link::Follower], [Link::Coupler]].map(Vec::from)
     );
-    assert_eq!(found.through, [(Pin::C, 1), (Pin::C, 2)]);
+    assert_eq!(found.through, [(Joint::C, 1), (Joint::C, 2)]);
     // With plates so broad that this pin, never more than 30 from B, cannot pass, nothing works.
     let broad = Build { plate_radius: 24.0, pin_radius: 8.0 };
     assert_eq!(stack(&l, &Sweep::of_linkage(&l).expect("joined"), broad), None);

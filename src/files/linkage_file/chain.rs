@@ -278,7 +278,7 @@ fn explain(toml: &TomlText<'_>, error: &ChainError, paths: &[String]) -> Box<Dia
     let message = match fault {
         // A name may be any text, so it is quoted.
         ChainFault::UnknownPoint { name, .. } => format!("there is no point {}", quoted(name)),
-        ChainFault::BadName { name } => format!("{} is no name of a point", quoted(name)),
+        ChainFault::BadName(name) => format!("{} is no name of a point", quoted(name)),
         ChainFault::NotAPivot { name, .. } => format!("{} is not a fixed pivot", quoted(name)),
         other => other.to_string(),
     };

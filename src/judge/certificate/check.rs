@@ -35,22 +35,17 @@ pub enum CheckError {
     Parts,
     /// A leaf could not be proved.
     #[error(
-        "leaf {leaf} of part {part} is not shown within {MOST_BOXES} boxes: p {p:?}, phi {phi:?}, g {g:?}, d {d:?} as \
-         \"{rule}\"; verify --certificate works it out by the rules of the search"
+        "leaf {leaf} of part {part} is not shown within {MOST_BOXES} boxes: p {:?}, phi {:?}, g {:?}, d {:?} as \
+         \"{rule}\"; verify --certificate works it out by the rules of the search",
+        sides[0], sides[1], sides[2], sides[3]
     )]
     Leaf {
         /// The part, from 1.
         part: usize,
         /// The leaf, from 1, in the order of the file.
         leaf: u64,
-        /// The range of p.
-        p: [f64; 2],
-        /// The range of phi.
-        phi: [f64; 2],
-        /// The range of g.
-        g: [f64; 2],
-        /// The range of d.
-        d: [f64; 2],
+        /// The ranges of p, phi, g and d.
+        sides: [[f64; 2]; 4],
         /// The rule that the file gives for it.
         rule: &'static str,
     },
@@ -65,16 +60,12 @@ impl CheckError {
     pub fn is_refuted(&self) -> bool {
         !matches!(self, CheckError::Leaf { .. } | CheckError::Stopped)
     }
-}
 
-impl CheckError {
     fn of(unproved: Unproved, part: usize) -> Self {
         match unproved {
             Unproved::Uncovered(what) => LeavesError::Uncovered { part, what }.into(),
             Unproved::Degenerate => NoCertificate::Target(TargetError::Degenerate).into(),
-            Unproved::Leaf { leaf, sides: [p, phi, g, d], rule } => {
-                CheckError::Leaf { part, leaf, p, phi, g, d, rule }
-            }
+            Unproved::Leaf { leaf, sides, rule } => CheckError::Leaf { part, leaf, sides, rule },
             Unproved::Stopped => CheckError::Stopped,
         }
     }

@@ -94,7 +94,7 @@ impl Proof {
         let mut rest = bytes.strip_prefix(MAGIC).ok_or(ResumeError::Foreign)?;
         let version = u32::from_le_bytes(take(&mut rest)?);
         let [length] = take::<1>(&mut rest)?;
-        let (program, mut rest) = rest.split_at_checked(length.into()).ok_or(ResumeError::Changed)?;
+        let program = rest.split_off(..length.into()).ok_or(ResumeError::Changed)?;
         if version != VERSION || program != PROGRAM.as_bytes() {
             let by = format!("{} (format {version})", String::from_utf8_lossy(program).escape_debug());
             return Err(ResumeError::OtherVersion { by, us: format!("{PROGRAM} (format {VERSION})") });
@@ -114,13 +114,11 @@ impl Proof {
             let decided = f64::from_le_bytes(take(&mut rest)?);
             let count = u64::from_le_bytes(take(&mut rest)?);
             let length = usize::try_from(count.div_ceil(2)).map_err(|_| ResumeError::Changed)?;
-            let (own, others) = rest.split_at_checked(length).ok_or(ResumeError::Changed)?;
-            rest = others;
+            let own = rest.split_off(..length).ok_or(ResumeError::Changed)?;
             let nodes = Nodes::from_bytes(own, count).ok_or(ResumeError::Changed)?;
             let waiting = nodes.codes().filter(|code| *code == OPEN).count();
             let length = waiting.checked_mul(OPEN_BYTES).ok_or(ResumeError::Changed)?;
-            let (mut own, others) = rest.split_at_checked(length).ok_or(ResumeError::Changed)?;
-            rest = others;
+            let mut own = rest.split_off(..length).ok_or(ResumeError::Changed)?;
             let mut open = Vec::with_capacity(waiting);
             while !own.is_empty() {
                 let number = u32::from_le_bytes(take(&mut own)?);

@@ -138,7 +138,7 @@ pub fn certify(
 /// recorded one is true; `None` if `cancel` was set before the end.
 ///
 /// # Errors
-/// [`NoCertificate`] if the record has a task for which there is none.
+/// [`NoCertificate`] if no certificate is available for the record's task.
 pub fn recheck(
     record: &Record,
     recorded: &Certificate,

@@ -6,6 +6,7 @@ use crate::mechanism::LinkageType;
 use crate::numbers::bound::target::{MAX_POINTS, TargetError};
 use crate::numbers::leaves::{Angles, Leaves, OPEN, ROOT, root};
 use crate::numbers::leaves::{Axis, Cell, Class, Line};
+use crate::record::digest::hex;
 use crate::record::{Certificate, CertificatePart, Record};
 use crate::task::AngleOffset;
 use crate::task::spec::{Limits, Objective, OnePolicy};
@@ -109,23 +110,18 @@ impl Subject {
         let largest = |limits: Limits| limits.0.abs().max(limits.1.abs());
         let by_box = design.coupler_x.zip(design.coupler_y).map(|(x, y)| largest(x).hypot(largest(y)));
         let by_length = design.d.map(largest);
-        let limit = match (by_box, by_length) {
-            (Some(x), Some(y)) => x.min(y),
-            (Some(x), None) | (None, Some(x)) => x,
-            (None, None) => return Err(NoCertificate::NoLimits),
+        let limits = [by_box, by_length].into_iter().flatten();
+        let limit = limits.reduce(f64::min).ok_or(NoCertificate::NoLimits)?;
+        let (angles, classes) = match timing.offset {
+            AngleOffset::Free => (Angles::Increments, Class::ALL.to_vec()),
+            AngleOffset::Ground => (Angles::Ground, Class::ALL.to_vec()),
+            AngleOffset::Fixed => (Angles::Axis(axis_of(design)), classes(&spec.require.types)),
         };
         Ok(Subject {
             points: task.points().iter().map(|p| [p.re, p.im]).collect(),
             turns_deg: timing.crank_deg.clone(),
-            angles: match timing.offset {
-                AngleOffset::Free => Angles::Increments,
-                AngleOffset::Ground => Angles::Ground,
-                AngleOffset::Fixed => Angles::Axis(axis_of(design)),
-            },
-            classes: match timing.offset {
-                AngleOffset::Fixed => classes(&spec.require.types),
-                AngleOffset::Free | AngleOffset::Ground => Class::ALL.to_vec(),
-            },
+            angles,
+            classes,
             directions: problem.directions().to_vec(),
             limit,
             cap: limit * (1.0 + 1e-9),
@@ -233,16 +229,9 @@ impl Subject {
 
 /// Returns the classes that contain linkages of these types; all if none does.
 fn classes(types: &[LinkageType]) -> Vec<Class> {
-    let own = |class: &Class| match class {
-        Class::CrankRocker => LinkageType::CrankRocker,
-        Class::DoubleCrank => LinkageType::DoubleCrank,
+    let holds = |class: &Class| {
+        types.iter().any(|kind| *kind == LinkageType::ChangePoint || kind.name() == class.name())
     };
-    let holds = |class: &Class| types.contains(&own(class)) || types.contains(&LinkageType::ChangePoint);
-    let all = Class::ALL.to_vec();
-    let some: Vec<Class> = all.iter().copied().filter(holds).collect();
-    if some.is_empty() { all } else { some }
-}
-
-fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    let some: Vec<Class> = Class::ALL.into_iter().filter(holds).collect();
+    if some.is_empty() { Class::ALL.to_vec() } else { some }
 }

@@ -35,18 +35,15 @@ impl Subject {
                 "the crank angles from the x axis, as prescribed".into(),
             ),
         };
-        let class = match self.classes[..] {
-            [Class::CrankRocker] => "crank-rockers",
-            [Class::DoubleCrank] => "double-cranks",
-            _ => "crank-rockers and double-cranks",
-        };
-        let mut linkage = match self.classes[..] {
-            [Class::CrankRocker] => "crank-rocker".to_owned(),
-            [Class::DoubleCrank] => "double-crank".to_owned(),
-            _ => "four-bar linkage whose input turns fully".to_owned(),
+        let (classes, mut linkage) = match self.classes[..] {
+            [only] => (format!("{}s", only.name()), only.name().to_owned()),
+            _ => (
+                "crank-rockers and double-cranks".to_owned(),
+                "four-bar linkage whose input turns fully".to_owned(),
+            ),
         };
         let mut covered = vec![
-            format!("{class}, and linkages with change points as long as they stay in one assembly"),
+            format!("{classes}, and linkages with change points as long as they stay in one assembly"),
             "either assembly, the same at all points".into(),
             first,
         ];
@@ -67,10 +64,10 @@ impl Subject {
                     "any lengths of the other links, the coupler point at most {limit} from the crank pin"
                 ));
                 not_covered.push("cranks and grounds of other lengths".into());
-                if let [only] = self.classes[..] {
-                    let other = if only == Class::CrankRocker { "double-cranks" } else { "crank-rockers" };
-                    not_covered.push(format!("{other}, which the problem does not allow"));
-                }
+                let others = Class::ALL.iter().filter(|class| !self.classes.contains(class));
+                not_covered.extend(
+                    others.map(|other| format!("{}s, which the problem does not allow", other.name())),
+                );
             }
         }
         Words { linkage, angles, covered, not_covered }

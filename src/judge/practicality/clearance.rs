@@ -5,9 +5,6 @@ use super::sweep::{Reach, Sweep};
 use crate::mechanism::plates::{Link, Placement, Plate};
 use crate::mechanism::{Complex, FourBar, Joints, Unit, length};
 
-/// Accuracy to which least distances are proved, as a part of the longest link: far below the tolerance of a workshop.
-pub const MARGIN: f64 = 1e-4;
-
 /// Radii of the plates and pins of a linkage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Build {
@@ -41,9 +38,9 @@ impl Build {
     }
 }
 
-/// A pin, which joins two plates.
+/// A joint: one of the four pins, each of which joins two plates, or the coupler point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Pin {
+pub enum Joint {
     /// The pin of ground and crank.
     A,
     /// The pin of ground and follower.
@@ -52,48 +49,50 @@ pub enum Pin {
     C,
     /// The pin of coupler and follower.
     D,
+    /// The coupler point.
+    P,
 }
 
-impl Pin {
-    /// All four pins.
-    pub const ALL: [Pin; 4] = [Pin::A, Pin::B, Pin::C, Pin::D];
+impl Joint {
+    /// All five joints.
+    pub const ALL: [Joint; 5] = [Joint::A, Joint::B, Joint::C, Joint::D, Joint::P];
+    /// The four pins.
+    pub const PINS: [Joint; 4] = [Joint::A, Joint::B, Joint::C, Joint::D];
 
-    /// Returns the letter of the pin.
+    /// Returns the letter of the joint.
     pub fn name(self) -> &'static str {
-        match self {
-            Pin::A => "A",
-            Pin::B => "B",
-            Pin::C => "C",
-            Pin::D => "D",
-        }
+        ["A", "B", "C", "D", "P"][self as usize]
     }
 
-    /// Returns the two plates that the pin joins.
+    /// Returns the plates that carry the joint: the two that a pin joins, twice the coupler for the coupler point.
     pub fn joins(self) -> [Link; 2] {
         match self {
-            Pin::A => [Link::Ground, Link::Crank],
-            Pin::B => [Link::Ground, Link::Follower],
-            Pin::C => [Link::Crank, Link::Coupler],
-            Pin::D => [Link::Coupler, Link::Follower],
+            Joint::A => [Link::Ground, Link::Crank],
+            Joint::B => [Link::Ground, Link::Follower],
+            Joint::C => [Link::Crank, Link::Coupler],
+            Joint::D => [Link::Coupler, Link::Follower],
+            Joint::P => [Link::Coupler; 2],
         }
     }
 
-    /// Returns the position of the pin's centre.
+    /// Returns the position of the joint's centre.
     pub fn at(self, linkage: &FourBar, joints: &Joints) -> Complex {
         match self {
-            Pin::A => linkage.crank_pivot(),
-            Pin::B => linkage.follower_pivot(),
-            Pin::C => joints.crank_pin,
-            Pin::D => joints.follower_pin,
+            Joint::A => linkage.crank_pivot(),
+            Joint::B => linkage.follower_pivot(),
+            Joint::C => joints.crank_pin,
+            Joint::D => joints.follower_pin,
+            Joint::P => joints.coupler_point,
         }
     }
 
-    /// Returns the bound of the pin's displacement.
+    /// Returns the bound of the joint's displacement.
     fn moves(self, reach: &Reach) -> f64 {
         match self {
-            Pin::A | Pin::B => 0.0,
-            Pin::C => reach.crank_pin,
-            Pin::D => reach.follower_pin,
+            Joint::A | Joint::B => 0.0,
+            Joint::C => reach.crank_pin,
+            Joint::D => reach.follower_pin,
+            Joint::P => reach.coupler_point,
         }
     }
 }
@@ -106,11 +105,6 @@ fn plate_moves(link: Link, reach: &Reach) -> f64 {
         Link::Follower => reach.follower_pin,
         Link::Coupler => reach.coupler(),
     }
-}
-
-/// Returns [`MARGIN`] in the unit of lengths.
-pub fn margin(linkage: &FourBar) -> f64 {
-    MARGIN * linkage.longest_link()
 }
 
 /// The plates and pins of a linkage, with its motion.
@@ -142,7 +136,7 @@ impl<'a> Workpieces<'a> {
     }
 
     /// Computes the distance between a pin and a plate at a position, below zero if they overlap.
-    pub fn pin_to_plate_at(&self, pin: Pin, plate: Link, joints: &Joints) -> f64 {
+    pub fn pin_to_plate_at(&self, pin: Joint, plate: Link, joints: &Joints) -> f64 {
         let to = pin.at(&self.sweep.linkage, joints);
         self.plate(plate).distance(&self.placement(plate, joints), to) - self.build.pin_radius
     }
@@ -150,36 +144,26 @@ impl<'a> Workpieces<'a> {
     /// Computes the least distance between two plates over the motion, below zero if they overlap. `None` if the loop
     /// is open in the motion.
     pub fn between_plates(&self, one: Link, other: Link) -> Option<Closest> {
-        closest(
-            self.sweep,
-            margin(&self.sweep.linkage),
-            |joints| self.between_plates_at(one, other, joints),
-            |reach| plate_moves(one, reach) + plate_moves(other, reach),
-        )
+        let moves = |reach: &Reach| plate_moves(one, reach) + plate_moves(other, reach);
+        closest(self.sweep, |joints| self.between_plates_at(one, other, joints), moves)
     }
 
     /// Computes the least distance between a pin and a plate over the motion.
-    pub fn pin_to_plate(&self, pin: Pin, plate: Link) -> Option<Closest> {
-        closest(
-            self.sweep,
-            margin(&self.sweep.linkage),
-            |joints| self.pin_to_plate_at(pin, plate, joints),
-            |reach| pin.moves(reach) + plate_moves(plate, reach),
-        )
+    pub fn pin_to_plate(&self, pin: Joint, plate: Link) -> Option<Closest> {
+        let moves = |reach: &Reach| pin.moves(reach) + plate_moves(plate, reach);
+        closest(self.sweep, |joints| self.pin_to_plate_at(pin, plate, joints), moves)
     }
 
     /// Computes the least distance between the surfaces of two pins over the motion.
-    pub fn between_pins(&self, one: Pin, other: Pin) -> Option<Closest> {
-        let linkage = &self.sweep.linkage;
-        closest(
-            self.sweep,
-            margin(linkage),
-            |joints| {
-                length(one.at(linkage, joints) - other.at(linkage, joints)) - 2.0 * self.build.pin_radius
-            },
-            |reach| one.moves(reach) + other.moves(reach),
-        )
+    pub fn between_pins(&self, one: Joint, other: Joint) -> Option<Closest> {
+        let apart = |joints: &Joints| distance(&self.sweep.linkage, one, other, joints);
+        let moves = |reach: &Reach| one.moves(reach) + other.moves(reach);
+        closest(self.sweep, |joints| apart(joints) - 2.0 * self.build.pin_radius, moves)
     }
+}
+
+fn distance(linkage: &FourBar, one: Joint, other: Joint, joints: &Joints) -> f64 {
+    length(one.at(linkage, joints) - other.at(linkage, joints))
 }
 
 /// Two joints and the least distance between them.
@@ -196,25 +180,14 @@ pub struct PivotDistance {
 /// Computes the least distances between the centres of A, B, C, D and P over the motion, nearest first (ties in the
 /// order of the letters). `None` if the loop is open in the motion.
 pub fn pivot_distances(sweep: &Sweep) -> Option<Vec<PivotDistance>> {
-    type Place = fn(&FourBar, &Joints) -> Complex;
-    type Moves = fn(&Reach) -> f64;
-    let joints: [(&'static str, Place, Moves); 5] = [
-        ("A", |linkage, _| linkage.crank_pivot(), |_| 0.0),
-        ("B", |linkage, _| linkage.follower_pivot(), |_| 0.0),
-        ("C", |_, joints| joints.crank_pin, |reach| reach.crank_pin),
-        ("D", |_, joints| joints.follower_pin, |reach| reach.follower_pin),
-        ("P", |_, joints| joints.coupler_point, |reach| reach.coupler_point),
-    ];
-    let held = [["A", "B"], ["A", "C"], ["B", "D"], ["C", "D"], ["C", "P"], ["D", "P"]];
-    let linkage = &sweep.linkage;
     let mut distances = Vec::new();
-    for (i, (name, place, moves)) in joints.iter().enumerate() {
-        for (other_name, other_place, other_moves) in &joints[i + 1..] {
-            let fixed = held.contains(&[*name, *other_name]);
-            let measure = |joints: &Joints| length(place(linkage, joints) - other_place(linkage, joints));
-            let slack = |reach: &Reach| if fixed { 0.0 } else { moves(reach) + other_moves(reach) };
-            let closest = closest(sweep, margin(linkage), measure, slack)?;
-            distances.push(PivotDistance { between: [name, other_name], closest, fixed });
+    for (i, one) in Joint::ALL.into_iter().enumerate() {
+        for other in Joint::ALL.into_iter().skip(i + 1) {
+            let fixed = one.joins().iter().any(|link| other.joins().contains(link));
+            let apart = |joints: &Joints| distance(&sweep.linkage, one, other, joints);
+            let moves = |reach: &Reach| if fixed { 0.0 } else { one.moves(reach) + other.moves(reach) };
+            let closest = closest(sweep, apart, moves)?;
+            distances.push(PivotDistance { between: [one.name(), other.name()], closest, fixed });
         }
     }
     distances.sort_by(|x, y| x.closest.value.total_cmp(&y.closest.value));

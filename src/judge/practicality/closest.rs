@@ -9,7 +9,9 @@ use crate::mechanism::{AssemblyMode, Joints};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Relative accuracy of a proved value, if the margin is less: the distance of parts far from touching need not be
+/// Accuracy to which least distances are proved, as a part of the longest link: far below the tolerance of a workshop.
+pub const MARGIN: f64 = 1e-4;
+/// Relative accuracy of a proved value, if [`MARGIN`] is less: the distance of parts far from touching need not be
 /// known to the last digit.
 pub const RELATIVE: f64 = 1e-3;
 /// Number of pieces into which each stretch of a motion is cut at the start.
@@ -57,16 +59,17 @@ impl Ord for Piece {
     }
 }
 
-/// Finds the least value of `measure` over a motion, proved to within `margin` or [`RELATIVE`] of itself.
+/// Finds the least value of `measure` over a motion, proved to within [`MARGIN`] of the longest link or [`RELATIVE`] of
+/// itself.
 ///
 /// `moves` bounds the change of `measure` within a stretch by the joints' displacements. `None` if the loop is open in
 /// the motion, or the motion is empty.
 pub fn closest(
     sweep: &Sweep,
-    margin: f64,
     measure: impl Fn(&Joints) -> f64,
     moves: impl Fn(&Reach) -> f64,
 ) -> Option<Closest> {
+    let margin = MARGIN * sweep.linkage.longest_link();
     let mut best: Option<Closest> = None;
     let mut heap = BinaryHeap::new();
     let put = |stretch: Stretch, heap: &mut BinaryHeap<Piece>, best: &mut Option<Closest>| {

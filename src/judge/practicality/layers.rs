@@ -9,7 +9,7 @@
 //! Two parts are clear if the proved bound of [`super::closest`] is above zero. Parts that touch within its margin
 //! count as crossing.
 
-use super::clearance::{Build, Pin, Workpieces};
+use super::clearance::{Build, Joint, Workpieces};
 use super::closest::Closest;
 use super::sweep::Sweep;
 use crate::mechanism::plates::Link;
@@ -30,19 +30,10 @@ pub struct PlatePair {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PinPlate {
     /// The pin.
-    pub pin: Pin,
+    pub pin: Joint,
     /// The plate.
     pub plate: Link,
     /// The least distance between them over the motion.
-    pub closest: Closest,
-}
-
-/// Two pins, with the least distance between them.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PinPair {
-    /// The two pins.
-    pub pins: [Pin; 2],
-    /// The least distance between their surfaces over the motion.
     pub closest: Closest,
 }
 
@@ -52,7 +43,7 @@ pub struct Stack {
     /// The plates of each layer, the lowest first.
     pub layers: Vec<Vec<Link>>,
     /// The pins that pass through a layer between their plates, with the index of that layer, counted from 0.
-    pub through: Vec<(Pin, usize)>,
+    pub through: Vec<(Joint, usize)>,
 }
 
 /// The distances that decide the layers, and the resulting stacking.
@@ -63,7 +54,7 @@ pub struct Layering {
     /// Pins and the plates that they do not join.
     pub pins_plates: Vec<PinPlate>,
     /// Pairs of pins.
-    pub pins: Vec<PinPair>,
+    pub pins: Vec<([Joint; 2], Closest)>,
     /// The stacking of the fewest layers; of several the one whose pins pass through the fewest layers, then with the
     /// coupler outermost (so that P can be reached), then with the ground lowest. `None` if there is none.
     pub stack: Option<Stack>,
@@ -84,12 +75,12 @@ pub fn layering(sweep: &Sweep, build: Build) -> Option<Layering> {
     }
     let mut pins_plates = Vec::new();
     let mut pins = Vec::new();
-    for (i, pin) in Pin::ALL.into_iter().enumerate() {
+    for (i, pin) in Joint::PINS.into_iter().enumerate() {
         for plate in Link::ALL.into_iter().filter(|link| !pin.joins().contains(link)) {
             pins_plates.push(PinPlate { pin, plate, closest: pieces.pin_to_plate(pin, plate)? });
         }
-        for other in Pin::ALL.into_iter().skip(i + 1) {
-            pins.push(PinPair { pins: [pin, other], closest: pieces.between_pins(pin, other)? });
+        for other in Joint::PINS.into_iter().skip(i + 1) {
+            pins.push(([pin, other], pieces.between_pins(pin, other)?));
         }
     }
     let mut layering = Layering { free_pairs, pins_plates, pins, stack: None };
@@ -105,7 +96,7 @@ fn layer(places: &Places, link: Link) -> usize {
 }
 
 /// Returns the layers strictly between the two plates of a pin.
-fn between(places: &Places, pin: Pin) -> std::ops::Range<usize> {
+fn between(places: &Places, pin: Joint) -> std::ops::Range<usize> {
     let [one, other] = pin.joins().map(|link| layer(places, link));
     one.min(other) + 1..one.max(other).max(one.min(other) + 1)
 }
@@ -119,7 +110,7 @@ impl Layering {
             });
             let fits = all.filter(|places| (0..count).all(|l| places.contains(&l)) && self.works(places));
             let through =
-                |places: &Places| Pin::ALL.iter().map(|pin| between(places, *pin).len()).sum::<usize>();
+                |places: &Places| Joint::PINS.iter().map(|pin| between(places, *pin).len()).sum::<usize>();
             let merit = |places: &Places| {
                 let coupler = layer(places, Link::Coupler);
                 let inside = coupler != 0 && coupler + 1 != count;
@@ -129,7 +120,7 @@ impl Layering {
                 layers: (0..count)
                     .map(|l| Link::ALL.into_iter().filter(|link| layer(&places, *link) == l).collect())
                     .collect(),
-                through: Pin::ALL
+                through: Joint::PINS
                     .into_iter()
                     .flat_map(|pin| between(&places, pin).map(move |l| (pin, l)))
                     .collect(),
@@ -139,29 +130,21 @@ impl Layering {
 
     /// Returns whether no parts cross in a stacking.
     fn works(&self, places: &Places) -> bool {
-        let apart = Pin::ALL.iter().all(|pin| {
-            let [one, other] = pin.joins();
-            layer(places, one) != layer(places, other)
-        });
-        let planes = self.free_pairs.iter().all(|pair| {
-            let [one, other] = pair.plates;
-            layer(places, one) != layer(places, other) || clear(&pair.closest)
-        });
-        let crossed = |pin: Pin, plate: Link| between(places, pin).contains(&layer(places, plate));
+        let together = |[one, other]: [Link; 2]| layer(places, one) == layer(places, other);
+        let apart = !Joint::PINS.iter().any(|pin| together(pin.joins()));
+        let planes = self.free_pairs.iter().all(|pair| !together(pair.plates) || clear(&pair.closest));
+        let crossed = |pin: Joint, plate: Link| between(places, pin).contains(&layer(places, plate));
         let plates = self.pins_plates.iter().all(|p| !crossed(p.pin, p.plate) || clear(&p.closest));
-        let side_by_side = |pins: [Pin; 2]| {
+        let side_by_side = |pins: [Joint; 2]| {
             let [one, other] = pins.map(|pin| between(places, pin));
             one.start.max(other.start) < one.end.min(other.end)
         };
-        let pins = self.pins.iter().all(|pair| !side_by_side(pair.pins) || clear(&pair.closest));
+        let pins = self.pins.iter().all(|(pair, closest)| !side_by_side(*pair) || clear(closest));
         apart && planes && plates && pins
     }
 
-    /// Returns the obstacles to a flatter stacking, or to any: the pairs of plates and the crossings of a pin and a
-    /// plate that are not clear.
-    pub fn obstacles(&self) -> (Vec<PlatePair>, Vec<PinPlate>) {
-        let pairs = self.free_pairs.iter().filter(|pair| !clear(&pair.closest)).copied().collect();
-        let pins = self.pins_plates.iter().filter(|p| !clear(&p.closest)).copied().collect();
-        (pairs, pins)
+    /// Returns the plates that pins cross if they pass through their layer.
+    pub fn crossings(&self) -> impl Iterator<Item = &PinPlate> {
+        self.pins_plates.iter().filter(|p| !clear(&p.closest))
     }
 }

@@ -21,7 +21,7 @@ pub mod sweep;
 mod subject;
 mod usual;
 
-pub use clearance::{Build, Pin};
+pub use clearance::{Build, Joint};
 pub use closest::Closest;
 pub use subject::{Practicality, crank_of};
 pub use sweep::Sweep;

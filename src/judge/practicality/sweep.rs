@@ -72,14 +72,14 @@ impl Sweep {
     /// (of two arcs the one to the left of A -> B) with the linkage's own assembly mode; `None` if it cannot be
     /// assembled.
     pub fn of_linkage(linkage: &FourBar) -> Option<Self> {
-        let arc = match linkage.mobility().input {
+        let input = linkage.mobility().input;
+        let [from, to] = match input {
             InputRange::None => return None,
-            InputRange::Full => return Some(Sweep::turn(linkage, linkage.ground_angle())),
-            InputRange::One(arc) | InputRange::Two([arc, _]) => arc,
+            InputRange::Full => [linkage.ground_angle(), linkage.ground_angle() + TAU],
+            InputRange::One(arc) | InputRange::Two([arc, _]) => arc.ends(),
         };
-        let [from, to] = arc.ends();
-        let assembly = linkage.assembly();
-        Some(Sweep { linkage: *linkage, stretches: vec![Stretch { from, to, assembly }], full_turn: false })
+        let stretches = vec![Stretch { from, to, assembly: linkage.assembly() }];
+        Some(Sweep { linkage: *linkage, stretches, full_turn: input == InputRange::Full })
     }
 
     /// Returns the motion through the points of a task. With `cycle` it is all of the circuit: the full turn, or both
@@ -88,19 +88,13 @@ impl Sweep {
         let linkage = motion.on.linkage;
         let [low, high] = motion.range;
         let high = if cycle { low + TAU } else { high };
-        match motion.on.arc {
-            None if high - low >= TAU => Sweep::turn(&linkage, low),
-            None => {
-                let stretch = Stretch { from: low, to: high, assembly: linkage.assembly() };
-                Sweep { linkage, stretches: vec![stretch], full_turn: false }
-            }
-            Some(arc) => Sweep { linkage, stretches: split(&arc, low, high), full_turn: false },
-        }
-    }
-
-    fn turn(linkage: &FourBar, from: f64) -> Self {
-        let stretch = Stretch { from, to: from + TAU, assembly: linkage.assembly() };
-        Sweep { linkage: *linkage, stretches: vec![stretch], full_turn: true }
+        let full_turn = motion.on.arc.is_none() && high - low >= TAU;
+        let to = if full_turn { low + TAU } else { high };
+        let stretches = match motion.on.arc {
+            Some(arc) => split(&arc, low, high),
+            None => vec![Stretch { from: low, to, assembly: linkage.assembly() }],
+        };
+        Sweep { linkage, stretches, full_turn }
     }
 
     /// Computes the joints in the middle of a stretch and the bounds of their distances from there; `None` if the loop

@@ -55,12 +55,6 @@ pub const UNCHECKED: &[(&str, Checked)] = &[
     ("certificate.parts[].leaves_sha256", Checked::Not),
 ];
 
-/// Returns the extent to which a key, written as in [`UNCHECKED`], is checked; `None` if it is recomputed.
-pub fn checked(key: &str) -> Option<Checked> {
-    let covers = |row: &str| row == key || row.strip_suffix('*').is_some_and(|start| key.starts_with(start));
-    UNCHECKED.iter().find(|(row, _)| covers(row)).map(|(_, how)| *how)
-}
-
 /// Returns the keys of a record that are checked to this extent. Lengths of lists are left out: the keys below the
 /// lists cover them.
 pub fn unchecked(record: &Record, how: Checked) -> Vec<&'static str> {

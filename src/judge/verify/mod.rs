@@ -33,7 +33,7 @@ mod verdict;
 pub use certificate::verify_certificate;
 use comparison::Comparison;
 pub use comparison::{ABSOLUTE, RELATIVE};
-pub use coverage::{Checked, UNCHECKED, checked, unchecked};
+pub use coverage::{Checked, UNCHECKED, unchecked};
 use verdict::{is_doubtful, scale};
 
 /// The tolerance of crank angles of prescribed timing, in degrees.

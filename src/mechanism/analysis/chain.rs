@@ -2,9 +2,9 @@
 
 use super::Status;
 use crate::mechanism::Unit;
-use crate::mechanism::chain::{ChainInput, Outcome};
+use crate::mechanism::chain::{ChainInput, Motion, Outcome, PointId};
 use crate::mechanism::four_bar::motion::CrankMotion;
-use crate::mechanism::{Chain, Complex, least_and_greatest, xy};
+use crate::mechanism::{Chain, Complex, bounding_box, xy};
 use serde::Serialize;
 
 /// Number of crank angles from which the input range and the traced path are found.
@@ -99,9 +99,8 @@ pub fn analyze_chain(request: &ChainRequest) -> ChainAnalysis {
     let input = chain.input(CYCLE_SAMPLES);
     let path: Vec<Complex> = chain.path(chain.trace(), CYCLE_SAMPLES).into_iter().flatten().collect();
     let stroke = (!path.is_empty()).then(|| {
-        let [[x0, x1], [y0, y1]] =
-            [|p: &Complex| p.re, |p: &Complex| p.im].map(|of| least_and_greatest(path.iter().map(of)));
-        Stroke { low: [x0, y0], high: [x1, y1] }
+        let [low, high] = bounding_box(path.iter().copied()).map(xy);
+        Stroke { low, high }
     });
     let mut motion = chain.motion();
     let rows = request.crank_deg.iter().map(|deg| row(chain, *deg, request.input, &mut motion)).collect();
@@ -125,12 +124,7 @@ pub fn analyze_chain(request: &ChainRequest) -> ChainAnalysis {
     }
 }
 
-fn row(
-    chain: &Chain,
-    crank_deg: f64,
-    input: CrankMotion,
-    motion: &mut crate::mechanism::chain::Motion,
-) -> ChainRow {
+fn row(chain: &Chain, crank_deg: f64, input: CrankMotion, motion: &mut Motion) -> ChainRow {
     let outcome = chain.move_at(crank_deg.to_radians(), input.speed_rad_s, input.acceleration_rad_s2, motion);
     let status = match outcome {
         Outcome::Closed => Status::Ok,
@@ -139,23 +133,17 @@ fn row(
         Outcome::InputNotUsable => Status::NotFinite,
     };
     let joint = outcome.stage().and_then(|stage| chain.joint_of(stage));
-    let moving = chain.names().iter().filter_map(|name| Some((name, chain.point_id(name)?)));
-    let pivots = chain.links().first().map_or(0, |ground| {
-        // The pivots come first among the names; the ground may carry points of its own besides.
-        ground.iter().take_while(|id| id.index() < chain.names().len() - chain.stages() - 1).count()
-    });
+    let point = |(i, name): (usize, &String)| PointRow {
+        name: name.clone(),
+        at: motion.point(PointId(i)).map(xy),
+        velocity: motion.velocity(PointId(i)).map(xy),
+        acceleration: motion.acceleration(PointId(i)).map(xy),
+    };
     ChainRow {
         crank_deg,
         status,
         joint: joint.map(|id| chain.names()[id.index()].clone()),
-        points: moving
-            .skip(pivots)
-            .map(|(name, id)| PointRow {
-                name: name.clone(),
-                at: motion.point(id).map(xy),
-                velocity: motion.velocity(id).map(xy),
-                acceleration: motion.acceleration(id).map(xy),
-            })
-            .collect(),
+        // The pivots, which come first among the names, stay where they are.
+        points: chain.names().iter().enumerate().skip(chain.pivots.len()).map(point).collect(),
     }
 }

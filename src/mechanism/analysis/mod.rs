@@ -7,12 +7,13 @@
 pub mod chain;
 
 use crate::mechanism::Unit;
-use crate::mechanism::four_bar::assembly_condition::AssemblyCondition;
 use crate::mechanism::four_bar::loop_closure::{
-    Iteration, IterationOptions, IterationVerdict, LoopRoots, Singularity,
+    Iteration, IterationOptions, IterationVerdict, LoopRoot, LoopRoots, Singularity,
 };
 use crate::mechanism::four_bar::motion::{CrankMotion, Motion};
-use crate::mechanism::{AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, xy};
+use crate::mechanism::{
+    AssemblyMode, Complex, CouplerSide, FourBar, LinkageType, NaturalCoordinates, point, xy,
+};
 use serde::Serialize;
 
 /// A method of position analysis.
@@ -283,16 +284,14 @@ pub fn full_turn(positions: usize) -> Vec<f64> {
 /// Analyses a linkage as requested.
 pub fn analyze(request: &Request) -> Analysis {
     let own = request.linkage.natural_coordinates();
-    let mut signs = vec![(own.assembly, own.side)];
-    if request.all_configurations {
-        // Romero's order (figure 3): open and crossed, then the other side of the coupler.
-        let all = [AssemblyMode::Plus, AssemblyMode::Minus]
-            .into_iter()
-            .flat_map(|t1| [CouplerSide::Plus, CouplerSide::Minus].map(|t2| (t1, t2)));
-        signs.extend(all.filter(|sign| *sign != (own.assembly, own.side)));
-    }
-    let configurations = signs
+    let own_signs = (own.assembly, own.side);
+    // Romero's order (figure 3): open and crossed, then the other side of the coupler.
+    let all = [AssemblyMode::Plus, AssemblyMode::Minus]
         .into_iter()
+        .flat_map(|t1| [CouplerSide::Plus, CouplerSide::Minus].map(|t2| (t1, t2)));
+    let others = all.filter(|signs| request.all_configurations && *signs != own_signs);
+    let configurations = std::iter::once(own_signs)
+        .chain(others)
         .filter_map(|(assembly, side)| FourBar::new(NaturalCoordinates { assembly, side, ..own }).ok())
         .map(|linkage| Configuration {
             rows: request.crank_deg.iter().map(|deg| row(&linkage, *deg, request)).collect(),
@@ -340,7 +339,7 @@ fn row(linkage: &FourBar, crank_deg: f64, request: &Request) -> Row {
         aD: xy(m.follower_pin.acceleration),
         aP: xy(m.coupler_point.acceleration),
     });
-    let assembly = linkage.assembly_condition(angle).map(|condition: AssemblyCondition| ConditionRecord {
+    let assembly = linkage.assembly_condition(angle).map(|condition| ConditionRecord {
         ratio: condition.ratio,
         necessary: condition.necessary(),
         sufficient: condition.sufficient(),
@@ -385,10 +384,7 @@ fn method_row(linkage: &FourBar, angle: f64, method: PositionMethod) -> MethodRo
     }
 }
 
-fn closed_form(
-    roots: LoopRoots,
-    assembly: AssemblyMode,
-) -> (&'static str, Option<crate::mechanism::four_bar::loop_closure::LoopRoot>) {
+fn closed_form(roots: LoopRoots, assembly: AssemblyMode) -> (&'static str, Option<LoopRoot>) {
     let status = match roots {
         LoopRoots::Closed(_) => "ok",
         LoopRoots::Open => "open",
@@ -421,7 +417,6 @@ pub fn mobility(linkage: &FourBar) -> MobilityRecord {
 /// position.
 pub fn joints_of(linkage: &FourBar, row: &Row) -> Option<[Complex; 5]> {
     let pose = row.pose?;
-    let point = crate::mechanism::point;
     Some([
         linkage.crank_pivot(),
         linkage.follower_pivot(),

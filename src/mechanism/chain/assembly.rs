@@ -1,15 +1,14 @@
 //! Assembly of a chain from its named parts: every point's name resolved once, every part checked.
 
-use super::builder::{ChainBuilder, MAX_POINT_NAME};
+use super::builder::{ChainBuilder, MAX_POINT_NAME, MAX_STAGES};
+use super::coincident_sq;
 use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, Line, PointId, SliderLine, Stage, Step};
-use super::{coincident_sq, fixed_line};
-use crate::mechanism::{
-    AssemblyMode, Complex, CouplerSide, FourBar, LinkageError, MAX_MAGNITUDE, NaturalCoordinates, point,
-};
+use crate::mechanism::four_bar::coupler_ratio;
+use crate::mechanism::{Complex, CouplerSide, LinkageError, MAX_MAGNITUDE, point};
 use std::collections::HashMap;
 
 /// The points of a link with their places in the link's own frame.
-struct Link(Vec<(usize, Complex)>);
+type Link = Vec<(usize, Complex)>;
 
 /// A chain that is being assembled.
 pub(super) struct Assembly<'a> {
@@ -71,7 +70,7 @@ impl<'a> Assembly<'a> {
             source,
             names: Vec::new(),
             known: HashMap::new(),
-            links: vec![Link(Vec::new())],
+            links: vec![Link::new()],
             links_of: Vec::new(),
             scale: 0.0,
             steps: Vec::new(),
@@ -81,6 +80,10 @@ impl<'a> Assembly<'a> {
     /// Assembles the chain, without its source.
     pub(super) fn finish(mut self) -> Assembled<Chain> {
         let source = self.source;
+        let whole = Site { place: ChainPlace::Chain, joint: "" };
+        if source.stages.len() > MAX_STAGES {
+            return Err(whole.key("dyad").error(ChainFault::TooManyStages(source.stages.len())));
+        }
         for (name, at) in &source.pivots {
             let site = Site { place: ChainPlace::Pivot(name.clone()), joint: name };
             self.numbers(site.key("pivots"), at)?;
@@ -101,12 +104,11 @@ impl<'a> Assembly<'a> {
             let step = self.stage(&site, stage)?;
             self.steps.push(step);
         }
-        let whole = Site { place: ChainPlace::Chain, joint: "" };
         let trace = match &source.trace {
             Some(name) => self.find(whole.key("trace"), name)?,
             None => self.names.len() - 1,
         };
-        let as_ids = |link: &Link| link.0.iter().map(|(i, _)| PointId(*i)).collect();
+        let as_ids = |link: &Link| link.iter().map(|(i, _)| PointId(*i)).collect();
         Ok(Chain {
             pivots: source.pivots.iter().map(|(_, at)| point(*at)).collect(),
             crank_pivot,
@@ -169,7 +171,7 @@ impl<'a> Assembly<'a> {
                 let p = self.find(site.key("pivot"), pivot)?;
                 let q = self.find(site.key("block"), block)?;
                 if p == q {
-                    return Err(site.key("block").error(ChainFault::SamePoint { name: block.clone() }));
+                    return Err(site.key("block").error(ChainFault::SamePoint(block.clone())));
                 }
                 self.numbers(site.key("at"), at)?;
                 self.number(site.key("offset"), *offset)?;
@@ -188,9 +190,9 @@ impl<'a> Assembly<'a> {
             SliderLine::Fixed { through, angle } => {
                 self.numbers(site.key("through"), through)?;
                 if !is_usable(*angle) {
-                    return Err(site.key("angle_deg").error(ChainFault::NotFinite { value: *angle }));
+                    return Err(site.key("angle_deg").error(ChainFault::NotFinite(*angle)));
                 }
-                Ok(fixed_line(*through, *angle))
+                Ok(Line::Fixed { origin: point(*through), direction: Complex::from_polar(1.0, *angle) })
             }
             SliderLine::OnLink { along, offset } => {
                 let [p, q] = self.two(site.key("along"), along)?;
@@ -205,11 +207,11 @@ impl<'a> Assembly<'a> {
     fn name(&mut self, key: Key<'_>, name: &str) -> Assembled<usize> {
         let allowed = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-');
         if name.is_empty() || name.chars().count() > MAX_POINT_NAME || !name.chars().all(allowed) {
-            return Err(key.error(ChainFault::BadName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::BadName(name.to_owned())));
         }
         let id = self.names.len();
         if self.known.insert(name.to_owned(), id).is_some() {
-            return Err(key.error(ChainFault::DuplicateName { name: name.to_owned() }));
+            return Err(key.error(ChainFault::DuplicateName(name.to_owned())));
         }
         self.names.push(name.to_owned());
         self.links_of.push(Vec::new());
@@ -235,7 +237,7 @@ impl<'a> Assembly<'a> {
         let p = self.find(key.nth(0), first)?;
         let q = self.find(key.nth(1), second)?;
         if p == q {
-            return Err(key.nth(1).error(ChainFault::SamePoint { name: second.clone() }));
+            return Err(key.nth(1).error(ChainFault::SamePoint(second.clone())));
         }
         Ok([p, q])
     }
@@ -247,28 +249,25 @@ impl<'a> Assembly<'a> {
         [first, second]: &[String; 2],
         [p, q]: [usize; 2],
     ) -> Assembled<(usize, [Complex; 2])> {
-        let names = || (first.clone(), second.clone());
         let Some(&link) = self.links_of[p].iter().find(|l| self.links_of[q].contains(l)) else {
-            let (first, second) = names();
-            return Err(key.error(ChainFault::NotOnOneLink { first, second }));
+            return Err(key.error(ChainFault::NotOnOneLink(first.clone(), second.clone())));
         };
-        let place = |of: usize| self.links[link].0.iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
+        let place = |of: usize| self.links[link].iter().find(|(i, _)| *i == of).map_or(ZERO, |(_, z)| *z);
         let [from, to] = [place(p), place(q)];
         if (to - from).norm_sqr() <= coincident_sq(self.scale) {
-            let (first, second) = names();
-            return Err(key.error(ChainFault::Coincident { first, second }));
+            return Err(key.error(ChainFault::Coincident(first.clone(), second.clone())));
         }
         Ok((link, [from, to]))
     }
 
     fn attach(&mut self, link: usize, id: usize, at: Complex) {
-        self.links[link].0.push((id, at));
+        self.links[link].push((id, at));
         self.links_of[id].push(link);
     }
 
     /// Adds a new link from one point to another, which lies at `at` in its frame.
     fn link(&mut self, from: usize, to: usize, at: Complex) {
-        self.links.push(Link(Vec::new()));
+        self.links.push(Link::new());
         let link = self.links.len() - 1;
         self.attach(link, from, ZERO);
         self.attach(link, to, at);
@@ -276,7 +275,7 @@ impl<'a> Assembly<'a> {
 
     fn number(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
         if !is_usable(value) {
-            return Err(key.error(ChainFault::NotFinite { value }));
+            return Err(key.error(ChainFault::NotFinite(value)));
         }
         self.scale = self.scale.max(value.abs());
         Ok(())
@@ -289,7 +288,7 @@ impl<'a> Assembly<'a> {
     fn length(&mut self, key: Key<'_>, value: f64) -> Assembled<()> {
         self.number(key, value)?;
         if value <= 0.0 {
-            return Err(key.error(ChainFault::LengthNotPositive { value }));
+            return Err(key.error(ChainFault::LengthNotPositive(value)));
         }
         Ok(())
     }
@@ -303,27 +302,17 @@ fn offset_from_distances(
     [d, e]: [f64; 2],
     side: CouplerSide,
 ) -> Assembled<Complex> {
-    let triangle = FourBar::new(NaturalCoordinates {
-        crank_pivot: [0.0, 0.0],
-        follower_pivot: [0.0, 0.0],
-        crank: 1.0,
-        coupler: base,
-        follower: 1.0,
-        crank_side: d,
-        follower_side: e,
-        assembly: AssemblyMode::Plus,
-        side,
-    });
-    triangle.map(|t| t.coupler_offset()).map_err(|error| match error {
-        LinkageError::DistanceNegative { key, value } => {
-            site.key("distances").nth(usize::from(key == "e")).error(ChainFault::DistanceNegative { value })
+    let key = site.key("distances");
+    if !is_usable(base) {
+        return Err(key.error(ChainFault::NotFinite(base)));
+    }
+    coupler_ratio(base, [d, e], side).map(|z| z * base).map_err(|error| match error {
+        LinkageError::DistanceNegative { key: letter, value } => {
+            key.nth(usize::from(letter == "e")).error(ChainFault::DistanceNegative(value))
         }
-        LinkageError::NotFinite { value, .. } | LinkageError::LengthNotPositive { value, .. } => {
-            site.key("distances").error(ChainFault::NotFinite { value })
-        }
-        LinkageError::NoCouplerTriangle { b, d, e } => {
+        _ => {
             let (first, second) = (first.clone(), second.clone());
-            site.key("distances").error(ChainFault::NoTriangle { first, second, base: b, d, e })
+            key.error(ChainFault::NoTriangle { first, second, base, d, e })
         }
     })
 }

@@ -1,7 +1,7 @@
 //! Builder of a chain from its parts, which are referred to by name.
 
 use super::assembly::Assembly;
-use super::{Attachment, Chain, ChainError, ChainFault, ChainPlace, SliderLine, Stage};
+use super::{Attachment, Chain, ChainError, SliderLine, Stage};
 use crate::mechanism::{AssemblyMode, CouplerSide};
 
 /// Maximum number of stages of a chain.
@@ -122,15 +122,6 @@ impl ChainBuilder {
     /// # Errors
     /// [`ChainError`], the first in the order of assembly, with the part, the key and the fault.
     pub fn build(self) -> Result<Chain, Box<ChainError>> {
-        if self.stages.len() > MAX_STAGES {
-            return Err(Box::new(ChainError {
-                place: ChainPlace::Chain,
-                joint: String::new(),
-                key: "dyad",
-                index: None,
-                fault: ChainFault::TooManyStages(self.stages.len()),
-            }));
-        }
         Assembly::new(&self).finish().map(|parts| Chain { source: self, ..parts })
     }
 

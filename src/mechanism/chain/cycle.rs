@@ -1,6 +1,6 @@
 //! Whole cycles of a chain: the range of its input, and the path of a point.
 
-use super::{Chain, Outcome, PointId, Pose};
+use super::{Chain, PointId, Pose};
 use crate::mechanism::Complex;
 use std::f64::consts::TAU;
 
@@ -11,10 +11,6 @@ pub struct ChainArc {
     pub from: f64,
     /// The last crank angle, radians, above `from` and less than a turn from it.
     pub to: f64,
-    /// The stage that has no position just before `from`.
-    pub limited_before: usize,
-    /// The stage that has no position just after `to`.
-    pub limited_after: usize,
 }
 
 /// The range of a chain's input with the assembly signs that it has.
@@ -45,21 +41,19 @@ impl Chain {
         let n = samples.max(8);
         let mut pose = self.pose();
         let angle = |i: usize| TAU * i as f64 / n as f64;
-        let stuck: Vec<Option<usize>> = (0..n).map(|i| self.stuck_at(angle(i), &mut pose)).collect();
-        let Some(first_open) = stuck.iter().position(Option::is_some) else { return ChainInput::Full };
+        let closes: Vec<bool> = (0..n).map(|i| self.position(angle(i), &mut pose).is_closed()).collect();
+        let Some(first_open) = closes.iter().position(|closes| !closes) else { return ChainInput::Full };
         let mut arcs = Vec::new();
         let mut begun = None;
         for i in first_open..first_open + n {
-            let (here, next) = (stuck[i % n], stuck[(i + 1) % n]);
-            let between = [angle(i), angle(i + 1)];
-            match (here, next) {
-                (Some(_), None) => begun = Some(self.edge([between[1], between[0]], &mut pose)),
-                (None, Some(_)) => {
-                    if let Some((from, limited_before)) = begun.take() {
-                        let (to, limited_after) = self.edge(between, &mut pose);
+            let (here, next) = (angle(i), angle(i + 1));
+            match (closes[i % n], closes[(i + 1) % n]) {
+                (false, true) => begun = Some(self.edge([next, here], &mut pose)),
+                (true, false) => {
+                    if let Some(from) = begun.take() {
+                        let to = self.edge([here, next], &mut pose);
                         let turns = (from / TAU).floor() * TAU;
-                        let (from, to) = (from - turns, to - turns);
-                        arcs.push(ChainArc { from, to, limited_before, limited_after });
+                        arcs.push(ChainArc { from: from - turns, to: to - turns });
                     }
                 }
                 _ => {}
@@ -69,27 +63,19 @@ impl Chain {
         if arcs.is_empty() { ChainInput::Never } else { ChainInput::Arcs(arcs) }
     }
 
-    /// Returns the stage that has no position at a crank angle.
-    fn stuck_at(&self, angle: f64, pose: &mut Pose) -> Option<usize> {
-        match self.position(angle, pose) {
-            Outcome::Closed => None,
-            other => other.stage().or(Some(0)),
-        }
-    }
-
-    /// Finds the last closed angle on the way from a closed to an open one, and the stage that opens there.
-    fn edge(&self, [mut closed, mut open]: [f64; 2], pose: &mut Pose) -> (f64, usize) {
+    /// Finds the last closed angle on the way from a closed to an open one.
+    fn edge(&self, [mut closed, mut open]: [f64; 2], pose: &mut Pose) -> f64 {
         /// Number of halvings, which reduce a step of at most 45 degrees to below rounding.
         const HALVINGS: usize = 60;
-        let mut stage = self.stuck_at(open, pose).unwrap_or(0);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (closed + open);
-            match self.stuck_at(middle, pose) {
-                None => closed = middle,
-                Some(stuck) => (open, stage) = (middle, stuck),
+            if self.position(middle, pose).is_closed() {
+                closed = middle;
+            } else {
+                open = middle;
             }
         }
-        (closed, stage)
+        closed
     }
 
     /// Computes the path of a point over a full turn: N at phi = 2 pi i / samples; `None` if it is not known.

@@ -51,17 +51,11 @@ pub enum ChainFault {
         itself: bool,
     },
     /// A name of two points.
-    #[error("there are two points \"{name}\"")]
-    DuplicateName {
-        /// Name of the point.
-        name: String,
-    },
+    #[error("there are two points \"{0}\"")]
+    DuplicateName(String),
     /// A name that is not 1 to [`MAX_POINT_NAME`](super::MAX_POINT_NAME) letters, digits, `_` and `-`.
-    #[error("\"{name}\" is no name of a point")]
-    BadName {
-        /// The text given as a name.
-        name: String,
-    },
+    #[error("\"{0}\" is no name of a point")]
+    BadName(String),
     /// A crank pivot that moves, or is no point.
     #[error("\"{name}\" is not a fixed pivot")]
     NotAPivot {
@@ -71,45 +65,23 @@ pub enum ChainFault {
         known: Vec<String>,
     },
     /// A number that is NaN, infinite or beyond [`MAX_MAGNITUDE`].
-    #[error("{value} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
-    NotFinite {
-        /// The number given.
-        value: f64,
-    },
+    #[error("{0} is not a finite number below {max:e} in magnitude", max = MAX_MAGNITUDE)]
+    NotFinite(f64),
     /// A link of zero or negative length.
-    #[error("{value}: a link's length must be positive")]
-    LengthNotPositive {
-        /// The length given.
-        value: f64,
-    },
+    #[error("{0}: a link's length must be positive")]
+    LengthNotPositive(f64),
     /// A negative distance.
-    #[error("{value}: a distance cannot be negative")]
-    DistanceNegative {
-        /// The distance given.
-        value: f64,
-    },
+    #[error("{0}: a distance cannot be negative")]
+    DistanceNegative(f64),
     /// A stage that names one point twice.
-    #[error("\"{name}\" stands twice: a stage hangs on two different points")]
-    SamePoint {
-        /// Name of the point.
-        name: String,
-    },
+    #[error("\"{0}\" stands twice: a stage hangs on two different points")]
+    SamePoint(String),
     /// Two points of no common link.
-    #[error("\"{first}\" and \"{second}\" are not on one link: their distance changes")]
-    NotOnOneLink {
-        /// Name of the first point.
-        first: String,
-        /// Name of the second point.
-        second: String,
-    },
+    #[error("\"{0}\" and \"{1}\" are not on one link: their distance changes")]
+    NotOnOneLink(String, String),
     /// Two points of a link at the same place.
-    #[error("\"{first}\" and \"{second}\" coincide: they give no direction on their link")]
-    Coincident {
-        /// Name of the first point.
-        first: String,
-        /// Name of the second point.
-        second: String,
-    },
+    #[error("\"{0}\" and \"{1}\" coincide: they give no direction on their link")]
+    Coincident(String, String),
     /// A guide whose point lies on its pivot.
     #[error("the joint lies on the guide's pivot: a link needs a length")]
     NoLength,

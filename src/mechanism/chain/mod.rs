@@ -33,7 +33,7 @@ pub use error::{ChainError, ChainFault, ChainPlace};
 pub use motion::Motion;
 
 use super::four_bar::position::{Meeting, meeting};
-use super::{AssemblyMode, Complex, FLAT_TOLERANCE, cross, dot, point, turned};
+use super::{AssemblyMode, Complex, FLAT_TOLERANCE, cross, dot, turned};
 
 /// Distance within which two points coincide, in roundings of the largest coordinate or length.
 const COINCIDENT_ROUNDINGS: f64 = 16.0;
@@ -406,9 +406,4 @@ impl Line {
 pub(super) fn coincident_sq(scale: f64) -> f64 {
     let nearest = COINCIDENT_ROUNDINGS * f64::EPSILON * scale;
     nearest * nearest
-}
-
-/// Returns the fixed line through a point with the direction e^{i angle}.
-pub(super) fn fixed_line(through: [f64; 2], angle: f64) -> Line {
-    Line::Fixed { origin: point(through), direction: Complex::from_polar(1.0, angle) }
 }

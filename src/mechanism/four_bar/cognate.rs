@@ -129,14 +129,12 @@ impl Cognate {
     /// ```
     pub fn position_of(&self, crank_angle: f64, assembly: AssemblyMode) -> Option<(f64, AssemblyMode)> {
         let joints = self.original.position_with(crank_angle, assembly).joints()?;
-        let vector = |(link, factor): (OriginalLink, Complex)| {
-            factor
-                * match link {
-                    OriginalLink::Crank => joints.crank_pin - self.original.crank_pivot(),
-                    OriginalLink::Coupler => joints.follower_pin - joints.crank_pin,
-                    OriginalLink::Follower => joints.follower_pin - self.original.follower_pivot(),
-                }
-        };
+        let vectors = [
+            joints.crank_pin - self.original.crank_pivot(),
+            joints.follower_pin - joints.crank_pin,
+            joints.follower_pin - self.original.follower_pivot(),
+        ];
+        let vector = |(link, factor): (OriginalLink, Complex)| factor * vectors[link as usize];
         let [crank, coupler, _] = self.factors.map(vector);
         let to_pivot = self.linkage.follower_pivot() - self.linkage.crank_pivot() - crank;
         let angle = match self.crank.with {
@@ -195,13 +193,8 @@ impl FourBar {
         if size == 0.0 || turn.norm() == 0.0 {
             return Err(CognateError::CouplerPointOnPin);
         }
-        let length = |link| {
-            size * match link {
-                Crank => self.crank(),
-                Coupler => self.coupler(),
-                Follower => self.follower(),
-            }
-        };
+        let lengths = [self.crank(), self.coupler(), self.follower()];
+        let length = |link: OriginalLink| size * lengths[link as usize];
         let turns = |order: [OriginalLink; 3]| {
             let [crank, coupler, follower] = order.map(length);
             linkage_type([size * self.ground(), crank, coupler, follower])

@@ -286,16 +286,15 @@ impl FourBar {
         let mut earlier = coupler; // Brent's cycle search: the value at the last power of two
         let mut step = f64::INFINITY;
         let mut residual = f64::INFINITY;
-        let mut verdict = IterationVerdict::NotConverged;
         let mut rounds = 0;
-        while rounds < options.iterations {
-            let Some(next_follower) = direction(coupler * b - to_pivot, options.arctangent) else {
-                verdict = IterationVerdict::NoDirection;
-                break;
-            };
-            let Some(next_coupler) = direction(to_pivot + next_follower * c, options.arctangent) else {
-                verdict = IterationVerdict::NoDirection;
-                break;
+        let verdict = loop {
+            if rounds >= options.iterations {
+                break IterationVerdict::NotConverged;
+            }
+            let next_follower = direction(coupler * b - to_pivot, options.arctangent);
+            let next_coupler = next_follower.and_then(|f| direction(to_pivot + f * c, options.arctangent));
+            let Some((next_follower, next_coupler)) = next_follower.zip(next_coupler) else {
+                break IterationVerdict::NoDirection;
             };
             rounds += 1;
             step = (next_coupler - coupler).norm();
@@ -305,21 +304,18 @@ impl FourBar {
                 if residual <= tolerance * length {
                     let follower_pin = self.follower_pivot() + follower * c;
                     let assembly = AssemblyMode::of(cross(to_pivot, follower_pin - crank_pin));
-                    verdict = IterationVerdict::Converged(self.loop_root(crank_pin, follower_pin, assembly));
-                    break;
+                    break IterationVerdict::Converged(self.loop_root(crank_pin, follower_pin, assembly));
                 }
                 if residual > tolerance.sqrt() * length {
-                    verdict = IterationVerdict::FalsePoint;
-                    break;
+                    break IterationVerdict::FalsePoint;
                 }
             } else if (coupler - earlier).norm() <= tolerance {
-                verdict = IterationVerdict::Cycling;
-                break;
+                break IterationVerdict::Cycling;
             }
             if rounds.is_power_of_two() {
                 earlier = coupler;
             }
-        }
+        };
         Iteration {
             verdict,
             coupler_angle: coupler.arg(),

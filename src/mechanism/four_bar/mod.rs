@@ -84,10 +84,7 @@ macro_rules! sign_type {
 
         impl From<$name> for i64 {
             fn from(value: $name) -> i64 {
-                match value {
-                    $name::Plus => 1,
-                    $name::Minus => -1,
-                }
+                value.sign() as i64
             }
         }
 
@@ -279,25 +276,10 @@ impl FourBar {
                 return Err(LinkageError::LengthNotPositive { key, value });
             }
         }
-        for (key, value) in [("d", p.crank_side), ("e", p.follower_side)] {
-            if value < 0.0 {
-                return Err(LinkageError::DistanceNegative { key, value });
-            }
-        }
-        let (b, d, e) = (p.coupler, p.crank_side, p.follower_side);
-        // 16 area^2 = (b+d+e)(b+d-e)(d+e-b)(e+b-d): factored, so that a flat triangle is recognised to the last digit.
-        let perimeter = b + d + e;
-        let lacks = [b + d - e, d + e - b, e + b - d];
-        if lacks.iter().any(|lack| *lack < -FLAT_TOLERANCE * perimeter) {
-            return Err(LinkageError::NoCouplerTriangle { b, d, e });
-        }
-        let along = (b + (d - e) * (d + e) / b) / 2.0;
-        let area_16_sq = lacks.iter().fold(perimeter, |product, lack| product * lack.max(0.0));
-        let across = p.side.sign() * area_16_sq.sqrt() / (2.0 * b);
         Ok(FourBar {
             parameters,
             ground: (point(p.follower_pivot) - point(p.crank_pivot)).norm(),
-            coupler_ratio: Complex::new(along / b, across / b),
+            coupler_ratio: coupler_ratio(p.coupler, [p.crank_side, p.follower_side], p.side)?,
         })
     }
 
@@ -468,6 +450,30 @@ impl FourBar {
     pub fn ground_angle(&self) -> f64 {
         if self.ground == 0.0 { 0.0 } else { (self.follower_pivot() - self.crank_pivot()).arg() }
     }
+}
+
+/// Computes z = (l2 + i h2)/b of the triangle C-D-P with the base b = |CD| and the sides d = |CP|, e = |DP| (Romero,
+/// equations 16 to 18): P = C + z (D - C).
+pub(in crate::mechanism) fn coupler_ratio(
+    b: f64,
+    [d, e]: [f64; 2],
+    side: CouplerSide,
+) -> Result<Complex, LinkageError> {
+    for (key, value) in [("d", d), ("e", e)] {
+        if value < 0.0 {
+            return Err(LinkageError::DistanceNegative { key, value });
+        }
+    }
+    // 16 area^2 = (b+d+e)(b+d-e)(d+e-b)(e+b-d): factored, so that a flat triangle is recognised to the last digit.
+    let perimeter = b + d + e;
+    let lacks = [b + d - e, d + e - b, e + b - d];
+    if lacks.iter().any(|lack| *lack < -FLAT_TOLERANCE * perimeter) {
+        return Err(LinkageError::NoCouplerTriangle { b, d, e });
+    }
+    let along = (b + (d - e) * (d + e) / b) / 2.0;
+    let area_16_sq = lacks.iter().fold(perimeter, |product, lack| product * lack.max(0.0));
+    let across = side.sign() * area_16_sq.sqrt() / (2.0 * b);
+    Ok(Complex::new(along / b, across / b))
 }
 
 impl From<FourBar> for NaturalCoordinates {

@@ -142,11 +142,6 @@ impl Motion {
             Motion::Open | Motion::Undetermined | Motion::NotFinite => None,
         }
     }
-
-    /// Returns whether the position is a toggle.
-    pub fn is_singular(self) -> bool {
-        matches!(self, Motion::Singular(_))
-    }
 }
 
 impl FourBar {
@@ -249,14 +244,9 @@ impl FourBar {
 
 impl LinkageMotion {
     fn is_finite(&self) -> bool {
-        let turning = |t: &Turning| t.speed_rad_s.is_finite() && t.acceleration_rad_s2.is_finite();
-        let moving = |p: &PointMotion| {
-            [p.velocity, p.acceleration].iter().all(|x| x.re.is_finite() && x.im.is_finite())
-        };
-        turning(&self.coupler)
-            && turning(&self.follower)
-            && moving(&self.crank_pin)
-            && moving(&self.follower_pin)
-            && moving(&self.coupler_point)
+        let turns = [self.coupler, self.follower].map(|t| Complex::new(t.speed_rad_s, t.acceleration_rad_s2));
+        let points = [self.crank_pin, self.follower_pin, self.coupler_point];
+        let points = points.map(|p| [p.velocity, p.acceleration]);
+        turns.iter().chain(points.as_flattened()).all(|x| x.is_finite())
     }
 }

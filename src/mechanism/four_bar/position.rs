@@ -147,14 +147,13 @@ impl Kernel {
         let s = L::splat;
         let crank_pin = [s(self.a_x) + s(self.crank) * cos, s(self.a_y) + s(self.crank) * sin];
         let v = [s(self.b_x) - crank_pin[0], s(self.b_y) - crank_pin[1]];
-        let Meeting { u, root, gap } = meeting(v, s(self.coupler_sq), s(self.half_difference));
-        Reach { crank_pin, v, u, root, gap }
+        Reach { crank_pin, v, meeting: meeting(v, s(self.coupler_sq), s(self.half_difference)) }
     }
 
     #[inline(always)]
     fn close<L: Lane>(&self, reach: &Reach<L>, root: L) -> LanePosition<L> {
         let s = L::splat;
-        let Reach { crank_pin: [c_x, c_y], v: [v_x, v_y], u, gap, .. } = *reach;
+        let Reach { crank_pin: [c_x, c_y], v: [v_x, v_y], meeting: Meeting { u, gap, .. } } = *reach;
         let w_x = v_x * u - v_y * root;
         let w_y = v_y * u + v_x * root;
         LanePosition {
@@ -174,14 +173,14 @@ impl Kernel {
     #[inline(always)]
     pub fn at<L: Lane>(&self, cos: L, sin: L) -> LanePosition<L> {
         let reach = self.reach(cos, sin);
-        self.close(&reach, L::splat(self.t1) * reach.root)
+        self.close(&reach, L::splat(self.t1) * reach.meeting.root)
     }
 
     /// Computes the positions of both assemblies, [t1 = +1, t1 = -1], with one division and one root.
     #[inline(always)]
     pub fn at_both<L: Lane>(&self, cos: L, sin: L) -> [LanePosition<L>; 2] {
         let reach = self.reach(cos, sin);
-        [self.close(&reach, reach.root), self.close(&reach, -reach.root)]
+        [self.close(&reach, reach.meeting.root), self.close(&reach, -reach.meeting.root)]
     }
 }
 
@@ -189,9 +188,7 @@ impl Kernel {
 struct Reach<L> {
     crank_pin: [L; 2],
     v: [L; 2],
-    u: L,
-    root: L,
-    gap: L,
+    meeting: Meeting<L>,
 }
 
 impl FourBar {

@@ -61,17 +61,14 @@ impl ForceTransmission {
     /// Returns the rating of a worst transmission angle, degrees.
     pub fn of(worst_deg: f64) -> ForceTransmission {
         let reaches = |limit: f64| worst_deg >= limit - ROUNDING * limit;
-        if reaches(GOOD_DEG) {
-            ForceTransmission::Good
-        } else if reaches(POOR_DEG) {
-            ForceTransmission::Fair
-        } else if reaches(JAM_UNDER_LOAD_DEG) {
-            ForceTransmission::Poor
-        } else if reaches(CERTAIN_JAM_DEG) {
-            ForceTransmission::MayJamUnderLoad
-        } else {
-            ForceTransmission::Jams
-        }
+        let ratings = [
+            (GOOD_DEG, ForceTransmission::Good),
+            (POOR_DEG, ForceTransmission::Fair),
+            (JAM_UNDER_LOAD_DEG, ForceTransmission::Poor),
+            (CERTAIN_JAM_DEG, ForceTransmission::MayJamUnderLoad),
+        ];
+        let found = ratings.into_iter().find(|(limit, _)| reaches(*limit));
+        found.map_or(ForceTransmission::Jams, |(_, rating)| rating)
     }
 
     /// Returns the rating in words, as a clause, the same wherever it is shown.

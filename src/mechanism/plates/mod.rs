@@ -22,7 +22,7 @@ mod tests;
 
 pub use outline::Edge;
 
-use crate::mechanism::{Complex, FourBar, Joints, point};
+use crate::mechanism::{Complex, FourBar, Joints, bounding_box, point};
 use std::f64::consts::PI;
 
 /// Distance, as a part of the plate's size (hull and radius), below which two holes coincide and a corner of the hull
@@ -173,13 +173,7 @@ impl Plate {
     /// Returns the lower left and upper right corner of the plate's bounding box in its own frame.
     pub fn bounds(&self) -> [Complex; 2] {
         let reach = Complex::new(self.radius, self.radius);
-        let first = self.corners[0];
-        let (low, high) = self.corners.iter().fold((first, first), |(low, high), z| {
-            (
-                Complex::new(low.re.min(z.re), low.im.min(z.im)),
-                Complex::new(high.re.max(z.re), high.im.max(z.im)),
-            )
-        });
+        let [low, high] = bounding_box(self.corners.iter().copied());
         [low - reach, high + reach]
     }
 

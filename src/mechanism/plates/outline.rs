@@ -34,13 +34,6 @@ impl Edge {
         }
     }
 
-    /// Returns the end point.
-    pub fn to(&self) -> Complex {
-        match *self {
-            Edge::Line { to, .. } | Edge::Arc { to, .. } => to,
-        }
-    }
-
     /// Returns the bulge of drawing files: tan(turn/4), 0 for a segment.
     pub fn bulge(&self) -> f64 {
         match self {

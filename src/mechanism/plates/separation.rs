@@ -4,7 +4,7 @@
 //! parallel to those of the two polygons: if the origin lies inside, the nearest side decides; outside, the nearest
 //! pair of sides.
 
-use crate::mechanism::{Complex, cross, dot, turned};
+use crate::mechanism::{Complex, cross, dot, from_segment, turned};
 
 /// Computes the distance between two convex polygons (corners counter-clockwise, one or two for a point or a line), or
 /// minus the least shift that separates them if they overlap.
@@ -60,14 +60,6 @@ fn between_segments(a: Complex, b: Complex, c: Complex, d: Complex) -> f64 {
     if side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0 {
         return 0.0;
     }
-    let ends = [to_segment(a, c, d), to_segment(b, c, d), to_segment(c, a, b), to_segment(d, a, b)];
-    ends.into_iter().fold(f64::INFINITY, f64::min)
-}
-
-/// Computes the distance from a point to a segment.
-fn to_segment(z: Complex, from: Complex, to: Complex) -> f64 {
-    let along = to - from;
-    let length_sq = along.norm_sqr();
-    let share = if length_sq > 0.0 { (dot(z - from, along) / length_sq).clamp(0.0, 1.0) } else { 0.0 };
-    (from + along * share - z).norm()
+    let ends = [(a, [c, d]), (b, [c, d]), (c, [a, b]), (d, [a, b])];
+    ends.into_iter().map(|(end, other)| from_segment(end, other).norm()).fold(f64::INFINITY, f64::min)
 }

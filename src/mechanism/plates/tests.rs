@@ -44,7 +44,8 @@ fn outlines_are_closed_smooth_and_enclose_the_plate() {
         let (mut turned, mut length, mut area) = (0.0, 0.0, 0.0);
         for (i, edge) in edges.iter().enumerate() {
             let next = edges[(i + 1) % edges.len()];
-            assert!((edge.to() - next.from()).norm() < tight, "{plate:?}");
+            let (Edge::Line { to, .. } | Edge::Arc { to, .. }) = *edge;
+            assert!((to - next.from()).norm() < tight, "{plate:?}");
             area += swept(edge);
             match *edge {
                 Edge::Line { from, to } => {

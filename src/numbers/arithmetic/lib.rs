@@ -57,7 +57,22 @@ pub fn turned(z: Complex) -> Complex {
     Complex::new(-z.im, z.re)
 }
 
+/// Returns the vector to a point from the nearest point of a segment.
+pub fn from_segment(z: Complex, [from, to]: [Complex; 2]) -> Complex {
+    let (along, v) = (to - from, z - from);
+    let length_sq = along.norm_sqr();
+    let share = if length_sq > 0.0 { (dot(v, along) / length_sq).clamp(0.0, 1.0) } else { 0.0 };
+    v - along * share
+}
+
 /// Returns the least and the greatest of the values; [inf, -inf] if there are none.
 pub fn least_and_greatest(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
+
+/// Returns the lower left and the upper right corner of the box around points; [inf, -inf] if there are none.
+pub fn bounding_box(points: impl Iterator<Item = Complex> + Clone) -> [Complex; 2] {
+    let [left, right] = least_and_greatest(points.clone().map(|z| z.re));
+    let [low, high] = least_and_greatest(points.map(|z| z.im));
+    [Complex::new(left, low), Complex::new(right, high)]
 }

@@ -1,5 +1,6 @@
 //! Records made by hand, with the referee's figures.
 
+use linkwright::internals::judge::error::distances_to_curve;
 use linkwright::internals::judge::error::rms;
 use linkwright::internals::judge::referee::judge;
 use linkwright::internals::mechanism::Unit;
@@ -72,7 +73,7 @@ pub fn candidate(
     t1: &[AssemblyMode],
 ) -> Candidate {
     let error = task.errors(&linkage, crank_angles, t1).expect("closes at every point");
-    let to_curve = task.errors_to_curve(&linkage, crank_angles[0], t1[0]).expect("has a curve");
+    let to_curve = distances_to_curve(task.points(), &linkage, crank_angles[0], t1[0]).expect("has a curve");
     let verdict = judge(task, &linkage, crank_angles, t1);
     let mobility = linkage.mobility();
     let (extremes, over) = if mobility.input_turns_fully() {
