@@ -112,9 +112,10 @@ pub(super) fn weighted(width: f64) -> String {
     format!("{width:.2}")
 }
 
-/// The attributes of lines with round ends, and of shapes with round corners.
+/// The attributes of lines with round ends, and of shapes with round and with sharp corners.
 pub(super) const ROUND_ENDS: &str = r#" stroke-linecap="round""#;
 pub(super) const ROUND_CORNERS: &str = r#" stroke-linejoin="round""#;
+pub(super) const SHARP_CORNERS: &str = "";
 
 /// Returns the attributes of a text of a size and colour.
 pub(super) fn font(size: impl Display, colour: &str) -> String {
@@ -126,17 +127,9 @@ pub(super) fn bold(size: impl Display, colour: &str) -> String {
     format!(r#"font-size="{size}" font-weight="600" fill="{colour}""#)
 }
 
-/// The corners of the paper around the letters of a text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Corners {
-    Sharp,
-    Round,
-}
-
 /// Returns the attributes of a text with paper of a width around its letters, so that it is legible on lines.
-pub(super) fn haloed(text: &str, width: &str, corners: Corners) -> String {
-    let join = if corners == Corners::Round { ROUND_CORNERS } else { "" };
-    format!(r#"{text} stroke="{}" stroke-width="{width}"{join} paint-order="stroke""#, palette::PAPER)
+pub(super) fn haloed(text: &str, width: &str, corners: &str) -> String {
+    format!(r#"{text} {}{corners} paint-order="stroke""#, stroke(palette::PAPER, width))
 }
 
 /// Returns a coordinate to a hundredth of a pixel, kept within the range that viewers can read.

@@ -94,21 +94,14 @@ pub(super) fn fitting(text: &str, font_size: f64, width: f64) -> String {
     shortened(text, (1.04 * width / text_width("x", font_size)) as usize)
 }
 
-/// The heading above the sheets.
-pub(super) struct Heading {
-    pub(super) title: String,
-    /// The text to the right of the title.
-    pub(super) standing: String,
-    pub(super) lines: Vec<String>,
-}
-
-/// Returns one page with the sheets from left to right and from top to bottom.
-pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
+/// Returns one page with the sheets from left to right and from top to bottom, below a title with a note at its right
+/// and more lines.
+pub(super) fn page(title: &str, note: &str, lines: &[String], sheets: Vec<Sheet>) -> String {
     let mut canvas = Canvas::default();
-    canvas.title([MARGIN, MARGIN + FULL], 42.0, (&heading.title, 21.0), (&heading.standing, 14.0));
+    canvas.title([MARGIN, MARGIN + FULL], 42.0, (title, 21.0), (note, 14.0));
     let muted = font(13, palette::MUTED);
     let mut y = 64.0;
-    for line in &heading.lines {
+    for line in lines {
         canvas.text(Spot::new(MARGIN, y), Anchor::Start, &muted, &fitting(line, 13.0, FULL));
         y += 18.0;
     }
@@ -124,7 +117,7 @@ pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
         row.push(sheet);
     }
     y = put_row(&mut canvas, row, y);
-    canvas.document(WIDTH, y - GAP + MARGIN, &heading.title, &heading.lines.join("; "))
+    canvas.document(WIDTH, y - GAP + MARGIN, title, &lines.join("; "))
 }
 
 /// Draws a row of sheets, all in frames of the same height; returns the height at which the next one starts.
