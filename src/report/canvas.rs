@@ -2,7 +2,7 @@
 
 use super::labels::{Beside, Labels};
 use super::scene::{Bounds, round_length};
-use super::text::{brief, shortened, xml};
+use super::text::{brief, shortened, text_width, xml};
 use crate::mechanism::Complex;
 use std::fmt::{Display, Write};
 
@@ -307,11 +307,6 @@ impl Canvas {
             body = self.body
         )
     }
-}
-
-/// Returns the approximate width of a text in the usual sans-serif faces.
-pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
-    0.56 * font_size * super::text::columns_of(text) as f64
 }
 
 #[cfg(test)]

@@ -1,14 +1,12 @@
 //! Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share.
 
-use super::analysis_sheets::dimensions;
 use super::canvas::{
     Anchor, Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, stroke,
-    text_width,
 };
 use super::parts::{away, bars, letter, mark_joints, point_mark, stand, triangle};
 use super::scene::{Bounds, SAMPLES, all_joints, circuits_through, closest, middle_position};
-use super::sheet::{FULL, INSET, Sheet, page};
-use super::text::{brief, plural};
+use super::sheet::{FULL, INSET, Sheet, dimensions, page};
+use super::text::{brief, plural, text_width};
 use super::words::named;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
@@ -37,7 +35,7 @@ const LEGEND_LINE: f64 = 20.0;
 /// let original = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
 ///     point([2.5, 4.3]), AssemblyMode::Plus)?;
 /// let cognates: Vec<FourBar> = original.cognates().into_iter().flatten().map(|c| c.linkage).collect();
-/// let svg = linkwright::internals::report::analysis_sheets::cognates_svg("mine", None, &original, &cognates);
+/// let svg = linkwright::internals::report::cognates_sheet::cognates_svg("mine", None, &original, &cognates);
 /// assert!(svg.contains(">G</text>") && !svg.contains("not drawn"));
 /// # Ok::<(), LinkageError>(())
 /// ```

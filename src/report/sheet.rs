@@ -2,13 +2,12 @@
 
 use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, px, stroke,
-    text_width,
 };
+use super::csv::PARAMETERS;
 use super::scene::Bounds;
-use super::text::shortened;
+use super::text::{brief, shortened, text_width};
 use super::words;
-use crate::mechanism::Complex;
-use crate::mechanism::Unit;
+use crate::mechanism::{Complex, FourBar, Unit};
 
 /// The width of a page and of the sheets on it, in pixels.
 const WIDTH: f64 = 1080.0;
@@ -133,6 +132,18 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
         x += width + GAP;
     }
     y + height + GAP
+}
+
+/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
+pub(super) fn dimensions(linkage: &FourBar) -> String {
+    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
+    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
+    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
+}
+
+/// Returns a sign as `+1`, or as `−1` with a true minus.
+pub(super) fn sign(value: f64) -> &'static str {
+    if value < 0.0 { "−1" } else { "+1" }
 }
 
 /// Draws an arrow whose head ends at `to`; nothing if it is too short to be seen.

@@ -1,10 +1,10 @@
 //! A chart of a few series against the crank angle.
 
 use crate::report::canvas::{
-    Anchor, Area, Canvas, ROUND_CORNERS, Spot, Vec2, bold, font, outline, palette, px, stroke, text_width,
+    Anchor, Area, Canvas, ROUND_CORNERS, Spot, Vec2, bold, font, outline, palette, px, stroke,
 };
 use crate::report::scene::round_length;
-use crate::report::text::{brief, xml};
+use crate::report::text::{brief, text_width, xml};
 
 /// A series: values at crank angles, in the order of the angles.
 pub(super) struct Series {

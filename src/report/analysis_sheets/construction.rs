@@ -1,7 +1,7 @@
 //! The construction of a position with ruler and compasses: C from the crank angle, D as an intersection of the circle
 //! of radius b about C with the circle of radius c about B.
 
-use super::{closed, degrees, sign};
+use super::{closed, degrees};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::mechanism::{Complex, FourBar, cross};
 use crate::report::canvas::{
@@ -10,7 +10,7 @@ use crate::report::canvas::{
 use crate::report::labels::Beside;
 use crate::report::parts::{away, bars, letter, stand};
 use crate::report::scene::Bounds;
-use crate::report::sheet::{Sheet, arc};
+use crate::report::sheet::{Sheet, arc, sign};
 use crate::report::text::brief;
 use crate::report::words;
 

@@ -17,13 +17,10 @@ mod cycle;
 mod positions;
 mod vectors;
 
-pub use super::cognates_sheet::cognates_svg;
-
 use super::canvas::{Canvas, View, filled, palette};
-use super::csv::PARAMETERS;
 use super::parts::{UP, letter, stand};
 use super::scene::{Pose, Scene, circuits_through, middle_position};
-use super::sheet::{FULL, HALF, Sheet, page};
+use super::sheet::{FULL, HALF, Sheet, dimensions, page};
 use super::text::{brief, plural, significant};
 use super::words;
 use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
@@ -102,13 +99,6 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     ]
 }
 
-/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
-pub(super) fn dimensions(linkage: &FourBar) -> String {
-    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
-    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
-    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
-}
-
 /// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
 fn counted(rows: &[Row]) -> String {
     let all = [Status::Ok, Status::Singular, Status::Open, Status::Undetermined, Status::NotFinite];
@@ -137,11 +127,6 @@ fn input(analysis: &Analysis) -> String {
         text.push_str(&format!(", α2 = {} rad/s²", brief(analysis.alpha2_rad_s2, 5)));
     }
     text
-}
-
-/// Returns a sign as `+1`, or as `−1` with a true minus.
-fn sign(value: f64) -> &'static str {
-    if value < 0.0 { "−1" } else { "+1" }
 }
 
 /// Returns an angle such as `90°`.
