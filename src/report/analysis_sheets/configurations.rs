@@ -37,6 +37,7 @@ pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
         View::fit(&bounds, Area { x, y: top, width: CELL, height }.shrunk(20.0))
     };
     for (i, (configuration, scene)) in all.iter().zip(&scenes).enumerate() {
+        // Labels avoid only the drawing that they belong to.
         body.labels = Labels::default();
         draw(body, scene, &view(i), Detail { letters: scene.pose.is_some(), ..Detail::small(0.62) });
         if scene.pose.is_none() {
