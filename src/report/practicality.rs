@@ -260,5 +260,6 @@ fn at(closest: &Closest) -> String {
 /// Returns an angle in [0, 360) degrees, to a tenth.
 pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
-    format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
+    // Five digits are exact; in this way no zero has a sign.
+    format!("{}°", brief(if degrees >= 360.0 { 0.0 } else { degrees }, 5))
 }
