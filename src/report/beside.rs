@@ -1,15 +1,14 @@
 //! Lines printed below the candidates: the family, warnings, cognates, the buildable candidate.
 
-use super::text::{clean, plural, significant, wrapped};
+use super::text::{COLUMNS, clean, plural, significant, wrapped};
 use super::words;
 use crate::record::{Candidate, ON_BOUND_TEXT, Record, WarningKind};
 
 /// The largest number of lines of warnings and of cognates in the text.
 const MOST_LINES: usize = 20;
 
-/// Returns the lines for the table of candidates, indented by two, at most `columns` wide; empty if there is nothing to
-/// report.
-pub(super) fn lines(record: &Record, columns: usize) -> String {
+/// Returns the lines for the table of candidates, indented by two; empty if there is nothing to report.
+pub(super) fn lines(record: &Record) -> String {
     let mut parts = Vec::new();
     if let Some(family) = &record.family {
         parts.push(format!("{}.", clean(&family.text)));
@@ -26,7 +25,7 @@ pub(super) fn lines(record: &Record, columns: usize) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    let text: String = parts.iter().map(|part| wrapped("  ", "      ", part, columns)).collect();
+    let text: String = parts.iter().map(|part| wrapped("  ", "      ", part, COLUMNS)).collect();
     format!("\n{text}")
 }
 

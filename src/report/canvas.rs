@@ -2,7 +2,7 @@
 
 use super::labels::{Beside, Labels};
 use super::scene::{Bounds, round_length};
-use super::text::{brief, shortened, xml};
+use super::text::{brief, shortened, text_width, xml};
 use crate::mechanism::Complex;
 use std::fmt::{Display, Write};
 
@@ -112,9 +112,10 @@ pub(super) fn weighted(width: f64) -> String {
     format!("{width:.2}")
 }
 
-/// The attributes of lines with round ends, and of shapes with round corners.
+/// The attributes of lines with round ends, and of shapes with round and with sharp corners.
 pub(super) const ROUND_ENDS: &str = r#" stroke-linecap="round""#;
 pub(super) const ROUND_CORNERS: &str = r#" stroke-linejoin="round""#;
+pub(super) const SHARP_CORNERS: &str = "";
 
 /// Returns the attributes of a text of a size and colour.
 pub(super) fn font(size: impl Display, colour: &str) -> String {
@@ -126,17 +127,9 @@ pub(super) fn bold(size: impl Display, colour: &str) -> String {
     format!(r#"font-size="{size}" font-weight="600" fill="{colour}""#)
 }
 
-/// The corners of the paper around the letters of a text.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Corners {
-    Sharp,
-    Round,
-}
-
 /// Returns the attributes of a text with paper of a width around its letters, so that it is legible on lines.
-pub(super) fn haloed(text: &str, width: &str, corners: Corners) -> String {
-    let join = if corners == Corners::Round { ROUND_CORNERS } else { "" };
-    format!(r#"{text} stroke="{}" stroke-width="{width}"{join} paint-order="stroke""#, palette::PAPER)
+pub(super) fn haloed(text: &str, width: &str, corners: &str) -> String {
+    format!(r#"{text} {}{corners} paint-order="stroke""#, stroke(palette::PAPER, width))
 }
 
 /// Returns a coordinate to a hundredth of a pixel, kept within the range that viewers can read.
@@ -314,11 +307,6 @@ impl Canvas {
             body = self.body
         )
     }
-}
-
-/// Returns the approximate width of a text in the usual sans-serif faces.
-pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
-    0.56 * font_size * super::text::columns_of(text) as f64
 }
 
 #[cfg(test)]

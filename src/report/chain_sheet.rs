@@ -4,7 +4,7 @@
 use super::canvas::{Canvas, ROUND_ENDS, Spot, filled, outline, palette, stroke};
 use super::parts::{away, letter, plate, point_mark, stand};
 use super::scene::Bounds;
-use super::sheet::{FULL, Heading, Sheet, page};
+use super::sheet::{FULL, Sheet, page};
 use super::text::significant;
 use crate::mechanism::analysis::Status;
 use crate::mechanism::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
@@ -51,13 +51,13 @@ pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
         Some(deg) => format!("crank at {}°, and the path of {}", significant(*deg, 5), analysis.trace),
         None => "it closes at none of the crank angles asked".to_owned(),
     };
-    let standing = if analysis.input_turns_fully { "the crank turns fully" } else { "the crank rocks" };
+    let input = if analysis.input_turns_fully { "the crank turns fully" } else { "the crank rocks" };
     let mut lines = vec![format!("{} stages after the crank", analysis.stages)];
     if let Some(stroke) = analysis.stroke {
         let [w, h] = [0, 1].map(|axis| significant(stroke.high[axis] - stroke.low[axis], 5));
         lines.push(format!("{} moves {w} in x and {h} in y over a turn", analysis.trace));
     }
-    page(&Heading { title: analysis.name.clone(), standing: standing.into(), lines }, vec![sheet])
+    page(&analysis.name, input, &lines, vec![sheet])
 }
 
 /// Returns every point at a crank angle; `None` if a stage does not close.

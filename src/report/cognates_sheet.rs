@@ -1,14 +1,13 @@
 //! Roberts' figure: a linkage and its cognates in one position, with the coupler curve that they share.
 
-use super::analysis_sheets::dimensions;
 use super::canvas::{
     Anchor, Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, stroke,
-    text_width,
 };
 use super::parts::{away, bars, letter, mark_joints, point_mark, stand, triangle};
 use super::scene::{Bounds, SAMPLES, all_joints, circuits_through, closest, middle_position};
-use super::sheet::{FULL, Heading, INSET, Sheet, page};
-use super::text::{brief, clean, plural};
+use super::sheet::{FULL, INSET, Sheet, dimensions, page};
+use super::text::{brief, plural, text_width};
+use super::words::named;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, Complex, CouplerCurve, FourBar};
 use std::f64::consts::TAU;
@@ -36,22 +35,17 @@ const LEGEND_LINE: f64 = 20.0;
 /// let original = FourBar::with_coupler_offset([point([0.0, 0.0]), point([4.0, 1.0])], [2.0, 5.0, 5.0],
 ///     point([2.5, 4.3]), AssemblyMode::Plus)?;
 /// let cognates: Vec<FourBar> = original.cognates().into_iter().flatten().map(|c| c.linkage).collect();
-/// let svg = linkwright::internals::report::analysis_sheets::cognates_svg("mine", None, &original, &cognates);
+/// let svg = linkwright::internals::report::cognates_sheet::cognates_svg("mine", None, &original, &cognates);
 /// assert!(svg.contains(">G</text>") && !svg.contains("not drawn"));
 /// # Ok::<(), LinkageError>(())
 /// ```
 pub fn cognates_svg(name: &str, unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> String {
-    let name = clean(name);
     let counted = match cognates.len() {
         0 => "no cognate".to_owned(),
         n => plural(n, "cognate"),
     };
-    let heading = Heading {
-        title: if name.is_empty() { "unnamed linkage".to_owned() } else { name },
-        standing: counted,
-        lines: vec!["four-bar linkages with one coupler curve (Roberts 1875, Chebyshev 1878)".to_owned()],
-    };
-    page(&heading, vec![sheet(unit, original, cognates)])
+    let note = "four-bar linkages with one coupler curve (Roberts 1875, Chebyshev 1878)".to_owned();
+    page(&named(name, "unnamed linkage"), &counted, &[note], vec![sheet(unit, original, cognates)])
 }
 
 /// The joints A, B, C, D, P of a linkage.
@@ -73,7 +67,7 @@ fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet 
     for (i, linkage) in std::iter::once(original).chain(cognates).enumerate() {
         y += LEGEND_LINE;
         let is_drawn = drawn.get(i).is_some_and(Option::is_some);
-        legend(&mut sheet.body, y, COLOURS[i % 3].0, &standing(i), Some(&described(linkage, is_drawn)));
+        legend(&mut sheet.body, y, COLOURS[i % 3].0, &counted(i), Some(&described(linkage, is_drawn)));
     }
     sheet.note = if drawn.first().is_none_or(Option::is_none) {
         "the links of the original cannot be joined".to_owned()
@@ -89,7 +83,7 @@ fn sheet(unit: Option<Unit>, original: &FourBar, cognates: &[FourBar]) -> Sheet 
 }
 
 /// Returns `original`, `first cognate` ..
-fn standing(index: usize) -> String {
+fn counted(index: usize) -> String {
     match index {
         0 => "original".to_owned(),
         1 => "first cognate".to_owned(),
@@ -109,19 +103,16 @@ fn described(linkage: &FourBar, is_drawn: bool) -> String {
 fn position(original: &FourBar, cognates: &[FourBar]) -> Vec<Option<Joints5>> {
     let (angle, assembly) = middle_position(original);
     let curve = CouplerCurve::through(original, angle, assembly, 8);
-    let mut best: Option<(usize, f64, Vec<Option<Joints5>>)> = None;
-    for i in 0..TRIED {
+    let tried = (0..TRIED).filter_map(|i| {
         let (angle, assembly) = curve.position_at(TAU * i as f64 / TRIED as f64);
-        let Some(own) = joints_at(original, angle, assembly) else { continue };
-        let mut all = vec![Some(own)];
-        all.extend(cognates.iter().map(|cognate| reaching(cognate, own[4])));
-        let count = all.iter().flatten().count();
-        let spacing = spacing(&all);
-        if best.as_ref().is_none_or(|(n, s, _)| count > *n || (count == *n && spacing > *s)) {
-            best = Some((count, spacing, all));
-        }
-    }
-    best.map_or(vec![None; 1 + cognates.len()], |(_, _, all)| all)
+        let own = joints_at(original, angle, assembly)?;
+        let reached = cognates.iter().map(|cognate| reaching(cognate, own[4]));
+        let all: Vec<Option<Joints5>> = std::iter::once(Some(own)).chain(reached).collect();
+        Some(((all.iter().flatten().count(), spacing(&all)), all))
+    });
+    // The first of equal ones.
+    let best = tried.reduce(|best, next| if next.0 > best.0 { next } else { best });
+    best.map_or(vec![None; 1 + cognates.len()], |(_, all)| all)
 }
 
 /// Returns the distance of the closest two of all pins, pivots and P.

@@ -1,11 +1,11 @@
 //! Small drawings of every real linkage through nine points, side by side.
 
-use super::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, outline, palette, text_width};
+use super::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, outline, palette};
 use super::contact_sheet::{Layout, MARGIN};
 use super::exact::ability;
 use super::figure::{Detail, draw};
 use super::scene::{Bounds, Scene, positions_at};
-use super::text::{plural, shortened, significant};
+use super::text::{plural, shortened, significant, text_width};
 use super::words;
 use crate::record::{ExactLinkage, Record};
 

@@ -1,8 +1,8 @@
 //! The drawing of a scene: curve, linkage, target and labels.
 
 use super::canvas::{
-    Canvas, Corners, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px,
-    stroke, weighted,
+    Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, outline, palette, px, stroke,
+    weighted,
 };
 use super::labels::Beside;
 use super::parts::{UP, away, bars, letter, mark_joints, point_mark, stand, triangle};
@@ -223,7 +223,7 @@ fn numbers(canvas: &mut Canvas, scene: &Scene, view: &View, radius: f64) {
         .find(|step| n <= NUMBERED * step / if *step > 1 { 2 } else { 1 })
         .unwrap_or(50_000);
     let centre = view.spot(Bounds::of(scene.targets.iter().map(|target| target.at)).centre());
-    let attributes = haloed(&font(11, palette::TARGET_TEXT), "2.5", Corners::Round);
+    let attributes = haloed(&font(11, palette::TARGET_TEXT), "2.5", ROUND_CORNERS);
     for target in scene.targets.iter().filter(|target| target.index % step == 0) {
         let point = view.spot(target.at);
         // Points at one place, such as a last one that repeats the first, share a label.

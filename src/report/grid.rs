@@ -118,21 +118,16 @@ impl Grid {
         let heads: Vec<Cell> = self.heads.iter().map(|h| (h.0.to_owned(), Ink::Faint)).collect();
         let mut out = String::new();
         for row in std::iter::once(&heads).chain(&self.rows) {
-            // Spaces are written only before the next text, so that no line ends in spaces.
-            let mut spaces = 0;
+            let mut line = String::new();
             for (i, (&(_, align), &width)) in self.heads.iter().zip(&widths).enumerate() {
                 let (text, ink) = row.get(i).map_or(("", Ink::Plain), |cell| (cell.0.as_str(), cell.1));
-                let free = width - columns_of(text).min(width);
-                spaces += 2 + if align == Align::Right { free } else { 0 };
-                if !text.is_empty() {
-                    out.extend(std::iter::repeat_n(' ', spaces));
-                    out.push_str(&colour.paint(ink, text));
-                    spaces = 0;
-                } else {
-                    spaces += columns_of(text);
-                }
-                spaces += if align == Align::Left { free } else { 0 };
+                let (free, text) = (" ".repeat(width - columns_of(text)), colour.paint(ink, text));
+                line += &match align {
+                    Align::Left => format!("  {text}{free}"),
+                    Align::Right => format!("  {free}{text}"),
+                };
             }
+            out.push_str(line.trim_end());
             out.push('\n');
         }
         out

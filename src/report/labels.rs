@@ -1,6 +1,7 @@
 //! Placement of labels beside their points, where they hide least.
 
-use super::canvas::{Spot, Vec2, text_width};
+use super::text::text_width;
+use kurbo::{Point as Spot, Vec2};
 
 /// The places on the canvas that are occupied already.
 #[derive(Default)]

@@ -13,7 +13,7 @@
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
 //! | a browser | [`html::report_html`] |
 //! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
-//! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`analysis_sheets::cognates_svg`] |
+//! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`cognates_sheet::cognates_svg`] |
 //! | several results | [`compare::compare`] |
 //! | a suite of problems | [`suite::suite_text`], [`suite::suite_markdown`] |
 //!
@@ -61,7 +61,7 @@ mod canvas;
 pub mod certificate;
 pub mod chain_sheet;
 pub mod chain_text;
-mod cognates_sheet;
+pub mod cognates_sheet;
 pub mod compare;
 pub mod contact_sheet;
 pub mod csv;

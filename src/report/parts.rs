@@ -1,7 +1,7 @@
 //! The parts of drawings of linkages: stands, bars, the coupler's triangle, letters.
 
 use super::canvas::{
-    Canvas, Corners, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, bold, filled, haloed, palette, stroke, weighted,
+    Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, Vec2, bold, filled, haloed, palette, stroke, weighted,
 };
 use super::labels::{Beside, Labels};
 
@@ -66,7 +66,7 @@ pub(super) fn mark_joints(labels: &mut Labels, [a, b, c, d, p]: [Spot; 5]) {
 
 /// Draws the letter of a joint beside it.
 pub(super) fn letter(canvas: &mut Canvas, name: &str, joint: Spot, towards: Vec2) {
-    let attributes = haloed(&bold(15, palette::INK), "3", Corners::Round);
+    let attributes = haloed(&bold(15, palette::INK), "3", ROUND_CORNERS);
     canvas.label(name, 15.0, &attributes, Beside { point: joint, distance: 9.0, towards, needed: true });
 }
 

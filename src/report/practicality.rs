@@ -259,5 +259,17 @@ fn at(closest: &Closest) -> String {
 /// Returns an angle in [0, 360) degrees, to a tenth.
 pub(super) fn degrees(angle: f64) -> String {
     let degrees = (angle.to_degrees().rem_euclid(360.0) * 10.0).round() / 10.0;
-    format!("{}°", if degrees >= 360.0 { 0.0 } else { degrees })
+    // Five digits are exact; in this way no zero has a sign.
+    format!("{}°", brief(if degrees >= 360.0 { 0.0 } else { degrees }, 5))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::degrees;
+
+    #[test]
+    fn an_angle_is_shown_to_a_tenth_below_a_turn_and_never_as_minus_zero() {
+        let shown = [-0.0, -1e-9, 0.5, 123.44, 359.96, -90.0].map(|deg: f64| degrees(deg.to_radians()));
+        assert_eq!(shown, ["0°", "0°", "0.5°", "123.4°", "0°", "270°"]);
+    }
 }

@@ -1,6 +1,6 @@
 //! The costs of requirements and the relaxations that would help, in words.
 
-use super::text::{clean, significant, wrapped};
+use super::text::{COLUMNS, clean, significant, wrapped};
 use super::words;
 use crate::mechanism::Unit;
 use crate::record::{Candidate, Change, Cost, LimitUnit, Record, Relaxation, TypedValue};
@@ -10,7 +10,7 @@ use crate::task::requirement::RequirementKind;
 const SMALL_STEP: f64 = 0.5;
 
 /// Returns the costs of the limits of the best candidate, one line for each requirement; empty if no limit is active.
-pub fn costs(record: &Record, columns: usize) -> String {
+pub(super) fn costs(record: &Record) -> String {
     let Some(best) = record.candidates.first() else { return String::new() };
     if best.costs.is_empty() {
         return String::new();
@@ -18,7 +18,7 @@ pub fn costs(record: &Record, columns: usize) -> String {
     let mut out = format!("\n  What the limits cost (#{})\n", best.rank);
     for (i, cost) in best.costs.iter().enumerate() {
         if best.costs[..i].iter().all(|other| other.name != cost.name) {
-            out.push_str(&wrapped("    ", "      ", &sentence(record, best, &cost.name), columns));
+            out.push_str(&wrapped("    ", "      ", &sentence(record, best, &cost.name), COLUMNS));
         }
     }
     out
@@ -87,11 +87,11 @@ fn rate(unit: Option<Unit>, rms: f64, cost: &Cost) -> Option<String> {
 
 /// Returns the requirements that conflict and the relaxations that would help; empty if a candidate is acceptable or
 /// none was found.
-pub fn relaxations(record: &Record, columns: usize) -> String {
+pub(super) fn relaxations(record: &Record) -> String {
     let mut out = String::new();
     if let Some(text) = conflict(record) {
         out.push('\n');
-        out.push_str(&wrapped("  ", "  ", &text, columns));
+        out.push_str(&wrapped("  ", "  ", &text, COLUMNS));
     }
     for (options, rms) in changes(record) {
         // Not broken into lines, so that it can be copied.

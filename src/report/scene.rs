@@ -54,8 +54,7 @@ impl Scene {
             let (angle, assembly) = *positions.get(j)?;
             Some(linkage.position_with(angle, assembly).joints()?.coupler_point)
         };
-        let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
-        let circuits = circuits_through(linkage, all, samples);
+        let circuits = circuits_of(linkage, positions, samples);
         let pose = legible_pose(linkage, positions)
             .or_else(|| Some(Pose { target: None, joints: all_joints(linkage, circuits.first()?.first()?) }));
         Scene { linkage: Some(*linkage), targets: targets(record, &reach), circuits, pose }
@@ -124,8 +123,12 @@ pub(crate) fn middle_position(linkage: &FourBar) -> (f64, AssemblyMode) {
 
 /// Returns the joints along every circuit on which a point is reached, `samples` positions each.
 pub(super) fn circuits(candidate: &Candidate, samples: usize) -> Vec<Vec<Joints>> {
-    let all = std::iter::once(first_position(candidate)).chain(positions(candidate));
-    circuits_through(&candidate.linkage, all, samples)
+    circuits_of(&candidate.linkage, &positions(candidate), samples)
+}
+
+fn circuits_of(linkage: &FourBar, positions: &[(f64, AssemblyMode)], samples: usize) -> Vec<Vec<Joints>> {
+    let all = std::iter::once(first_of(linkage, positions)).chain(positions.iter().copied());
+    circuits_through(linkage, all, samples)
 }
 
 /// Returns the joints along every circuit that contains one of the positions (crank angle in radians, assembly).

@@ -2,13 +2,12 @@
 
 use super::canvas::{
     Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, Vec2, View, bold, font, outline, palette, px, stroke,
-    text_width,
 };
+use super::csv::PARAMETERS;
 use super::scene::Bounds;
-use super::text::shortened;
+use super::text::{brief, shortened, text_width};
 use super::words;
-use crate::mechanism::Complex;
-use crate::mechanism::Unit;
+use crate::mechanism::{Complex, FourBar, Unit};
 
 /// The width of a page and of the sheets on it, in pixels.
 const WIDTH: f64 = 1080.0;
@@ -94,21 +93,14 @@ pub(super) fn fitting(text: &str, font_size: f64, width: f64) -> String {
     shortened(text, (1.04 * width / text_width("x", font_size)) as usize)
 }
 
-/// The heading above the sheets.
-pub(super) struct Heading {
-    pub(super) title: String,
-    /// The text to the right of the title.
-    pub(super) standing: String,
-    pub(super) lines: Vec<String>,
-}
-
-/// Returns one page with the sheets from left to right and from top to bottom.
-pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
+/// Returns one page with the sheets from left to right and from top to bottom, below a title with a note at its right
+/// and more lines.
+pub(super) fn page(title: &str, note: &str, lines: &[String], sheets: Vec<Sheet>) -> String {
     let mut canvas = Canvas::default();
-    canvas.title([MARGIN, MARGIN + FULL], 42.0, (&heading.title, 21.0), (&heading.standing, 14.0));
+    canvas.title([MARGIN, MARGIN + FULL], 42.0, (title, 21.0), (note, 14.0));
     let muted = font(13, palette::MUTED);
     let mut y = 64.0;
-    for line in &heading.lines {
+    for line in lines {
         canvas.text(Spot::new(MARGIN, y), Anchor::Start, &muted, &fitting(line, 13.0, FULL));
         y += 18.0;
     }
@@ -124,7 +116,7 @@ pub(super) fn page(heading: &Heading, sheets: Vec<Sheet>) -> String {
         row.push(sheet);
     }
     y = put_row(&mut canvas, row, y);
-    canvas.document(WIDTH, y - GAP + MARGIN, &heading.title, &heading.lines.join("; "))
+    canvas.document(WIDTH, y - GAP + MARGIN, title, &lines.join("; "))
 }
 
 /// Draws a row of sheets, all in frames of the same height; returns the height at which the next one starts.
@@ -140,6 +132,18 @@ fn put_row(canvas: &mut Canvas, row: Vec<Sheet>, y: f64) -> f64 {
         x += width + GAP;
     }
     y + height + GAP
+}
+
+/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
+pub(super) fn dimensions(linkage: &FourBar) -> String {
+    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
+    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
+    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
+}
+
+/// Returns a sign as `+1`, or as `−1` with a true minus.
+pub(super) fn sign(value: f64) -> &'static str {
+    if value < 0.0 { "−1" } else { "+1" }
 }
 
 /// Draws an arrow whose head ends at `to`; nothing if it is too short to be seen.

@@ -3,7 +3,7 @@
 use super::grid::Align::{Left, Right};
 use super::grid::{Cell, Colour, Column, Grid, Ink, plain};
 use super::text::{
-    COLUMNS, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
+    COLUMNS, NO_NUMBER, brief, clean, clean_sentence, grouped, markdown, percent_up, significant, wrapped,
 };
 use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 
@@ -11,8 +11,6 @@ use crate::record::suite::{MethodResult, ProblemResult, PublishedResult, Suite};
 const SMALLER: &str = " *";
 /// The number of digits of figures that are stated one by one.
 const DIGITS: usize = 10;
-/// The text for a missing figure.
-const NOTHING: &str = "-";
 /// The width of a problem's name on a terminal, in columns.
 const NAME: usize = 30;
 
@@ -123,10 +121,11 @@ fn answers(suite: &Suite) -> Grid {
         None => plain(clean(&p.name)),
     };
     let to_curve = |p: &ProblemResult| p.search.summary.best.as_ref().and_then(|best| best.to_curve_sum_sq);
-    let evaluations = |p: &ProblemResult| p.search.summary.median_evaluations.map_or(NOTHING.into(), grouped);
+    let evaluations =
+        |p: &ProblemResult| p.search.summary.median_evaluations.map_or(NO_NUMBER.into(), grouped);
     let gap = |p: &ProblemResult| {
         let proof = p.certificate.as_ref().filter(|proof| proof.lower_bound > 0.0);
-        proof.map_or(NOTHING.into(), |proof| format!("{} %", percent_up(proof.gap)))
+        proof.map_or(NO_NUMBER.into(), |proof| format!("{} %", percent_up(proof.gap)))
     };
     let columns: [Column<'_, ProblemResult>; 10] = [
         (Left, "problem", &marked),
@@ -151,7 +150,7 @@ fn beside(suite: &Suite) -> Grid {
         let mut cells = vec![
             plain(clean(&problem.name)),
             number(problem.search.summary.median_sum_sq, 6),
-            plain(best.map_or(NOTHING.into(), printed)),
+            plain(best.map_or(NO_NUMBER.into(), printed)),
             number(best.and_then(|entry| entry.sum_sq), 6),
         ];
         for population in &problem.populations {
@@ -228,10 +227,10 @@ fn notes(suite: &Suite) -> Vec<String> {
 }
 
 fn number(value: Option<f64>, digits: usize) -> Cell {
-    plain(value.map_or(NOTHING.into(), |value| significant(value, digits)))
+    plain(value.map_or(NO_NUMBER.into(), |value| significant(value, digits)))
 }
 
 /// Returns the printed sum with the printed digits.
 fn printed(entry: &PublishedResult) -> String {
-    entry.printed_sum_sq.map_or(NOTHING.into(), |sum_sq| brief(sum_sq, DIGITS))
+    entry.printed_sum_sq.map_or(NO_NUMBER.into(), |sum_sq| brief(sum_sq, DIGITS))
 }

@@ -3,11 +3,11 @@
 
 use super::beside;
 use super::canvas::{
-    Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke, text_width,
+    Anchor, Area, Canvas, Frame, ROUND_ENDS, Spot, View, filled, font, outline, palette, stroke,
 };
 use super::figure::{Detail, draw};
 use super::scene::{SAMPLES, Scene, circuits};
-use super::text::{brief, clean, shortened, significant};
+use super::text::{brief, clean, shortened, significant, text_width};
 use super::words;
 use crate::record::{Candidate, Record};
 use crate::task::spec::TransmissionOver;

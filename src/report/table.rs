@@ -25,17 +25,17 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
     } else {
         out.push_str(&rows(record, colour));
         out.push_str(&notes(record));
-        out.push_str(&beside::lines(record, COLUMNS));
+        out.push_str(&beside::lines(record));
         out.push_str(&best(record));
-        out.push_str(&price::costs(record, COLUMNS));
+        out.push_str(&price::costs(record));
     }
-    out.push_str(&price::relaxations(record, COLUMNS));
+    out.push_str(&price::relaxations(record));
     if let Some(said) = words::without_advice(record) {
         out.push('\n');
         out.push_str(&indented(said));
     }
     out.push('\n');
-    out.push_str(&ending(record));
+    out.push_str(&indented(&ending_sentences(record)));
     out
 }
 
@@ -136,11 +136,8 @@ fn notes(record: &Record) -> String {
          (used). ratio: longest to shortest link.{unit}"
     );
     out.push_str(&indented(&key));
-    if let Some(tolerances) = words::tolerances(record) {
-        out.push('\n');
-        out.push_str(&indented(&tolerances));
-    }
-    for sentence in against_raw(record).into_iter().chain(words::fewer(record)) {
+    let more = [words::tolerances(record), against_raw(record), words::fewer(record)];
+    for sentence in more.into_iter().flatten() {
         out.push('\n');
         out.push_str(&indented(&sentence));
     }
@@ -186,13 +183,8 @@ pub(super) fn against_raw(record: &Record) -> Option<String> {
 /// Returns the best linkage: its motion in words, and its parameters as TOML.
 fn best(record: &Record) -> String {
     let Some(candidate) = record.candidates.first() else { return String::new() };
-    let mut out = format!("\n  Best linkage (#{})", candidate.rank);
-    if let Some(motion) = motion(candidate) {
-        out.push_str(&format!(": {motion}"));
-    }
-    out.push('\n');
-    out.push_str(&linkage_toml(&candidate.linkage, COLUMNS));
-    out
+    let motion = motion(candidate).map_or(String::new(), |motion| format!(": {motion}"));
+    format!("\n  Best linkage (#{}){motion}\n{}", candidate.rank, linkage_toml(&candidate.linkage))
 }
 
 /// Returns the motion of the crank: `crank from 31.102° to 371.1°, counter-clockwise`, `crank from 31.1° to 141°,
@@ -203,38 +195,30 @@ pub(super) fn motion(candidate: &Candidate) -> Option<String> {
     if !angles.iter().all(|angle| angle.is_finite()) {
         return None;
     }
+    let degrees = |angle: f64| format!("{}°", brief(angle, 5));
     let reverses = candidate.goes_to_and_fro() || candidate.defects.iter().any(Defect::is_to_and_fro);
     let way_back = if reverses { ", and back the same way" } else { "" };
     let way = match (angles.is_sorted(), angles.iter().rev().is_sorted()) {
-        (true, true) => return Some(format!("crank at {}°", brief(first, 5))),
+        (true, true) => return Some(format!("crank at {}", degrees(first))),
         (true, false) => "counter-clockwise",
         (false, true) => "clockwise",
         (false, false) => {
             let least = angles.iter().copied().fold(f64::INFINITY, f64::min);
             let greatest = angles.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            return Some(format!(
-                "crank between {}° and {}°, to and fro",
-                brief(least, 5),
-                brief(greatest, 5)
-            ));
+            return Some(format!("crank between {} and {}, to and fro", degrees(least), degrees(greatest)));
         }
     };
-    Some(format!("crank from {}° to {}°, {way}{way_back}", brief(first, 5), brief(last, 5)))
+    Some(format!("crank from {} to {}, {way}{way_back}", degrees(first), degrees(last)))
 }
 
-/// Returns the linkage as an inline table of TOML, to the last digit, in lines of at most `columns`.
-fn linkage_toml(linkage: &FourBar, columns: usize) -> String {
+/// Returns the linkage as an inline table of TOML, to the last digit.
+fn linkage_toml(linkage: &FourBar) -> String {
     let [ax, ay, bx, by, a, b, c, d, e, t1, t2] = parameters(linkage);
     // A tilde is a space at which no line is broken.
     let parts = format!(
         "A~=~[{ax},~{ay}], B~=~[{bx},~{by}], a~=~{a}, b~=~{b}, c~=~{c}, d~=~{d}, e~=~{e}, t1~=~{t1}, t2~=~{t2}~}}"
     );
-    wrapped("    linkage = { ", "      ", &parts, columns).replace('~', " ")
-}
-
-/// Returns method, seed, cost and the reason why the search ended.
-fn ending(record: &Record) -> String {
-    indented(&ending_sentences(record))
+    wrapped("    linkage = { ", "      ", &parts, COLUMNS).replace('~', " ")
 }
 
 /// Returns method, seed, cost and the reason why the search ended, on one line.

@@ -226,6 +226,11 @@ fn columns_of_char(c: char) -> usize {
     }
 }
 
+/// Returns the approximate width of a text in the usual sans-serif faces.
+pub(super) fn text_width(text: &str, font_size: f64) -> f64 {
+    0.56 * font_size * columns_of(text) as f64
+}
+
 /// Returns the text with a capital first letter.
 pub(super) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();

@@ -329,8 +329,13 @@ pub(super) fn timing(record: &Record) -> &'static str {
 
 /// Returns the problem's name; never empty.
 pub(super) fn problem_name(record: &Record) -> String {
-    let name = clean(&record.problem.name);
-    if name.is_empty() { "unnamed problem".to_owned() } else { name }
+    named(&record.problem.name, "unnamed problem")
+}
+
+/// Returns a foreign name, or other words if it is empty.
+pub(super) fn named(name: &str, otherwise: &str) -> String {
+    let name = clean(name);
+    if name.is_empty() { otherwise.to_owned() } else { name }
 }
 
 /// Returns ` mm`, or nothing if lengths have no unit.

@@ -25,7 +25,7 @@ use linkwright::internals::record::digest::digest;
 use linkwright::internals::report::compare::{Entry, SortKey, compare};
 use linkwright::internals::report::plot::{Glyphs, terminal_plot};
 use linkwright::internals::report::{
-    Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text,
+    Colour, analysis_csv, analysis_sheets, analysis_text, chain_sheet, chain_text, cognates_sheet,
 };
 use linkwright::internals::report::{contact_sheet, csv, exact, exact_sheet, html, svg, table};
 use linkwright::internals::synthesis::keeper::{Keeper, SearchState};
@@ -121,7 +121,7 @@ pub fn linkage(bytes: &[u8]) {
             analysis_text::analysis_head(&analysis, Colour::Never);
             analysis_text::analysis_table(&analysis, Colour::Never);
             let cognates: Vec<_> = linkage.cognates().into_iter().flatten().map(|c| c.linkage).collect();
-            analysis_sheets::cognates_svg("name", unit, &linkage, &cognates);
+            cognates_sheet::cognates_svg("name", unit, &linkage, &cognates);
         }
         Linkage::Chain(chain) => {
             let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };

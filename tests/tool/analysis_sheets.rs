@@ -6,7 +6,8 @@ use linkwright::internals::mechanism::Unit;
 use linkwright::internals::mechanism::analysis::{Analysis, PositionMethod, Request, analyze, full_turn};
 use linkwright::internals::mechanism::four_bar::motion::CrankMotion;
 use linkwright::internals::mechanism::{AssemblyMode, FourBar, point};
-use linkwright::internals::report::analysis_sheets::{CYCLE_ROWS, analysis_svg, cognates_svg};
+use linkwright::internals::report::analysis_sheets::{CYCLE_ROWS, analysis_svg};
+use linkwright::internals::report::cognates_sheet::cognates_svg;
 
 const POSITIONS: &str = "Positions";
 const CONSTRUCTION: &str = "Construction by arcs";

@@ -13,10 +13,11 @@ use crate::mechanism::analysis::chain::{ChainRequest, analyze_chain};
 use crate::mechanism::analysis::{Request, analyze, full_turn};
 use crate::mechanism::four_bar::motion::CrankMotion;
 use crate::report::analysis_csv::analysis_csv;
-use crate::report::analysis_sheets::{analysis_svg, cognates_svg};
+use crate::report::analysis_sheets::analysis_svg;
 use crate::report::analysis_text::{analysis_head, analysis_table};
 use crate::report::chain_sheet::chain_svg;
 use crate::report::chain_text::{chain_csv, chain_head, chain_table};
+use crate::report::cognates_sheet::cognates_svg;
 use std::path::Path;
 
 /// The crank angles when none are asked for: every 30 degrees.

@@ -1,10 +1,10 @@
 //! A chart of a few series against the crank angle.
 
 use crate::report::canvas::{
-    Anchor, Area, Canvas, ROUND_CORNERS, Spot, Vec2, bold, font, outline, palette, px, stroke, text_width,
+    Anchor, Area, Canvas, ROUND_CORNERS, Spot, Vec2, bold, font, outline, palette, px, stroke,
 };
 use crate::report::scene::round_length;
-use crate::report::text::{brief, xml};
+use crate::report::text::{brief, text_width, xml};
 
 /// A series: values at crank angles, in the order of the angles.
 pub(super) struct Series {
@@ -104,8 +104,8 @@ impl Chart {
                 canvas.text(at, Anchor::Middle, &muted(11), "open");
             }
         }
-        for (value, is_zero) in ticks(low, high, tick) {
-            let (colour, width) = if is_zero { (palette::MUTED, 1.0) } else { (palette::FAINT, 0.6) };
+        for value in ticks(low, high, tick) {
+            let (colour, width) = if value == 0.0 { (palette::MUTED, 1.0) } else { (palette::FAINT, 0.6) };
             let y = y_of(value);
             canvas.line(Spot::new(0.0, y), Spot::new(plot.width, y), &stroke(colour, width));
         }
@@ -206,14 +206,12 @@ fn degree_step(least: f64) -> f64 {
     found.unwrap_or_else(|| 360.0 * round_length(2.0 * least / 360.0).max(1.0))
 }
 
-/// Returns the multiples of the step in [low, high], and whether each is zero. At most 60 of them.
-fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64, bool)> {
+/// Returns the multiples of the step in [low, high], at most 60 of them.
+fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     let slack = 1e-6;
     let first = (low / step - slack).ceil();
-    (0..60).map(move |i| first + f64::from(i)).take_while(move |k| *k <= high / step + slack).map(move |k| {
-        let value = k * step;
-        (value, value == 0.0)
-    })
+    let multiples = (0..60).map(move |i| first + f64::from(i));
+    multiples.take_while(move |k| *k <= high / step + slack).map(move |k| k * step)
 }
 
 /// Returns a tick's number with as many digits as are needed to distinguish it from its neighbours.
@@ -223,7 +221,7 @@ fn label(value: f64, step: f64) -> String {
 }
 
 fn numbers(canvas: &mut Canvas, plot: &Area, (low, high, tick): (f64, f64, f64), y_of: impl Fn(f64) -> f64) {
-    for (value, _) in ticks(low, high, tick) {
+    for value in ticks(low, high, tick) {
         let at = Spot::new(plot.x - 6.0, plot.y + y_of(value) + 4.0);
         canvas.text(at, Anchor::End, &muted(11), &label(value, tick));
     }
@@ -232,7 +230,7 @@ fn numbers(canvas: &mut Canvas, plot: &Area, (low, high, tick): (f64, f64, f64),
 fn crank_angles(canvas: &mut Canvas, plot: &Area, abscissa: &Abscissa, x_of: impl Fn(f64) -> f64) {
     let step = degree_step((abscissa.high - abscissa.low) / 7.0);
     let y = plot.y + plot.height;
-    for (value, _) in ticks(abscissa.low, abscissa.high, step) {
+    for value in ticks(abscissa.low, abscissa.high, step) {
         let at = Spot::new(plot.x + x_of(value), y);
         canvas.line(at, at + Vec2::new(0.0, 4.0), &stroke(palette::MUTED, 1));
         let below = at + Vec2::new(0.0, 16.0);

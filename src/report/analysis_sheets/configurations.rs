@@ -1,12 +1,12 @@
 //! The four configurations (t1, t2) side by side, each with its coupler curve (Romero, figure 3).
 
-use super::{closed, degrees, pivots, scene, sign};
+use super::{closed, degrees, pivots, scene};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::report::canvas::{Anchor, Area, Canvas, Spot, View, bold, font, palette};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Labels;
 use crate::report::scene::Bounds;
-use crate::report::sheet::{FULL, HEAD, INSET, Sheet};
+use crate::report::sheet::{FULL, HEAD, INSET, Sheet, sign};
 
 /// The number of samples of a circuit: a degree of the crank, in a small drawing.
 const SAMPLES: usize = 360;
@@ -37,6 +37,7 @@ pub(super) fn sheet(analysis: &Analysis) -> Option<Sheet> {
         View::fit(&bounds, Area { x, y: top, width: CELL, height }.shrunk(20.0))
     };
     for (i, (configuration, scene)) in all.iter().zip(&scenes).enumerate() {
+        // Labels avoid only the drawing that they belong to.
         body.labels = Labels::default();
         draw(body, scene, &view(i), Detail { letters: scene.pose.is_some(), ..Detail::small(0.62) });
         if scene.pose.is_none() {

@@ -1,16 +1,16 @@
 //! The construction of a position with ruler and compasses: C from the crank angle, D as an intersection of the circle
 //! of radius b about C with the circle of radius c about B.
 
-use super::{closed, degrees, sign};
+use super::{closed, degrees};
 use crate::mechanism::analysis::{Analysis, Configuration};
 use crate::mechanism::{Complex, FourBar, cross};
 use crate::report::canvas::{
-    Canvas, Corners, ROUND_ENDS, Spot, Vec2, filled, font, haloed, outline, palette, stroke,
+    Canvas, ROUND_ENDS, SHARP_CORNERS, Spot, Vec2, filled, font, haloed, outline, palette, stroke,
 };
 use crate::report::labels::Beside;
 use crate::report::parts::{away, bars, letter, stand};
 use crate::report::scene::Bounds;
-use crate::report::sheet::{Sheet, arc};
+use crate::report::sheet::{Sheet, arc, sign};
 use crate::report::text::brief;
 use crate::report::words;
 
@@ -163,7 +163,7 @@ fn crank_angle(canvas: &mut Canvas, [pivot, pin]: [Spot; 2], phi: f64, text: &st
     canvas.path(&spots, false, &outline(palette::MUTED, 1));
     canvas.labels.mark_path(&spots);
     let towards = Vec2::new((0.5 * turn).cos(), -(0.5 * turn).sin());
-    let attributes = haloed(&font(12, palette::INK), "2.5", Corners::Sharp);
+    let attributes = haloed(&font(12, palette::INK), "2.5", SHARP_CORNERS);
     let beside = Beside { point: pivot + radius * towards, distance: 8.0, towards, needed: true };
     canvas.label(text, 12.0, &attributes, beside);
 }
@@ -174,7 +174,7 @@ fn link_name(canvas: &mut Canvas, name: &str, from: Spot, to: Spot, colour: &str
     let towards = Vec2::new((to.y - from.y) / length, (from.x - to.x) / length);
     let italic = format!(r#"font-size="14" font-style="italic" fill="{colour}""#);
     let beside = Beside { point: from.midpoint(to), distance: 7.0, towards, needed: false };
-    canvas.label(name, 14.0, &haloed(&italic, "2.5", Corners::Sharp), beside);
+    canvas.label(name, 14.0, &haloed(&italic, "2.5", SHARP_CORNERS), beside);
 }
 
 #[cfg(test)]

@@ -17,14 +17,11 @@ mod cycle;
 mod positions;
 mod vectors;
 
-pub use super::cognates_sheet::cognates_svg;
-
 use super::canvas::{Canvas, View, filled, palette};
-use super::csv::PARAMETERS;
 use super::parts::{UP, letter, stand};
 use super::scene::{Pose, Scene, circuits_through, middle_position};
-use super::sheet::{FULL, HALF, Heading, Sheet, page};
-use super::text::{brief, clean, plural, significant};
+use super::sheet::{FULL, HALF, Sheet, dimensions, page};
+use super::text::{brief, plural, significant};
 use super::words;
 use crate::mechanism::analysis::{Analysis, Configuration, Row, Status, joints_of};
 use crate::mechanism::{Complex, FourBar};
@@ -49,7 +46,9 @@ pub const CYCLE_ROWS: usize = 24;
 /// # Ok::<(), LinkageError>(())
 /// ```
 pub fn analysis_svg(analysis: &Analysis) -> String {
-    page(&heading(analysis), sheets(analysis))
+    let kind = analysis.mobility.linkage_type.map_or("no assembly", |t| t.name());
+    let name = words::named(&analysis.name, "unnamed linkage");
+    page(&name, kind, &lines(analysis), sheets(analysis))
 }
 
 fn sheets(analysis: &Analysis) -> Vec<Sheet> {
@@ -72,46 +71,32 @@ fn sheets(analysis: &Analysis) -> Vec<Sheet> {
     sheets
 }
 
-fn heading(analysis: &Analysis) -> Heading {
-    let name = clean(&analysis.name);
+/// Returns the linkage, its mobility and its positions, a line for each.
+fn lines(analysis: &Analysis) -> Vec<String> {
+    let Some(configuration) = analysis.configurations.first() else {
+        return vec!["no configuration to draw".to_owned()];
+    };
     let mobility = &analysis.mobility;
     let unit = words::length_suffix(analysis.unit);
-    let mut lines = Vec::new();
-    if let Some(configuration) = analysis.configurations.first() {
-        lines.push(dimensions(&configuration.linkage));
-        let worst = mobility
-            .worst_transmission_deg
-            .map_or(String::new(), |worst| format!(", worst transmission angle {}°", significant(worst, 3)));
-        let range = match (&mobility.linkage_type, mobility.input_turns_fully) {
-            (None, _) => "the links cannot be joined".to_owned(),
-            (_, true) => "the input turns fully".to_owned(),
-            _ => {
-                let arcs: Vec<String> = mobility
-                    .input_arcs_deg
-                    .iter()
-                    .map(|[from, to]| format!("{}° to {}°", brief(*from, 5), brief(*to, 5)))
-                    .collect();
-                format!("input from {}", arcs.join(" or from "))
-            }
-        };
-        let margin = brief(mobility.grashof_margin, 4);
-        lines.push(format!("Grashof margin {margin}{unit}, {range}{worst}"));
-        lines.push(format!("{}; {}", counted(&configuration.rows), input(analysis)));
-    } else {
-        lines.push("no configuration to draw".to_owned());
-    }
-    Heading {
-        title: if name.is_empty() { "unnamed linkage".to_owned() } else { name },
-        standing: mobility.linkage_type.map_or("no assembly", |t| t.name()).to_owned(),
-        lines,
-    }
-}
-
-/// Returns the dimensions, such as `A (0, 0), B (4, 1), a 2, b 5 ..`.
-pub(super) fn dimensions(linkage: &FourBar) -> String {
-    let [ax, ay, bx, by, a, b, c, d, e, ..] = PARAMETERS.map(|(_, of)| brief(of(linkage), 6));
-    let [t1, t2] = [linkage.assembly().sign(), linkage.side().sign()].map(sign);
-    format!("A ({ax}, {ay}), B ({bx}, {by}), a {a}, b {b}, c {c}, d {d}, e {e}, t1 {t1}, t2 {t2}")
+    let worst = mobility
+        .worst_transmission_deg
+        .map_or(String::new(), |worst| format!(", worst transmission angle {}°", significant(worst, 3)));
+    let range = match (&mobility.linkage_type, mobility.input_turns_fully) {
+        (None, _) => "the links cannot be joined".to_owned(),
+        (_, true) => "the input turns fully".to_owned(),
+        _ => {
+            let arcs = mobility.input_arcs_deg.iter();
+            let arcs: Vec<String> =
+                arcs.map(|[from, to]| format!("{} to {}", degrees(*from), degrees(*to))).collect();
+            format!("input from {}", arcs.join(" or from "))
+        }
+    };
+    let margin = brief(mobility.grashof_margin, 4);
+    vec![
+        dimensions(&configuration.linkage),
+        format!("Grashof margin {margin}{unit}, {range}{worst}"),
+        format!("{}; {}", counted(&configuration.rows), input(analysis)),
+    ]
 }
 
 /// Returns the counts of positions, such as `360 positions: 358 ok, 2 singular`.
@@ -142,11 +127,6 @@ fn input(analysis: &Analysis) -> String {
         text.push_str(&format!(", α2 = {} rad/s²", brief(analysis.alpha2_rad_s2, 5)));
     }
     text
-}
-
-/// Returns a sign as `+1`, or as `−1` with a true minus.
-fn sign(value: f64) -> &'static str {
-    if value < 0.0 { "−1" } else { "+1" }
 }
 
 /// Returns an angle such as `90°`.

@@ -3,7 +3,9 @@
 use super::{closed, degrees, pivots, scene};
 use crate::mechanism::Complex;
 use crate::mechanism::analysis::{Analysis, Configuration, Row};
-use crate::report::canvas::{Canvas, Corners, ROUND_ENDS, Spot, View, filled, font, haloed, palette, stroke};
+use crate::report::canvas::{
+    Canvas, ROUND_CORNERS, ROUND_ENDS, Spot, View, filled, font, haloed, palette, stroke,
+};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Beside;
 use crate::report::parts::{away, mark_joints, point_mark, triangle};
@@ -74,7 +76,7 @@ fn ghost(canvas: &mut Canvas, joints: [Spot; 5]) {
 
 /// Draws the crank angle at each P.
 fn angles(canvas: &mut Canvas, view: &View, shown: &[(&Row, [Complex; 5])]) {
-    let attributes = haloed(&font(11, palette::CURVE), "2.5", Corners::Round);
+    let attributes = haloed(&font(11, palette::CURVE), "2.5", ROUND_CORNERS);
     for (_, joints) in shown {
         point_mark(canvas, view.spot(joints[4]), 0.85);
     }

@@ -4,7 +4,7 @@ use super::{closed, degrees, scene};
 use crate::mechanism::Unit;
 use crate::mechanism::analysis::{Analysis, Configuration, Rates};
 use crate::mechanism::{Complex, point};
-use crate::report::canvas::{Anchor, Canvas, Corners, Spot, Vec2, View, bold, font, haloed, palette};
+use crate::report::canvas::{Anchor, Canvas, SHARP_CORNERS, Spot, Vec2, View, bold, font, haloed, palette};
 use crate::report::figure::{Detail, draw};
 use crate::report::labels::Beside;
 use crate::report::practicality::degrees as direction;
@@ -96,7 +96,7 @@ pub(super) fn sheet(
     draw(body, &scene, &view, detail);
     for ((from, to), name) in ends.into_iter().zip(kind.names) {
         arrow(body, from, to, kind.colour);
-        let tip = haloed(&bold(13, kind.colour), "2.5", Corners::Sharp);
+        let tip = haloed(&bold(13, kind.colour), "2.5", SHARP_CORNERS);
         body.label(name, 13.0, &tip, Beside { point: to, distance: 5.0, towards: to - from, needed: true });
     }
     let unit = per_time(analysis.unit, kind.per);

@@ -2,9 +2,9 @@
 
 use super::{Comparison, Ranked, SortKey, strokes, tables};
 use crate::mechanism::{Complex, point};
-use crate::report::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px, text_width};
+use crate::report::canvas::{Anchor, Area, Canvas, Frame, Spot, View, bold, font, palette, px};
 use crate::report::scene::{Bounds, circuits};
-use crate::report::text::{clean, shortened, shortened_in_front, wrapped};
+use crate::report::text::{clean, shortened, shortened_in_front, text_width, wrapped};
 use crate::report::words::length_suffix;
 
 /// The width of the drawing.
