@@ -156,6 +156,14 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
     one.len() == other.len() && one.iter().flatten().zip(other.iter().flatten()).all(|(x, y)| near(*x, *y))
 }
 
+/// Returns the first of several names: `a, b, c and 2 more`.
+fn first_few<T: AsRef<str>>(names: &[T]) -> String {
+    const NAMED: usize = 3;
+    let few: Vec<&str> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
+    let more = names.len() - few.len();
+    few.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
 /// Compares two figures: the better one first, a missing one last.
 fn order(x: Option<f64>, y: Option<f64>, key: SortKey) -> Ordering {
     x.zip(y).map_or_else(|| x.is_none().cmp(&y.is_none()), |(x, y)| key.order(x, y))
@@ -297,13 +305,10 @@ impl Comparison {
     }
 
     /// Returns the meaning of the marks of the front; `None` if no row is marked.
-    pub fn front_words(&self) -> Option<String> {
-        let n = self.rows.iter().filter(|row| row.on_front).count();
-        (n > 0).then(|| {
-            "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
-             better in one (what is not accepted never beats what is; of those that are equal the first is marked)"
-                .to_owned()
-        })
+    pub fn front_words(&self) -> Option<&'static str> {
+        let words = "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
+                     better in one (what is not accepted never beats what is; of those that are equal the first is marked)";
+        self.rows.iter().any(|row| row.on_front).then_some(words)
     }
 
     /// Returns the label of the row from which differences are taken.

@@ -45,13 +45,11 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
 fn with_software(mut png: Vec<u8>) -> Vec<u8> {
     /// The length of the signature (8 bytes) and the header: length, type, 13 bytes, check sum.
     const HEADER: usize = 8 + 4 + 4 + 13 + 4;
-    let mut typed = b"tEXt".to_vec();
-    typed.extend(format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION")).bytes());
+    let text = format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION"));
+    let typed = [b"tEXt", text.as_bytes()].concat();
     // A version is a few bytes long.
-    let length = (typed.len() - 4) as u32;
-    let mut chunk = length.to_be_bytes().to_vec();
-    chunk.extend(&typed);
-    chunk.extend(crc32(&typed).to_be_bytes());
+    let length = text.len() as u32;
+    let chunk = [&length.to_be_bytes(), typed.as_slice(), &crc32(&typed).to_be_bytes()].concat();
     if png.len() >= HEADER {
         png.splice(HEADER..HEADER, chunk);
     }
@@ -159,14 +157,14 @@ impl Sheet {
             ..Stroke::default()
         };
         if let Some(path) = self.path(points, closed) {
-            picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
+            picture.stroke_path(&path, &paint(colour, 255), &stroke, Transform::identity(), None);
         }
     }
 
     fn disc(&self, picture: &mut Pixmap, centre: Complex, colour: Rgb, radius: f32) {
         let (x, y) = self.at(centre);
         if let Some(path) = PathBuilder::from_circle(x, y, radius * self.side) {
-            picture.fill_path(&path, &paint(colour), FillRule::Winding, Transform::identity(), None);
+            picture.fill_path(&path, &paint(colour, 255), FillRule::Winding, Transform::identity(), None);
         }
     }
 
@@ -188,9 +186,7 @@ impl Sheet {
     fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, joints: &Joints) {
         let [a, b, c, d, p] = all_joints(&model.linkage, joints);
         if let Some(path) = self.path(&[c, d, p], true) {
-            let mut half = paint(COUPLER);
-            half.set_color_rgba8(COUPLER[0], COUPLER[1], COUPLER[2], 170);
-            picture.fill_path(&path, &half, FillRule::Winding, Transform::identity(), None);
+            picture.fill_path(&path, &paint(COUPLER, 170), FillRule::Winding, Transform::identity(), None);
         }
         self.line(picture, &[c, d, p], true, LINKS, 0.006);
         self.line(picture, &[a, c], false, LINKS, 0.012);
@@ -203,9 +199,9 @@ impl Sheet {
     }
 }
 
-fn paint(colour: Rgb) -> Paint<'static> {
+fn paint([red, green, blue]: Rgb, alpha: u8) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
-    paint.set_color_rgba8(colour[0], colour[1], colour[2], 255);
+    paint.set_color_rgba8(red, green, blue, alpha);
     paint
 }
 
@@ -220,7 +216,7 @@ fn palette() -> Vec<Rgb> {
                 // A value between two bytes fits into a byte.
                 (from + (to - from) * step / STEPS) as u8
             };
-            colours.push([mixed(0), mixed(1), mixed(2)]);
+            colours.push([0, 1, 2].map(mixed));
         }
     }
     colours

@@ -50,10 +50,25 @@ impl<'a> Model<'a> {
         }
         let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
         let linkage = scaled(&subject.linkage, mm_per_unit)?;
-        check_size(&linkage, settings)?;
+        let longest = longest(&linkage);
+        if !LONGEST_MM.contains(&longest) {
+            return Err(Refusal::about(
+                settings,
+                "scale",
+                format!("the longest link would be {} mm long", brief(longest, 3)),
+                "set scale=.. so that it is between 0.01 and 10000000 mm",
+            ));
+        }
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
-        if target.iter().any(|p| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM)) {
-            return Err(too_far(settings));
+        // Written so that NaN is too far.
+        let too_far = |p: &Complex| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM);
+        if target.iter().chain(&[linkage.crank_pivot(), linkage.follower_pivot()]).any(too_far) {
+            return Err(Refusal::about(
+                settings,
+                "scale",
+                "the drawing lies more than 1000 km from the origin",
+                "set a smaller scale, or move the problem to the origin",
+            ));
         }
 
         let (nearest, crowd) = nearest_holes(&linkage);
@@ -64,7 +79,7 @@ impl<'a> Model<'a> {
                 value
             })
         };
-        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest(&linkage) };
+        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest };
         let hole = default("hole_mm", settings.hole_mm, largest.min(HOLE_BESIDE * nearest));
         let margin = default("margin_mm", settings.margin_mm, hole);
         let kerf = settings.kerf_mm.unwrap_or(0.0);
@@ -137,24 +152,19 @@ impl<'a> Model<'a> {
     /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
     /// is reached, otherwise in the middle of the motion.
     pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
-        if let Some(angle) = settings.crank_deg {
-            let joints = self.linkage.position(angle.to_radians()).joints();
-            return joints.ok_or_else(|| {
-                Refusal::about(
-                    settings,
-                    "crank_deg",
-                    format!("the links cannot be joined at a crank angle of {} degrees", exact(angle)),
-                    match self.start() {
-                        Ok(((other, _), _)) => {
-                            let other = brief(other.to_degrees(), 4);
-                            format!("choose another crank_deg, such as {other}, or leave it out")
-                        }
-                        Err(refusal) => refusal.help,
-                    },
-                )
-            });
-        }
-        self.start().map(|(_, joints)| joints)
+        let Some(angle) = settings.crank_deg else { return self.start().map(|(_, joints)| joints) };
+        self.linkage.position(angle.to_radians()).joints().ok_or_else(|| {
+            let help = match self.start() {
+                Ok(((other, _), _)) => {
+                    let other = brief(other.to_degrees(), 4);
+                    format!("choose another crank_deg, such as {other}, or leave it out")
+                }
+                Err(refusal) => refusal.help,
+            };
+            let angle = exact(angle);
+            let message = format!("the links cannot be joined at a crank angle of {angle} degrees");
+            Refusal::about(settings, "crank_deg", message, help)
+        })
     }
 
     /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
@@ -224,32 +234,6 @@ pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal>
 
 fn longest(linkage: &FourBar) -> f64 {
     linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
-}
-
-fn check_size(linkage: &FourBar, settings: &Settings) -> Result<(), Refusal> {
-    let longest = longest(linkage);
-    if !LONGEST_MM.contains(&longest) {
-        return Err(Refusal::about(
-            settings,
-            "scale",
-            format!("the longest link would be {} mm long", brief(longest, 3)),
-            "set scale=.. so that it is between 0.01 and 10000000 mm",
-        ));
-    }
-    let coordinates = [linkage.crank_pivot(), linkage.follower_pivot()];
-    if coordinates.iter().any(|p| p.re.abs().max(p.im.abs()) > FARTHEST_MM) {
-        return Err(too_far(settings));
-    }
-    Ok(())
-}
-
-fn too_far(settings: &Settings) -> Refusal {
-    Refusal::about(
-        settings,
-        "scale",
-        "the drawing lies more than 1000 km from the origin",
-        "set a smaller scale, or move the problem to the origin",
-    )
 }
 
 /// Returns the names of each pair of distinct holes of a plate with their distance.

@@ -78,26 +78,23 @@ impl Settings {
     pub fn parse(format: Format, pairs: &[(String, String)]) -> Result<Self, Refusal> {
         let mut settings = Settings { typed: pairs.to_vec(), ..Settings::default() };
         for (key, value) in pairs {
-            settings.set(format, key, value).map_err(|(message, help)| Refusal {
-                setting: Some((key.clone(), value.clone())),
-                message,
-                help,
-            })?;
+            let about = |refusal| Refusal { setting: Some((key.clone(), value.clone())), ..refusal };
+            settings.set(format, key, value).map_err(about)?;
         }
         Ok(settings)
     }
 
-    fn set(&mut self, format: Format, key: &str, value: &str) -> Result<(), (String, String)> {
+    fn set(&mut self, format: Format, key: &str, value: &str) -> Result<(), Refusal> {
         let takes = format.settings();
         if !takes.contains(&key) {
             let list = format!("{} takes {}", format.name(), takes.join(", "));
             let hint = nearest(key, takes).map_or(String::new(), |n| format!("did you mean `{n}`? "));
-            let known = Format::ALL.iter().any(|other| other.settings().contains(&key));
-            let message = match known {
-                true => format!("`{key}` means nothing for {}", format.name()),
-                false => format!("there is no setting `{key}`"),
+            let message = if Format::ALL.iter().any(|other| other.settings().contains(&key)) {
+                format!("`{key}` means nothing for {}", format.name())
+            } else {
+                format!("there is no setting `{key}`")
             };
-            return Err((message, format!("{hint}{list}")));
+            return Err(Refusal::new(message, format!("{hint}{list}")));
         }
         match key {
             "scale" => self.scale = Some(number(key, value, Range::Positive)?),
@@ -116,7 +113,7 @@ impl Settings {
             "unit" => {
                 let found = Unit::ALL.into_iter().find(|unit| unit.label() == value);
                 self.unit = Some(found.ok_or_else(|| {
-                    (format!("`unit` is no unit of length: {value}"), "choose mm, cm, m or in".to_owned())
+                    Refusal::new(format!("`unit` is no unit of length: {value}"), "choose mm, cm, m or in")
                 })?);
             }
             _ => {}
@@ -151,13 +148,13 @@ enum Range {
 /// The largest number that a setting accepts.
 const LARGEST: f64 = 1e9;
 
-fn number(key: &str, value: &str, range: Range) -> Result<f64, (String, String)> {
+fn number(key: &str, value: &str, range: Range) -> Result<f64, Refusal> {
     let help = match range {
         Range::Positive => "write a number above 0, such as 4 or 2.5",
         Range::NotNegative => "write a number of 0 or more, such as 0.2",
         Range::Any => "write a number, such as 30",
     };
-    let wrong = |message: String| Err((message, help.to_owned()));
+    let wrong = |message: String| Err(Refusal::new(message, help));
     let Ok(number) = value.parse::<f64>() else {
         let comma = value.contains(',').then_some(", with a decimal point instead of the comma");
         return wrong(format!("`{key}` is not a number: {value}{}", comma.unwrap_or_default()));
@@ -172,10 +169,10 @@ fn number(key: &str, value: &str, range: Range) -> Result<f64, (String, String)>
     if good { Ok(number) } else { wrong(format!("`{key}` is out of range: {value}")) }
 }
 
-fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, (String, String)> {
+fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, Refusal> {
     let found = value.parse::<usize>().ok().filter(|n| range.contains(n));
     found.ok_or_else(|| {
         let help = format!("write a whole number from {} to {}", range.start(), range.end());
-        (format!("`{key}` is no such number: {value}"), help)
+        Refusal::new(format!("`{key}` is no such number: {value}"), help)
     })
 }

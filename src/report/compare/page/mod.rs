@@ -5,7 +5,7 @@ use super::overlay;
 use super::overlay::Overlay;
 use super::trade_off;
 use super::trade_off::trade_off;
-use super::{Comparison, Ranked, SortKey, strokes, tables};
+use super::{Comparison, Ranked, SortKey, first_few, strokes, tables};
 use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
 use crate::report::csv::PARAMETERS;
@@ -256,7 +256,6 @@ impl Comparison {
 
 /// Returns whether a candidate is accepted, with its defects or with the requirements that it misses.
 fn verdict(candidate: &Candidate) -> String {
-    const NAMED: usize = 3;
     match (candidate.accepted, candidate.defects.is_empty()) {
         (true, true) => return "yes".to_owned(),
         (true, false) => return format!("yes ({})", defect_names(candidate)),
@@ -267,11 +266,7 @@ fn verdict(candidate: &Candidate) -> String {
     let defects = candidate.defects.iter().map(|d| d.name());
     let others: Vec<&str> = defects.filter(|name| !unmet.contains(name)).collect();
     unmet.extend(others);
-    match unmet.len() {
-        0 => "no".to_owned(),
-        n if n > NAMED => format!("no: {} and {} more", unmet[..NAMED].join(", "), n - NAMED),
-        _ => format!("no: {}", unmet.join(", ")),
-    }
+    if unmet.is_empty() { "no".to_owned() } else { format!("no: {}", first_few(&unmet)) }
 }
 
 /// A cell of a table.
