@@ -10,6 +10,7 @@ use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
 use crate::report::csv::PARAMETERS;
 use crate::report::html::page::Page;
+use crate::report::html::table::Cell;
 use crate::report::text::{brief, clean, exact};
 use crate::report::words::{defect_names, length_suffix};
 use maud::{Markup, PreEscaped, html};
@@ -32,7 +33,7 @@ impl<'a> Column<'a> {
 
     /// Returns a column with a figure.
     fn figure(head: &'a str, key: SortKey, digits: usize) -> Self {
-        Column::new(head, move |_, row| Cell::of(row.figure_of(key), tables::shown(row, key, digits)))
+        Column::new(head, move |_, row| Cell::number(row.figure_of(key), tables::shown(row, key, digits)))
     }
 
     /// Returns the column with a longer heading for screen readers.
@@ -144,7 +145,7 @@ impl Comparison {
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
         let mut columns = vec![
-            Column::new("behind", |_, row| Cell::of(row.behind_percent, tables::behind(row)))
+            Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),
             Column::figure(self.sum_head(), self.first_figure(), 4),
             Column::figure("rms", SortKey::Rms, 4),
@@ -154,8 +155,8 @@ impl Comparison {
             Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
             Column::figure("link ratio", SortKey::LinkRatio, 3),
             Column::figure("size", SortKey::Size, 4),
-            Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name())),
-            Column::new("accepted", |_, row| Cell::word(&verdict(&row.entry.candidate))),
+            Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name())),
+            Column::new("accepted", |_, row| Cell::words(verdict(&row.entry.candidate))),
         ];
         let rank = |(k, head)| Column::new(head, move |_, row| Cell::whole(row.ranks[k]));
         columns.extend(ranks.iter().map(String::as_str).enumerate().map(rank));
@@ -176,7 +177,7 @@ impl Comparison {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();
                 let is_reference = self.reference == Some(place);
                 let shown = || tables::signed_percent(percent);
-                Cell::of(percent, if is_reference { "reference".to_owned() } else { shown() })
+                Cell::number(percent, if is_reference { "reference".to_owned() } else { shown() })
             })
         };
         let columns: Vec<Column> = heads.into_iter().zip(self.shown_figures()).map(column).collect();
@@ -191,12 +192,12 @@ impl Comparison {
 
     fn parameter_section(&self) -> Markup {
         let mut columns =
-            vec![Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name()))];
+            vec![Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name()))];
         columns.extend(PARAMETERS.iter().map(|parameter| {
             Column::new(parameter.0, |_, row| {
                 let (value, shown) =
                     tables::parameter(parameter, &row.entry.candidate.linkage, |x| brief(x, 6));
-                Cell::of(Some(value), shown)
+                Cell::number(value, shown)
             })
         }));
         html! {
@@ -240,9 +241,10 @@ impl Comparison {
                                     }
                                 }
                                 @for column in columns {
-                                    @let Cell { shown, value } = (column.cell)(place, row);
-                                    td class=[value.is_none().then_some("word")] data-value=[value] {
-                                        (clean(&shown))
+                                    @let Cell { text, value, class } = (column.cell)(place, row);
+                                    @let number = class.map(|_| value.map_or(String::new(), exact));
+                                    td class=[class.is_none().then_some("word")] data-value=[number] {
+                                        (clean(&text))
                                     }
                                 }
                             }
@@ -267,27 +269,6 @@ fn verdict(candidate: &Candidate) -> String {
     let others: Vec<&str> = defects.filter(|name| !unmet.contains(name)).collect();
     unmet.extend(others);
     if unmet.is_empty() { "no".to_owned() } else { format!("no: {}", first_few(&unmet)) }
-}
-
-/// A cell of a table.
-struct Cell {
-    shown: String,
-    /// The number by which it is sorted, empty if it is missing; words (`None`) are sorted by themselves.
-    value: Option<String>,
-}
-
-impl Cell {
-    fn of(number: Option<f64>, shown: String) -> Cell {
-        Cell { shown, value: Some(number.map_or(String::new(), exact)) }
-    }
-
-    fn whole(number: usize) -> Cell {
-        Cell::of(Some(number as f64), number.to_string())
-    }
-
-    fn word(word: &str) -> Cell {
-        Cell { shown: word.to_owned(), value: None }
-    }
 }
 
 fn star(row: &Ranked) -> Markup {
