@@ -6,9 +6,9 @@
 //! referee; only the times differ from one machine to another.
 
 pub mod literature;
+pub mod published;
 
 use crate::app::job::run::{Context, Finished, Job, RunError, prove, run};
-use crate::app::published;
 use crate::files::problem_file::{ProblemFile, Published};
 use crate::judge::rank::exact_sum_sq;
 use crate::record::statistics::{Bar, Summary};

@@ -1,6 +1,6 @@
 //! Measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked.
 
-use crate::app::given::{Chosen, Given, Run};
+use crate::app::inputs::{Chosen, Given, Run};
 use crate::files::diagnostic::escaped;
 use crate::files::linkage_file::LinkageFile;
 use crate::files::problem_file::ProblemFile;
