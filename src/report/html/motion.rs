@@ -4,7 +4,7 @@ use crate::mechanism::{AssemblyMode, FourBar, InputRange};
 use crate::report::scene::{middle_position, positions_at};
 use serde::Serialize;
 
-/// What the player's one parameter q, degrees, stands for.
+/// The meaning of the player's one parameter q, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DriveKind {
@@ -21,7 +21,7 @@ pub enum DriveKind {
 /// The motion that a page plays: the circuit of the first point, and of it the branch used or all of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct Drive {
-    /// What the parameter stands for.
+    /// The meaning of the parameter.
     pub kind: DriveKind,
     /// The middle of the crank's range, degrees in (-180, 180].
     pub middle_deg: f64,

@@ -147,7 +147,7 @@ impl Comparison {
         let mut columns = vec![
             Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),
-            Column::figure(self.sum_head(), self.first_figure(), 4),
+            Column::figure(self.first_head("sum of squares"), self.first_figure(), 4),
             Column::figure("rms", SortKey::Rms, 4),
             Column::figure("max", SortKey::Max, 4),
             Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said("at which point"),
@@ -171,7 +171,8 @@ impl Comparison {
 
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
-        let heads = [self.sum_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"];
+        let heads =
+            [self.first_head("sum of squares"), "rms", "max", "to curve", "transm.", "link ratio", "size"];
         let column = |(head, key): (_, SortKey)| {
             Column::new(head, move |place, row| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();
@@ -210,10 +211,6 @@ impl Comparison {
                 }
             }
         }
-    }
-
-    fn sum_head(&self) -> &'static str {
-        self.minimised().map_or("sum of squares", |(head, _)| head)
     }
 
     /// Returns a table whose first columns are rank and label; each heading is a button that sorts.
