@@ -56,12 +56,11 @@ impl Entry {
     /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
     /// degree apart); NaN if the links cannot be joined.
     pub fn size(&self) -> f64 {
-        let mut bounds = Bounds::default();
-        for joints in circuits(&self.candidate, SAMPLES).iter().flatten() {
-            for p in [joints.crank_pin, joints.follower_pin, joints.coupler_point] {
-                bounds.hold(p);
-            }
-        }
+        let circuits = circuits(&self.candidate, SAMPLES);
+        let moving = circuits.iter().flatten();
+        let mut bounds = Bounds::of(
+            moving.flat_map(|joints| [joints.crank_pin, joints.follower_pin, joints.coupler_point]),
+        );
         if bounds.width() == 0.0 && bounds.height() == 0.0 {
             return f64::NAN;
         }

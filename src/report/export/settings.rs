@@ -97,15 +97,15 @@ impl Settings {
             return Err(Refusal::new(message, format!("{hint}{list}")));
         }
         match key {
-            "scale" => self.scale = Some(number(key, value, Range::Positive)?),
-            "hole_mm" => self.hole_mm = Some(number(key, value, Range::Positive)?),
-            "thickness_mm" => self.thickness_mm = Some(number(key, value, Range::Positive)?),
-            "chord_mm" => self.chord_mm = Some(number(key, value, Range::Positive)?),
-            "margin_mm" => self.margin_mm = Some(number(key, value, Range::Positive)?),
-            "kerf_mm" => self.kerf_mm = Some(number(key, value, Range::NotNegative)?),
-            "gap_mm" => self.gap_mm = Some(number(key, value, Range::NotNegative)?),
-            "crank_deg" => self.crank_deg = Some(number(key, value, Range::Any)?),
-            "omega_rad_s" => self.omega_rad_s = Some(number(key, value, Range::Any)?),
+            "scale" => self.scale = Some(number(key, value, POSITIVE)?),
+            "hole_mm" => self.hole_mm = Some(number(key, value, POSITIVE)?),
+            "thickness_mm" => self.thickness_mm = Some(number(key, value, POSITIVE)?),
+            "chord_mm" => self.chord_mm = Some(number(key, value, POSITIVE)?),
+            "margin_mm" => self.margin_mm = Some(number(key, value, POSITIVE)?),
+            "kerf_mm" => self.kerf_mm = Some(number(key, value, NOT_NEGATIVE)?),
+            "gap_mm" => self.gap_mm = Some(number(key, value, NOT_NEGATIVE)?),
+            "crank_deg" => self.crank_deg = Some(number(key, value, ANY)?),
+            "omega_rad_s" => self.omega_rad_s = Some(number(key, value, ANY)?),
             "samples" => self.samples = Some(count(key, value, 8..=100_000)?),
             "positions" => self.positions = Some(count(key, value, 1..=100_000)?),
             "size_px" => self.size_px = Some(count(key, value, 100..=4000)?),
@@ -137,36 +137,25 @@ impl Settings {
     }
 }
 
-/// The allowed range of a number.
-#[derive(Clone, Copy, PartialEq)]
-enum Range {
-    Positive,
-    NotNegative,
-    Any,
-}
-
 /// The largest number that a setting accepts.
 const LARGEST: f64 = 1e9;
 
-fn number(key: &str, value: &str, range: Range) -> Result<f64, Refusal> {
-    let help = match range {
-        Range::Positive => "write a number above 0, such as 4 or 2.5",
-        Range::NotNegative => "write a number of 0 or more, such as 0.2",
-        Range::Any => "write a number, such as 30",
-    };
+/// A range of numbers up to [`LARGEST`]: the least of them, and the remedy for others.
+type Range = (f64, &'static str);
+const POSITIVE: Range = (1.0 / LARGEST, "write a number above 0, such as 4 or 2.5");
+const NOT_NEGATIVE: Range = (0.0, "write a number of 0 or more, such as 0.2");
+const ANY: Range = (-LARGEST, "write a number, such as 30");
+
+fn number(key: &str, value: &str, (least, help): Range) -> Result<f64, Refusal> {
     let wrong = |message: String| Err(Refusal::new(message, help));
-    let Ok(number) = value.parse::<f64>() else {
-        let comma = value.contains(',').then_some(", with a decimal point instead of the comma");
-        return wrong(format!("`{key}` is not a number: {value}{}", comma.unwrap_or_default()));
-    };
-    // Written so that NaN is out of every range.
-    let good = number.abs() <= LARGEST
-        && match range {
-            Range::Positive => number >= 1.0 / LARGEST,
-            Range::NotNegative => number >= 0.0,
-            Range::Any => true,
-        };
-    if good { Ok(number) } else { wrong(format!("`{key}` is out of range: {value}")) }
+    match value.parse::<f64>() {
+        Ok(number) if (least..=LARGEST).contains(&number) => Ok(number),
+        Ok(_) => wrong(format!("`{key}` is out of range: {value}")),
+        Err(_) => {
+            let comma = if value.contains(',') { ", with a decimal point instead of the comma" } else { "" };
+            wrong(format!("`{key}` is not a number: {value}{comma}"))
+        }
+    }
 }
 
 fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, Refusal> {
