@@ -1,12 +1,11 @@
 //! Pictures of the linkage with its coupler curve and target: still as PNG, animated as GIF.
 
 use super::model::Model;
-use super::settings::{Refusal, Settings};
+use super::settings::Refusal;
 use crate::files::generator;
-use crate::mechanism::{Complex, CouplerCurve, Joints};
-use crate::report::scene::{Bounds, all_joints};
+use crate::mechanism::{Complex, Joints};
+use crate::report::scene::{Bounds, all_joints, circuits_through};
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::fmt::Display;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
@@ -31,9 +30,9 @@ fn failed(why: impl Display) -> Refusal {
 }
 
 /// Draws a still picture as PNG.
-pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
-    let joints = model.pose(settings)?;
-    let sheet = Sheet::around(model, &[joints], settings.size_px.unwrap_or(STILL_PX));
+pub(super) fn png(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
+    let joints = model.pose()?;
+    let sheet = Sheet::around(model, &[joints], model.settings.size_px.unwrap_or(STILL_PX));
     let mut picture = sheet.background(model)?;
     sheet.linkage(&mut picture, model, &joints);
     let bytes = picture.encode_png().map_err(failed)?;
@@ -67,20 +66,11 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// Draws a turn of the motion as GIF, repeated endlessly.
-pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
-    let ((angle, assembly), start) = model.start()?;
-    let curve = CouplerCurve::through(&model.linkage, angle, assembly, 8);
-    let n = settings.frames.unwrap_or(FRAMES);
-    let mut poses: Vec<Joints> = (0..n)
-        .filter_map(|i| {
-            let (angle, assembly) = curve.position_at(TAU * i as f64 / n as f64);
-            model.linkage.position_with(angle, assembly).joints()
-        })
-        .collect();
-    if poses.is_empty() {
-        poses.push(start);
-    }
-    let sheet = Sheet::around(model, &poses, settings.size_px.unwrap_or(MOVING_PX));
+pub(super) fn gif(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
+    let (position, start) = model.start()?;
+    let n = model.settings.frames.unwrap_or(FRAMES);
+    let poses = circuits_through(&model.linkage, [position], n).pop().unwrap_or(vec![start]);
+    let sheet = Sheet::around(model, &poses, model.settings.size_px.unwrap_or(MOVING_PX));
     let background = sheet.background(model)?;
     let palette = palette();
     let flat: Vec<u8> = palette.iter().flatten().copied().collect();

@@ -24,6 +24,7 @@ const CHORD_SHARE: f64 = 1.0 / 400.0;
 /// A subject in millimetres.
 pub(super) struct Model<'a> {
     pub(super) subject: &'a Subject,
+    pub(super) settings: &'a Settings,
     /// The linkage in millimetres.
     pub(super) linkage: FourBar,
     /// The length of one unit of the file in millimetres, at this scale.
@@ -38,11 +39,10 @@ pub(super) struct Model<'a> {
     pub(super) gap: f64,
     pub(super) chord: f64,
     assumed: Vec<(&'static str, String)>,
-    crowded: Option<Refusal>,
 }
 
 impl<'a> Model<'a> {
-    pub(super) fn new(subject: &'a Subject, settings: &Settings) -> Result<Self, Refusal> {
+    pub(super) fn new(subject: &'a Subject, settings: &'a Settings) -> Result<Self, Refusal> {
         let mut assumed = Vec::new();
         let unit = unit_of(subject, settings)?;
         if unit.is_none() {
@@ -71,7 +71,7 @@ impl<'a> Model<'a> {
             ));
         }
 
-        let (nearest, crowd) = nearest_holes(&linkage);
+        let (nearest, _) = nearest_holes(&linkage);
         let mut default = |key: &'static str, set: Option<f64>, value: f64| {
             set.unwrap_or_else(|| {
                 let value = rounded_down(value);
@@ -94,22 +94,13 @@ impl<'a> Model<'a> {
                 "choose kerf_mm below hole_mm",
             ));
         }
-        let crowded = (hole >= nearest).then(|| {
-            let apart = brief(nearest, 3);
-            Refusal::about(
-                settings,
-                "hole_mm",
-                format!("holes of {} mm run into each other: {crowd} are {apart} mm apart", exact(hole)),
-                format!("choose hole_mm below {apart}, or a larger scale"),
-            )
-        });
-
         let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
         let all = std::iter::once(first).chain(subject.positions.iter().copied());
         let circuits = circuits_through(&linkage, all, settings.samples());
         let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
         Ok(Model {
             subject,
+            settings,
             linkage,
             mm_per_unit,
             target,
@@ -121,7 +112,6 @@ impl<'a> Model<'a> {
             gap,
             chord,
             assumed,
-            crowded,
         })
     }
 
@@ -151,8 +141,8 @@ impl<'a> Model<'a> {
 
     /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
     /// is reached, otherwise in the middle of the motion.
-    pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
-        let Some(angle) = settings.crank_deg else { return self.start().map(|(_, joints)| joints) };
+    pub(super) fn pose(&self) -> Result<Joints, Refusal> {
+        let Some(angle) = self.settings.crank_deg else { return self.start().map(|(_, joints)| joints) };
         self.linkage.position(angle.to_radians()).joints().ok_or_else(|| {
             let help = match self.start() {
                 Ok(((other, _), _)) => {
@@ -163,7 +153,7 @@ impl<'a> Model<'a> {
             };
             let angle = exact(angle);
             let message = format!("the links cannot be joined at a crank angle of {angle} degrees");
-            Refusal::about(settings, "crank_deg", message, help)
+            Refusal::about(self.settings, "crank_deg", message, help)
         })
     }
 
@@ -184,8 +174,15 @@ impl<'a> Model<'a> {
 
     /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf).
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
-        if let Some(refusal) = &self.crowded {
-            return Err(refusal.clone());
+        let (nearest, crowd) = nearest_holes(&self.linkage);
+        if self.hole >= nearest {
+            let (hole, apart) = (exact(self.hole), brief(nearest, 3));
+            return Err(Refusal::about(
+                self.settings,
+                "hole_mm",
+                format!("holes of {hole} mm run into each other: {crowd} are {apart} mm apart"),
+                format!("choose hole_mm below {apart}, or a larger scale"),
+            ));
         }
         let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
         let mut top = 0.0;
