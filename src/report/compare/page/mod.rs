@@ -160,13 +160,7 @@ impl Comparison {
         ];
         let rank = |(k, head)| Column::new(head, move |_, row| Cell::whole(row.ranks[k]));
         columns.extend(ranks.iter().map(String::as_str).enumerate().map(rank));
-        html! {
-            section id="figures" {
-                h2 { "Figures" }
-                (self.sorted("Figures", &columns))
-                p.sub { (front) (unit) }
-            }
-        }
+        self.sorted(("figures", "Figures"), "Figures", &columns, &(front + &unit))
     }
 
     fn difference_section(&self) -> Option<Markup> {
@@ -182,13 +176,9 @@ impl Comparison {
             })
         };
         let columns: Vec<Column> = heads.into_iter().zip(self.shown_figures()).map(column).collect();
-        Some(html! {
-            section id="differences" {
-                h2 { "Above " (clean(reference)) ", per cent of it" }
-                (self.sorted("Differences", &columns))
-                p.sub { "Where the reference's figure is 0 there is no percentage of it." }
-            }
-        })
+        let title = format!("Above {}, per cent of it", clean(reference));
+        let note = "Where the reference's figure is 0 there is no percentage of it.";
+        Some(self.sorted(("differences", "Differences"), &title, &columns, note))
     }
 
     fn parameter_section(&self) -> Markup {
@@ -201,20 +191,24 @@ impl Comparison {
                 Cell::number(value, shown)
             })
         }));
+        let note = "A, B fixed pivots; a crank, b coupler, c follower, d and e from its pins C and D to the coupler \
+                    point; t1 and t2 say on which side D and the coupler point lie.";
+        self.sorted(("parameters", "Parameters"), "Parameters", &columns, note)
+    }
+
+    /// Returns the section of a table, with a note below.
+    fn sorted(&self, (id, name): (&str, &str), title: &str, columns: &[Column], note: &str) -> Markup {
         html! {
-            section id="parameters" {
-                h2 { "Parameters" }
-                (self.sorted("Parameters", &columns))
-                p.sub {
-                    "A, B fixed pivots; a crank, b coupler, c follower, d and e from its pins C and D to the coupler \
-                     point; t1 and t2 say on which side D and the coupler point lie."
-                }
+            section id=(id) {
+                h2 { (title) }
+                (self.scrolling(name, columns))
+                p.sub { (note) }
             }
         }
     }
 
     /// Returns a table whose first columns are rank and label; each heading is a button that sorts.
-    fn sorted(&self, name: &str, columns: &[Column]) -> Markup {
+    fn scrolling(&self, name: &str, columns: &[Column]) -> Markup {
         let heads = [("#", Some("rank")), ("linkage", None)];
         let heads = heads.into_iter().chain(columns.iter().map(|column| (column.head, column.said)));
         html! {
