@@ -3,19 +3,17 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cli`] | the command line: arguments, commands, exit codes |
-//! | [`given`] | inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a run |
+//! | [`comparison`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
+//! | [`inputs`] | inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a run |
 //! | [`job`] | jobs: one run from a problem to its record, the result's folder and files, checkpoints |
-//! | [`measured`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
-//! | [`published`] | evaluation of published answers: the vectors of the literature, judged by our own referee |
 //! | [`studio`] | a local page that answers while a target is drawn |
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |
 
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod given;
+pub mod comparison;
+pub mod inputs;
 pub mod job;
-pub mod measured;
-pub mod published;
 #[cfg(feature = "studio")]
 pub mod studio;
 pub mod suite;

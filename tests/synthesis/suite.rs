@@ -3,7 +3,7 @@
 use crate::common::{job, literature, parse, root};
 use assert_cmd::Command;
 use linkwright::internals::app::job::run::{Context, run};
-use linkwright::internals::app::published;
+use linkwright::internals::app::suite::published;
 use linkwright::internals::app::suite::{Options, Step, suite};
 use linkwright::internals::files::problem_file::{ProblemFile, Published};
 use linkwright::internals::mechanism::AssemblyMode;

@@ -540,6 +540,16 @@ fn pages_for_the_test_in_a_browser_are_written() {
 }
 
 #[test]
+fn the_commands_of_a_page_name_the_folder_that_a_run_writes() {
+    let mut record = k18();
+    assert!(report_html(&record, 0).contains("linkwright verify results/eighteen-point\n"));
+    record.problem.name = "my path".to_owned();
+    let page = report_html(&record, 0);
+    assert!(page.contains("linkwright synth &quot;my path.toml&quot; --method "), "{page}");
+    assert!(page.contains("linkwright verify &quot;results/my path&quot;\n"), "{page}");
+}
+
+#[test]
 fn a_page_has_one_verdict_on_a_transmission_angle() {
     use linkwright::internals::judge::warnings::warnings;
     use linkwright::internals::mechanism::four_bar::transmission::ForceTransmission;

@@ -5,7 +5,7 @@ use super::output::Output;
 use super::result;
 use super::result::{Given, Which};
 use super::{Ended, refuse, refuse_at, terminal};
-use crate::app::measured::{NotCompared, Target, compared};
+use crate::app::comparison::{NotCompared, Target, compared};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
@@ -84,7 +84,7 @@ fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
     let file = given
         .iter()
         .position(|(path, one)| matches!(one, Given::Linkage(_)) && path.display().to_string() == label);
-    file.map_or_else(|| label.to_owned(), |i| crate::app::measured::label_of_file(given, i))
+    file.map_or_else(|| label.to_owned(), |i| crate::app::comparison::label_of_file(given, i))
 }
 
 /// Writes the files that were asked for and prints the tables or JSON.

@@ -2,7 +2,7 @@
 //! or a linkage file. Every command that takes one reads it here.
 
 use super::{Ended, refuse, refuse_at, terminal};
-pub use crate::app::given::{Given, NoCandidate, Run, Which};
+pub use crate::app::inputs::{Given, NoCandidate, Run, Which};
 use crate::app::job::files;
 use crate::app::job::folder::{BUILDABLE, RECORD, read_record};
 use crate::files::diagnostic::escaped;

@@ -37,18 +37,16 @@ impl Timing {
     /// assert_eq!(timing.words(), words);
     /// ```
     pub fn words(&self) -> String {
+        let advice = self.advice_s.unwrap_or_default();
+        let others = [
+            (advice.costs, "what limits cost"),
+            (advice.conflicts, "what conflicts"),
+            (advice.buildable, "what can be built"),
+            (self.total_s - self.search_s - self.beside_s, "reading and writing"),
+        ];
+        let others = others.into_iter().filter(|(seconds, _)| *seconds >= WORTH_SAYING_S);
         let mut parts = vec![format!("{:.3} s of search", self.search_s)];
-        let mut part = |seconds: f64, name: &str| {
-            if seconds >= WORTH_SAYING_S {
-                parts.push(format!("{seconds:.3} s for {name}"));
-            }
-        };
-        if let Some(advice) = self.advice_s {
-            part(advice.costs, "what limits cost");
-            part(advice.conflicts, "what conflicts");
-            part(advice.buildable, "what can be built");
-        }
-        part(self.total_s - self.search_s - self.beside_s, "reading and writing");
+        parts.extend(others.map(|(seconds, name)| format!("{seconds:.3} s for {name}")));
         format!("{:.3} s in all: {}", self.total_s, parts.join(", "))
     }
 }

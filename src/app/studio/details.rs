@@ -4,9 +4,9 @@
 use super::asked::AskError;
 use super::messages::{Ask, Shown};
 use super::shelf::{Shelf, ShelfError};
-use crate::app::given::{Given, Run, Which};
+use crate::app::comparison::{NotCompared, compared};
+use crate::app::inputs::{Given, Run, Which};
 use crate::app::job::run::Job;
-use crate::app::measured::{NotCompared, compared};
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::Unit;

@@ -6,9 +6,9 @@
 //! referee; only the times differ from one machine to another.
 
 pub mod literature;
+pub mod published;
 
-use crate::app::job::run::{Context, Job, RunError, prove, run};
-use crate::app::published;
+use crate::app::job::run::{Context, Finished, Job, RunError, prove, run};
 use crate::files::problem_file::{ProblemFile, Published};
 use crate::judge::rank::exact_sum_sq;
 use crate::record::statistics::{Bar, Summary};
@@ -141,6 +141,10 @@ struct Runner<'a> {
 }
 
 impl Runner<'_> {
+    fn step<'s>(&self, problem: &'s str, method: Method, seed: u64) -> Step<'s> {
+        Step { problem, method, seed, done: self.done, total: self.total }
+    }
+
     fn cancelled(&self) -> bool {
         self.cancel.load(Ordering::Relaxed)
     }
@@ -197,9 +201,8 @@ impl Runner<'_> {
         certify: CertifySpec,
     ) -> (Option<Certificate>, Option<String>) {
         record.problem.resolved.solve.certify = Some(certify);
-        let (method, seed) = (record.problem.resolved.solve.method, record.seed);
-        let step =
-            Step { problem: &record.problem.name.clone(), method, seed, done: self.done, total: self.total };
+        let name = record.problem.name.clone();
+        let step = self.step(&name, record.problem.resolved.solve.method, record.seed);
         prove(&mut record, self.cancel, &mut |_| (self.observer)(&step));
         if self.cancelled() {
             self.cut_short = true;
@@ -219,18 +222,17 @@ impl Runner<'_> {
         spec.solve.candidates = 1;
         let mut best: Option<(f64, Record)> = None;
         let (method, evaluations_at_most) = (spec.solve.method, spec.solve.evaluations);
-        let mut job = Job { name: file.name.clone(), source: file.source.clone(), unit: file.unit, spec };
+        let mut job = Job { spec, ..Job::from(file.clone()) };
         let mut runs = Vec::new();
         for seed in 1..=seeds {
             if self.cancelled() {
                 break;
             }
             job.spec.solve.seed = seed;
-            let step = Step { problem: &file.name, method, seed, done: self.done, total: self.total };
+            let step = self.step(&file.name, method, seed);
             (self.observer)(&step);
             let context = Context { cancel: self.cancel, observer: &|_| (self.observer)(&step) };
-            let finished = self.pool.install(|| run(&job, &context))?;
-            let record = finished.record;
+            let Finished { record, search_s, .. } = self.pool.install(|| run(&job, &context))?;
             if record.termination.reason == Reason::Cancelled {
                 break;
             }
@@ -241,7 +243,7 @@ impl Runner<'_> {
                 sum_sq: first.map(|c| c.error.sum_sq),
                 to_curve_sum_sq: first.map(|c| c.error.to_curve.sum_sq),
                 evaluations: record.evaluations.objective,
-                search_s: finished.search_s,
+                search_s,
                 reason: record.termination.reason,
             });
             self.done += 1;

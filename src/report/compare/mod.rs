@@ -56,12 +56,11 @@ impl Entry {
     /// Returns the size: the diagonal of the box that A, B and the moving joints sweep over the circuits used (half a
     /// degree apart); NaN if the links cannot be joined.
     pub fn size(&self) -> f64 {
-        let mut bounds = Bounds::default();
-        for joints in circuits(&self.candidate, SAMPLES).iter().flatten() {
-            for p in [joints.crank_pin, joints.follower_pin, joints.coupler_point] {
-                bounds.hold(p);
-            }
-        }
+        let circuits = circuits(&self.candidate, SAMPLES);
+        let moving = circuits.iter().flatten();
+        let mut bounds = Bounds::of(
+            moving.flat_map(|joints| [joints.crank_pin, joints.follower_pin, joints.coupler_point]),
+        );
         if bounds.width() == 0.0 && bounds.height() == 0.0 {
             return f64::NAN;
         }
@@ -154,6 +153,14 @@ pub fn same_points(one: &[[f64; 2]], other: &[[f64; 2]]) -> bool {
     const ROUNDING: f64 = 8.0 * f64::EPSILON;
     let near = |x: f64, y: f64| x == y || (x - y).abs() <= ROUNDING * x.abs().max(y.abs());
     one.len() == other.len() && one.iter().flatten().zip(other.iter().flatten()).all(|(x, y)| near(*x, *y))
+}
+
+/// Returns the first of several names: `a, b, c and 2 more`.
+fn first_few<T: AsRef<str>>(names: &[T]) -> String {
+    const NAMED: usize = 3;
+    let few: Vec<&str> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
+    let more = names.len() - few.len();
+    few.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
 }
 
 /// Compares two figures: the better one first, a missing one last.
@@ -297,13 +304,10 @@ impl Comparison {
     }
 
     /// Returns the meaning of the marks of the front; `None` if no row is marked.
-    pub fn front_words(&self) -> Option<String> {
-        let n = self.rows.iter().filter(|row| row.on_front).count();
-        (n > 0).then(|| {
-            "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
-             better in one (what is not accepted never beats what is; of those that are equal the first is marked)"
-                .to_owned()
-        })
+    pub fn front_words(&self) -> Option<&'static str> {
+        let words = "on the Pareto front: no other is at least as good in rms error, worst transmission angle and size and \
+                     better in one (what is not accepted never beats what is; of those that are equal the first is marked)";
+        self.rows.iter().any(|row| row.on_front).then_some(words)
     }
 
     /// Returns the label of the row from which differences are taken.

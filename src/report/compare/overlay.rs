@@ -184,10 +184,6 @@ impl Comparison {
 
     /// Returns the box of all targets.
     fn bounds(&self) -> Bounds {
-        let mut target = Bounds::default();
-        for p in self.rows.iter().flat_map(|row| &row.entry.target) {
-            target.hold(point(*p));
-        }
-        target
+        Bounds::of(self.rows.iter().flat_map(|row| &row.entry.target).map(|p| point(*p)))
     }
 }

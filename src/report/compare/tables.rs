@@ -77,8 +77,9 @@ impl Comparison {
         out
     }
 
-    fn first_head(&self) -> &'static str {
-        self.minimised().map_or("sum of sq", |(head, _)| head)
+    /// Returns the heading of the first figure, `plain` for the sum of squares.
+    pub(super) fn first_head(&self, plain: &'static str) -> &'static str {
+        self.minimised().map_or(plain, |(head, _)| head)
     }
 
     /// Returns the figure of the first column: the objective, or the sum of squares.
@@ -95,7 +96,7 @@ impl Comparison {
     fn figures(&self, colour: Colour, label: usize) -> String {
         let mut grid = Grid::new(&[
             (Left, &["#", "linkage"]),
-            (Right, &["behind", self.first_head()]),
+            (Right, &["behind", self.first_head("sum of sq")]),
             (Right, &SHOWN),
             (Left, &["accepted"]),
         ]);
@@ -126,8 +127,11 @@ impl Comparison {
     }
 
     fn differences(&self, colour: Colour, label: usize) -> String {
-        let mut grid =
-            Grid::new(&[(Left, &["#", "linkage"]), (Right, &[self.first_head()]), (Right, &SHOWN)]);
+        let mut grid = Grid::new(&[
+            (Left, &["#", "linkage"]),
+            (Right, &[self.first_head("sum of sq")]),
+            (Right, &SHOWN),
+        ]);
         for (i, row) in self.rows.iter().enumerate() {
             let mut cells = vec![(row.rank.to_string(), Ink::Strong), plain(named(row, label))];
             cells.extend(self.shown_figures().map(|key| {

@@ -57,19 +57,18 @@ impl Axis {
 }
 
 /// Draws the marks of all rows that have the three figures; `None` if fewer than two have.
-pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
-    let of = |row: &Ranked| {
+pub(super) fn trade_off<'c>(comparison: &'c Comparison) -> Option<Canvas> {
+    let of = |(i, row): (usize, &'c Ranked)| {
         let [x, y, size] = [SortKey::Rms, SortKey::Transmission, SortKey::Size].map(|key| row.figure_of(key));
-        Some((x?, y?, size?))
+        Some((i, row, [x?, y?, size?]))
     };
-    let rows: Vec<(usize, &Ranked, (f64, f64, f64))> =
-        comparison.rows.iter().enumerate().filter_map(|(i, row)| Some((i, row, of(row)?))).collect();
+    let mut rows: Vec<_> = comparison.rows.iter().enumerate().filter_map(of).collect();
     if rows.len() < 2 || !comparison.same_target() || !comparison.same_unit() {
         return None;
     }
-    let values = |pick: fn(&(f64, f64, f64)) -> f64| rows.iter().map(|row| pick(&row.2)).collect::<Vec<_>>();
-    let (across, up) = (Axis::new(&values(|v| v.0), true), Axis::new(&values(|v| v.1), false));
-    let largest = values(|v| v.2).into_iter().fold(f64::MIN_POSITIVE, f64::max);
+    let values = |k: usize| rows.iter().map(|row| row.2[k]).collect::<Vec<f64>>();
+    let (across, up) = (Axis::new(&values(0), true), Axis::new(&values(1), false));
+    let largest = values(2).into_iter().fold(f64::MIN_POSITIVE, f64::max);
     let spot = |x: f64, y: f64| {
         Spot::new(
             LEFT + (WIDTH - LEFT - RIGHT) * across.part(x),
@@ -79,9 +78,8 @@ pub(super) fn trade_off(comparison: &Comparison) -> Option<Canvas> {
     let mut canvas = Canvas::default();
     axes(&mut canvas, comparison, &across, &up);
     // Small marks are drawn above large ones.
-    let mut order = rows;
-    order.sort_by(|x, y| y.2.2.total_cmp(&x.2.2).then(y.0.cmp(&x.0)));
-    for (i, row, (x, y, size)) in order {
+    rows.sort_by(|x, y| y.2[2].total_cmp(&x.2[2]).then(y.0.cmp(&x.0)));
+    for (i, row, [x, y, size]) in rows {
         let at = spot(x, y);
         let radius = (RADII[1] * (size / largest).sqrt()).max(RADII[0]);
         let colour = if i < strokes::MOST { strokes::colour(i) } else { palette::MUTED };
@@ -113,9 +111,8 @@ fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Axis, up: &Axis) 
         canvas.line(Spot::new(left, y), Spot::new(right, y), &faint);
         canvas.text(Spot::new(left - 8.0, y + 4.0), Anchor::End, &muted, &format!("{}°", brief(tick, 4)));
     }
-    let unit = comparison.rows.first().and_then(|row| row.entry.unit);
     let scale = if across.logarithmic { ", logarithmic" } else { "" };
-    let unit = unit.map_or(String::new(), |unit| format!(", {}", unit.label()));
+    let unit = comparison.unit().map_or(String::new(), |unit| format!(", {}", unit.label()));
     let label = format!("rms error{unit}{scale}");
     canvas.text(Spot::new(right, HEIGHT - 10.0), Anchor::End, &muted, &label);
     canvas.raw(&format!(

@@ -1,6 +1,6 @@
 //! Conversion of the lengths of several results to one unit.
 
-use super::Entry;
+use super::{Entry, first_few};
 use crate::mechanism::{LinkageError, Unit};
 use crate::report::text::clean;
 use crate::task::spec::Measure;
@@ -51,23 +51,15 @@ pub fn in_one_unit(entries: &[Entry], unit: Option<Unit>) -> Result<Vec<Entry>, 
 /// with their units.
 pub fn unit_remarks(units: &[(String, Option<Unit>)], to: Unit) -> Vec<String> {
     let labels = |has: Option<Unit>| {
-        const NAMED: usize = 3;
-        let labels: Vec<String> =
-            units.iter().filter(|(_, unit)| *unit == has).map(|(label, _)| clean(label)).collect();
-        match labels.len() {
-            0 => None,
-            n if n > NAMED => Some(format!("{} and {} more", labels[..NAMED].join(", "), n - NAMED)),
-            _ => Some(labels.join(", ")),
-        }
+        let having = units.iter().filter(|(_, unit)| *unit == has);
+        let labels: Vec<String> = having.map(|(label, _)| clean(label)).collect();
+        (!labels.is_empty()).then(|| first_few(&labels))
     };
-    let mut remarks = Vec::new();
-    for from in Unit::ALL.into_iter().filter(|from| *from != to) {
-        if let Some(labels) = labels(Some(from)) {
-            remarks.push(format!("Lengths converted from {} to {}: {labels}.", from.label(), to.label()));
-        }
-    }
-    if let Some(labels) = labels(None) {
-        remarks.push(format!("Without a unit, taken to be in {}: {labels}.", to.label()));
-    }
-    remarks
+    let converted = |from: Unit| {
+        let labels = labels(Some(from))?;
+        Some(format!("Lengths converted from {} to {}: {labels}.", from.label(), to.label()))
+    };
+    let taken =
+        labels(None).map(|labels| format!("Without a unit, taken to be in {}: {labels}.", to.label()));
+    Unit::ALL.into_iter().filter(|from| *from != to).filter_map(converted).chain(taken).collect()
 }

@@ -55,10 +55,10 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         number(model.hole),
         number(model.margin)
     ));
-    out.push_str(&format!(
-        "{:<10}{:>12}{:>12}{:>14}   {}\n",
-        "plate", "length mm", "width mm", "area mm2", "holes, mm apart"
-    ));
+    let line = |plate: &str, length: &str, width: &str, area: &str, holes: &str| {
+        format!("{plate:<10}{length:>12}{width:>12}{area:>14}   {holes}\n")
+    };
+    out.push_str(&line("plate", "length mm", "width mm", "area mm2", "holes, mm apart"));
     for (plate, _) in plates {
         let [length, width] = size(plate);
         let pairs = hole_distances(plate);
@@ -67,14 +67,8 @@ pub(super) fn text(model: &Model<'_>, plates: &[(Plate, Placement)]) -> String {
         if holes.is_empty() {
             holes = plate.distinct_holes().into_iter().map(|(name, _)| format!("{name} alone")).collect();
         }
-        out.push_str(&format!(
-            "{:<10}{:>12}{:>12}{:>14}   {}\n",
-            plate.link.name(),
-            number(length),
-            number(width),
-            number(area(model, plate)),
-            holes.join(", ")
-        ));
+        let [length, width, area] = [length, width, area(model, plate)].map(number);
+        out.push_str(&line(plate.link.name(), &length, &width, &area, &holes.join(", ")));
     }
     let (pins, tracer) = pins(plates);
     out.push_str(&format!(

@@ -66,16 +66,21 @@ impl Tags {
         }
     }
 
-    fn table(&mut self, kind: &str, handle: u32, count: usize) {
+    /// Writes a table with this number of entries.
+    fn table(&mut self, kind: &str, handle: u32, count: usize, entries: impl FnOnce(&mut Tags)) {
         self.texts(&[(0, "TABLE"), (2, kind)]);
         self.handle(5, handle);
         self.handle(330, 0);
         self.text(100, "AcDbSymbolTable");
         self.text(70, count);
+        entries(self);
+        self.text(0, "ENDTAB");
     }
 
-    fn section(&mut self, name: &str) {
+    fn section(&mut self, name: &str, contents: impl FnOnce(&mut Tags)) {
         self.texts(&[(0, "SECTION"), (2, name)]);
+        contents(self);
+        self.text(0, "ENDSEC");
     }
 }
 
@@ -143,20 +148,18 @@ impl Drawing {
         for remark in remarks {
             out.text(999, ascii(remark));
         }
-        self.header(&mut out);
-        self.tables(&mut out);
-        blocks(&mut out);
-        out.section("ENTITIES");
-        out.0.push_str(&self.entities.0);
-        out.text(0, "ENDSEC");
-        objects(&mut out);
+        out.section("HEADER", |out| self.header(out));
+        out.section("CLASSES", |_| ());
+        out.section("TABLES", |out| self.tables(out));
+        out.section("BLOCKS", blocks);
+        out.section("ENTITIES", |out| out.0.push_str(&self.entities.0));
+        out.section("OBJECTS", objects);
         out.text(0, "EOF");
         out.0
     }
 
     fn header(&self, out: &mut Tags) {
         let [low, high] = self.bounds.corners();
-        out.section("HEADER");
         out.texts(&[(9, "$ACADVER"), (1, "AC1015"), (9, "$DWGCODEPAGE"), (3, "ANSI_1252")]);
         for (name, at) in [("$EXTMIN", low), ("$EXTMAX", high)] {
             out.text(9, name);
@@ -169,94 +172,62 @@ impl Drawing {
         }
         out.text(9, "$HANDSEED");
         out.handle(5, self.next);
-        out.text(0, "ENDSEC");
-        out.section("CLASSES");
-        out.text(0, "ENDSEC");
     }
 
     fn tables(&self, out: &mut Tags) {
-        out.section("TABLES");
-        out.table("VPORT", 0x8, 1);
-        self.view(out);
-        out.text(0, "ENDTAB");
-        out.table("LTYPE", 0x5, 3);
-        for (handle, name, about) in
-            [(0x14, "ByBlock", ""), (0x15, "ByLayer", ""), (0x16, "Continuous", "Solid line")]
-        {
-            out.entry("LTYPE", handle, 0x5, "AcDbLinetypeTableRecord", name);
-            out.text(3, about);
-            out.text(72, 65);
-            out.text(73, 0);
-            out.number(40, 0.0);
-        }
-        out.text(0, "ENDTAB");
-        out.table("LAYER", 0x2, self.layers.len() + 1);
-        let own = self.layers.iter().enumerate();
-        let layers = own
-            .map(|(i, (name, colour))| (FIRST_FREE + i as u32, name.as_str(), *colour))
-            .chain([(0x10, "0", 7)]);
-        for (handle, name, colour) in layers {
-            out.entry("LAYER", handle, 0x2, "AcDbLayerTableRecord", name);
-            out.text(62, colour);
-            out.text(6, "Continuous");
-            out.handle(390, 0xF);
-        }
-        out.text(0, "ENDTAB");
-        out.table("STYLE", 0x3, 1);
-        out.entry("STYLE", 0x11, 0x3, "AcDbTextStyleTableRecord", "Standard");
-        for (code, value) in [(40, 0.0), (41, 1.0), (50, 0.0)] {
-            out.number(code, value);
-        }
-        out.text(71, 0);
-        out.number(42, 2.5);
-        out.texts(&[(3, "txt"), (4, ""), (0, "ENDTAB")]);
-        for (kind, handle) in [("VIEW", 0x6), ("UCS", 0x7)] {
-            out.table(kind, handle, 0);
-            out.text(0, "ENDTAB");
-        }
-        out.table("APPID", 0x9, 1);
-        out.entry("APPID", 0x12, 0x9, "AcDbRegAppTableRecord", "ACAD");
-        out.text(0, "ENDTAB");
-        out.table("DIMSTYLE", 0xA, 1);
-        out.text(100, "AcDbDimStyleTable");
-        out.entry("DIMSTYLE", 0x27, 0xA, "AcDbDimStyleTableRecord", "Standard");
-        out.text(0, "ENDTAB");
-        out.table("BLOCK_RECORD", 0x1, 2);
-        for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
-            out.entry("BLOCK_RECORD", handle, 0x1, "AcDbBlockTableRecord", name);
-        }
-        out.texts(&[(0, "ENDTAB"), (0, "ENDSEC")]);
+        out.table("VPORT", 0x8, 1, |out| self.view(out));
+        out.table("LTYPE", 0x5, 3, |out| {
+            let types = [(0x14, "ByBlock", ""), (0x15, "ByLayer", ""), (0x16, "Continuous", "Solid line")];
+            for (handle, name, about) in types {
+                out.entry("LTYPE", handle, 0x5, "AcDbLinetypeTableRecord", name);
+                out.texts(&[(3, about), (72, "65"), (73, "0"), (40, "0")]);
+            }
+        });
+        out.table("LAYER", 0x2, self.layers.len() + 1, |out| {
+            let own = self.layers.iter().zip(FIRST_FREE..);
+            let own = own.map(|((name, colour), handle)| (handle, name.as_str(), *colour));
+            for (handle, name, colour) in own.chain([(0x10, "0", 7)]) {
+                out.entry("LAYER", handle, 0x2, "AcDbLayerTableRecord", name);
+                out.text(62, colour);
+                out.text(6, "Continuous");
+                out.handle(390, 0xF);
+            }
+        });
+        out.table("STYLE", 0x3, 1, |out| {
+            out.entry("STYLE", 0x11, 0x3, "AcDbTextStyleTableRecord", "Standard");
+            out.texts(&[(40, "0"), (41, "1"), (50, "0"), (71, "0"), (42, "2.5"), (3, "txt"), (4, "")]);
+        });
+        out.table("VIEW", 0x6, 0, |_| ());
+        out.table("UCS", 0x7, 0, |_| ());
+        out.table("APPID", 0x9, 1, |out| out.entry("APPID", 0x12, 0x9, "AcDbRegAppTableRecord", "ACAD"));
+        out.table("DIMSTYLE", 0xA, 1, |out| {
+            out.text(100, "AcDbDimStyleTable");
+            out.entry("DIMSTYLE", 0x27, 0xA, "AcDbDimStyleTableRecord", "Standard");
+        });
+        out.table("BLOCK_RECORD", 0x1, 2, |out| {
+            for (handle, name) in [(MODEL_SPACE, "*Model_Space"), (PAPER_SPACE, "*Paper_Space")] {
+                out.entry("BLOCK_RECORD", handle, 0x1, "AcDbBlockTableRecord", name);
+            }
+        });
     }
 
     /// Writes the view with which a program opens the drawing: all of it.
     fn view(&self, out: &mut Tags) {
-        let height = 1.1 * self.bounds.height().max(self.bounds.width() / 1.5).max(1e-6);
+        let (centre, bounds) = (self.bounds.centre(), &self.bounds);
         out.entry("VPORT", 0x29, 0x8, "AcDbViewportTableRecord", "*Active");
-        let pairs = [
-            (10, Complex::default()),
-            (11, Complex::new(1.0, 1.0)),
-            (12, self.bounds.centre()),
-            (13, Complex::default()),
-            (14, Complex::new(10.0, 10.0)),
-            (15, Complex::new(10.0, 10.0)),
-        ];
-        for (code, at) in pairs {
-            out.number(code, at.re);
-            out.number(code + 10, at.im);
-        }
-        for (code, z) in [(16, 1.0), (17, 0.0)] {
-            out.number(code, 0.0);
-            out.number(code + 10, 0.0);
-            out.number(code + 20, z);
-        }
-        out.number(40, height);
-        out.number(41, 1.5);
-        out.number(42, 50.0);
+        // The corners of the view on the screen, and its centre.
+        out.texts(&[(10, "0"), (20, "0"), (11, "1"), (21, "1")]);
+        out.number(12, centre.re);
+        out.number(22, centre.im);
+        // The snapping and the grid; the direction and the point looked at.
+        out.texts(&[(13, "0"), (23, "0"), (14, "10"), (24, "10"), (15, "10"), (25, "10")]);
+        out.texts(&[(16, "0"), (26, "0"), (36, "1"), (17, "0"), (27, "0"), (37, "0")]);
+        out.number(40, 1.1 * bounds.height().max(bounds.width() / 1.5).max(1e-6));
+        out.texts(&[(41, "1.5"), (42, "50")]);
     }
 }
 
 fn blocks(out: &mut Tags) {
-    out.section("BLOCKS");
     for (name, owner, handle) in [("*Model_Space", MODEL_SPACE, 0x20), ("*Paper_Space", PAPER_SPACE, 0x1C)] {
         out.object("BLOCK", handle, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockBegin"), (2, name)]);
@@ -266,11 +237,9 @@ fn blocks(out: &mut Tags) {
         out.object("ENDBLK", handle + 1, owner);
         out.texts(&[(100, "AcDbEntity"), (8, "0"), (100, "AcDbBlockEnd")]);
     }
-    out.text(0, "ENDSEC");
 }
 
 fn objects(out: &mut Tags) {
-    out.section("OBJECTS");
     let dictionary = |out: &mut Tags, kind: &str, handle: u32, owner: u32, entries: &[(&str, u32)]| {
         out.object(kind, handle, owner);
         out.texts(&[(100, "AcDbDictionary"), (281, "1")]);
@@ -285,7 +254,6 @@ fn objects(out: &mut Tags) {
     out.text(100, "AcDbDictionaryWithDefault");
     out.handle(340, 0xF);
     out.object("ACDBPLACEHOLDER", 0xF, 0xE);
-    out.text(0, "ENDSEC");
 }
 
 /// Returns text on one line as DXF of 2000 writes it: printable ASCII, everything else as UTF-16 units `\U+XXXX`.

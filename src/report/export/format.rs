@@ -46,6 +46,9 @@ pub enum UnknownFormat {
     NotBuilt(String),
 }
 
+/// The formats that only a build with the feature `images` has.
+const PICTURES: [&str; 2] = ["png", "gif"];
+
 impl Format {
     /// All formats of this build.
     pub const ALL: &'static [Format] = &[
@@ -109,11 +112,7 @@ impl Format {
 
     /// Returns whether the file is text, which may go to standard output.
     pub fn is_text(self) -> bool {
-        match self {
-            #[cfg(feature = "images")]
-            Format::Png | Format::Gif => false,
-            _ => true,
-        }
+        !PICTURES.contains(&self.name())
     }
 
     /// Returns the names of all formats, separated by commas.
@@ -128,7 +127,7 @@ impl std::str::FromStr for Format {
         let word = text.trim();
         match Format::ALL.iter().find(|format| format.name() == word) {
             Some(format) => Ok(*format),
-            None if matches!(word, "png" | "gif") => Err(UnknownFormat::NotBuilt(word.to_owned())),
+            None if PICTURES.contains(&word) => Err(UnknownFormat::NotBuilt(word.to_owned())),
             None => Err(UnknownFormat::Unknown(word.to_owned())),
         }
     }

@@ -1,12 +1,11 @@
 //! Pictures of the linkage with its coupler curve and target: still as PNG, animated as GIF.
 
 use super::model::Model;
-use super::settings::{Refusal, Settings};
+use super::settings::Refusal;
 use crate::files::generator;
-use crate::mechanism::{Complex, CouplerCurve, Joints};
-use crate::report::scene::{Bounds, all_joints};
+use crate::mechanism::{Complex, Joints};
+use crate::report::scene::{Bounds, all_joints, circuits_through};
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 use std::fmt::Display;
 use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, Transform};
 
@@ -31,9 +30,9 @@ fn failed(why: impl Display) -> Refusal {
 }
 
 /// Draws a still picture as PNG.
-pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
-    let joints = model.pose(settings)?;
-    let sheet = Sheet::around(model, &[joints], settings.size_px.unwrap_or(STILL_PX));
+pub(super) fn png(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
+    let joints = model.pose()?;
+    let sheet = Sheet::around(model, &[joints], model.settings.size_px.unwrap_or(STILL_PX));
     let mut picture = sheet.background(model)?;
     sheet.linkage(&mut picture, model, &joints);
     let bytes = picture.encode_png().map_err(failed)?;
@@ -45,13 +44,11 @@ pub(super) fn png(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Ref
 fn with_software(mut png: Vec<u8>) -> Vec<u8> {
     /// The length of the signature (8 bytes) and the header: length, type, 13 bytes, check sum.
     const HEADER: usize = 8 + 4 + 4 + 13 + 4;
-    let mut typed = b"tEXt".to_vec();
-    typed.extend(format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION")).bytes());
+    let text = format!("Software\0{} {}", generator::NAME, env!("CARGO_PKG_VERSION"));
+    let typed = [b"tEXt", text.as_bytes()].concat();
     // A version is a few bytes long.
-    let length = (typed.len() - 4) as u32;
-    let mut chunk = length.to_be_bytes().to_vec();
-    chunk.extend(&typed);
-    chunk.extend(crc32(&typed).to_be_bytes());
+    let length = text.len() as u32;
+    let chunk = [&length.to_be_bytes(), typed.as_slice(), &crc32(&typed).to_be_bytes()].concat();
     if png.len() >= HEADER {
         png.splice(HEADER..HEADER, chunk);
     }
@@ -69,20 +66,11 @@ fn crc32(bytes: &[u8]) -> u32 {
 }
 
 /// Draws a turn of the motion as GIF, repeated endlessly.
-pub(super) fn gif(model: &Model<'_>, settings: &Settings) -> Result<Vec<u8>, Refusal> {
-    let ((angle, assembly), start) = model.start()?;
-    let curve = CouplerCurve::through(&model.linkage, angle, assembly, 8);
-    let n = settings.frames.unwrap_or(FRAMES);
-    let mut poses: Vec<Joints> = (0..n)
-        .filter_map(|i| {
-            let (angle, assembly) = curve.position_at(TAU * i as f64 / n as f64);
-            model.linkage.position_with(angle, assembly).joints()
-        })
-        .collect();
-    if poses.is_empty() {
-        poses.push(start);
-    }
-    let sheet = Sheet::around(model, &poses, settings.size_px.unwrap_or(MOVING_PX));
+pub(super) fn gif(model: &Model<'_>) -> Result<Vec<u8>, Refusal> {
+    let (position, start) = model.start()?;
+    let n = model.settings.frames.unwrap_or(FRAMES);
+    let poses = circuits_through(&model.linkage, [position], n).pop().unwrap_or(vec![start]);
+    let sheet = Sheet::around(model, &poses, model.settings.size_px.unwrap_or(MOVING_PX));
     let background = sheet.background(model)?;
     let palette = palette();
     let flat: Vec<u8> = palette.iter().flatten().copied().collect();
@@ -159,14 +147,14 @@ impl Sheet {
             ..Stroke::default()
         };
         if let Some(path) = self.path(points, closed) {
-            picture.stroke_path(&path, &paint(colour), &stroke, Transform::identity(), None);
+            picture.stroke_path(&path, &paint(colour, 255), &stroke, Transform::identity(), None);
         }
     }
 
     fn disc(&self, picture: &mut Pixmap, centre: Complex, colour: Rgb, radius: f32) {
         let (x, y) = self.at(centre);
         if let Some(path) = PathBuilder::from_circle(x, y, radius * self.side) {
-            picture.fill_path(&path, &paint(colour), FillRule::Winding, Transform::identity(), None);
+            picture.fill_path(&path, &paint(colour, 255), FillRule::Winding, Transform::identity(), None);
         }
     }
 
@@ -188,9 +176,7 @@ impl Sheet {
     fn linkage(&self, picture: &mut Pixmap, model: &Model<'_>, joints: &Joints) {
         let [a, b, c, d, p] = all_joints(&model.linkage, joints);
         if let Some(path) = self.path(&[c, d, p], true) {
-            let mut half = paint(COUPLER);
-            half.set_color_rgba8(COUPLER[0], COUPLER[1], COUPLER[2], 170);
-            picture.fill_path(&path, &half, FillRule::Winding, Transform::identity(), None);
+            picture.fill_path(&path, &paint(COUPLER, 170), FillRule::Winding, Transform::identity(), None);
         }
         self.line(picture, &[c, d, p], true, LINKS, 0.006);
         self.line(picture, &[a, c], false, LINKS, 0.012);
@@ -203,9 +189,9 @@ impl Sheet {
     }
 }
 
-fn paint(colour: Rgb) -> Paint<'static> {
+fn paint([red, green, blue]: Rgb, alpha: u8) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
-    paint.set_color_rgba8(colour[0], colour[1], colour[2], 255);
+    paint.set_color_rgba8(red, green, blue, alpha);
     paint
 }
 
@@ -220,7 +206,7 @@ fn palette() -> Vec<Rgb> {
                 // A value between two bytes fits into a byte.
                 (from + (to - from) * step / STEPS) as u8
             };
-            colours.push([mixed(0), mixed(1), mixed(2)]);
+            colours.push([0, 1, 2].map(mixed));
         }
     }
     colours

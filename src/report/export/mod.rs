@@ -59,26 +59,26 @@ pub fn export(subject: &Subject, format: Format, settings: &Settings) -> Result<
         Format::Csv | Format::Toml | Format::Json => own_unit(subject, format, settings),
         _ => {
             let model = Model::new(subject, settings)?;
-            let bytes = in_millimetres(&model, format, settings)?;
+            let bytes = in_millimetres(&model, format)?;
             Ok(Exported { bytes, notes: model.notes(format) })
         }
     }
 }
 
-fn in_millimetres(model: &Model<'_>, format: Format, settings: &Settings) -> Result<Vec<u8>, Refusal> {
+fn in_millimetres(model: &Model<'_>, format: Format) -> Result<Vec<u8>, Refusal> {
     let text = match format {
-        Format::Svg => svg::drawing(model, &model.pose(settings)?),
+        Format::Svg => svg::drawing(model, &model.pose()?),
         Format::SvgPlates => svg::plates(model, &model.plates()?),
-        Format::Dxf => drafting::sketch(model, &model.pose(settings)?),
+        Format::Dxf => drafting::sketch(model, &model.pose()?),
         Format::DxfPlates => drafting::plates(model, &model.plates()?),
         Format::Stl => stl::plates(model, &model.plates()?)?,
-        Format::Scad => openscad::script(model, settings)?,
+        Format::Scad => openscad::script(model)?,
         Format::CutList => cut_list::text(model, &model.plates()?),
         Format::CutListCsv => cut_list::csv(model, &model.plates()?),
         #[cfg(feature = "images")]
-        Format::Png => return images::png(model, settings),
+        Format::Png => return images::png(model),
         #[cfg(feature = "images")]
-        Format::Gif => return images::gif(model, settings),
+        Format::Gif => return images::gif(model),
         Format::Csv | Format::Toml | Format::Json => String::new(),
     };
     Ok(text.into_bytes())

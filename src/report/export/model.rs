@@ -24,6 +24,7 @@ const CHORD_SHARE: f64 = 1.0 / 400.0;
 /// A subject in millimetres.
 pub(super) struct Model<'a> {
     pub(super) subject: &'a Subject,
+    pub(super) settings: &'a Settings,
     /// The linkage in millimetres.
     pub(super) linkage: FourBar,
     /// The length of one unit of the file in millimetres, at this scale.
@@ -38,11 +39,10 @@ pub(super) struct Model<'a> {
     pub(super) gap: f64,
     pub(super) chord: f64,
     assumed: Vec<(&'static str, String)>,
-    crowded: Option<Refusal>,
 }
 
 impl<'a> Model<'a> {
-    pub(super) fn new(subject: &'a Subject, settings: &Settings) -> Result<Self, Refusal> {
+    pub(super) fn new(subject: &'a Subject, settings: &'a Settings) -> Result<Self, Refusal> {
         let mut assumed = Vec::new();
         let unit = unit_of(subject, settings)?;
         if unit.is_none() {
@@ -50,13 +50,28 @@ impl<'a> Model<'a> {
         }
         let mm_per_unit = settings.scale() * unit.map_or(1.0, |unit| unit.factor_to(Unit::Mm));
         let linkage = scaled(&subject.linkage, mm_per_unit)?;
-        check_size(&linkage, settings)?;
+        let longest = longest(&linkage);
+        if !LONGEST_MM.contains(&longest) {
+            return Err(Refusal::about(
+                settings,
+                "scale",
+                format!("the longest link would be {} mm long", brief(longest, 3)),
+                "set scale=.. so that it is between 0.01 and 10000000 mm",
+            ));
+        }
         let target: Vec<Complex> = subject.target.iter().map(|p| point(*p) * mm_per_unit).collect();
-        if target.iter().any(|p| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM)) {
-            return Err(too_far(settings));
+        // Written so that NaN is too far.
+        let too_far = |p: &Complex| !(p.re.abs() <= FARTHEST_MM && p.im.abs() <= FARTHEST_MM);
+        if target.iter().chain(&[linkage.crank_pivot(), linkage.follower_pivot()]).any(too_far) {
+            return Err(Refusal::about(
+                settings,
+                "scale",
+                "the drawing lies more than 1000 km from the origin",
+                "set a smaller scale, or move the problem to the origin",
+            ));
         }
 
-        let (nearest, crowd) = nearest_holes(&linkage);
+        let (nearest, _) = nearest_holes(&linkage);
         let mut default = |key: &'static str, set: Option<f64>, value: f64| {
             set.unwrap_or_else(|| {
                 let value = rounded_down(value);
@@ -64,7 +79,7 @@ impl<'a> Model<'a> {
                 value
             })
         };
-        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest(&linkage) };
+        let largest = if unit.is_some() { HOLE_MM } else { HOLE_SHARE * longest };
         let hole = default("hole_mm", settings.hole_mm, largest.min(HOLE_BESIDE * nearest));
         let margin = default("margin_mm", settings.margin_mm, hole);
         let kerf = settings.kerf_mm.unwrap_or(0.0);
@@ -79,22 +94,13 @@ impl<'a> Model<'a> {
                 "choose kerf_mm below hole_mm",
             ));
         }
-        let crowded = (hole >= nearest).then(|| {
-            let apart = brief(nearest, 3);
-            Refusal::about(
-                settings,
-                "hole_mm",
-                format!("holes of {} mm run into each other: {crowd} are {apart} mm apart", exact(hole)),
-                format!("choose hole_mm below {apart}, or a larger scale"),
-            )
-        });
-
         let first = subject.positions.first().copied().unwrap_or_else(|| middle_position(&linkage));
         let all = std::iter::once(first).chain(subject.positions.iter().copied());
         let circuits = circuits_through(&linkage, all, settings.samples());
         let curves = circuits.iter().map(|c| c.iter().map(|j| j.coupler_point).collect()).collect();
         Ok(Model {
             subject,
+            settings,
             linkage,
             mm_per_unit,
             target,
@@ -106,7 +112,6 @@ impl<'a> Model<'a> {
             gap,
             chord,
             assumed,
-            crowded,
         })
     }
 
@@ -136,25 +141,20 @@ impl<'a> Model<'a> {
 
     /// Returns the position that is drawn: at the crank angle of the settings, otherwise at the first target point that
     /// is reached, otherwise in the middle of the motion.
-    pub(super) fn pose(&self, settings: &Settings) -> Result<Joints, Refusal> {
-        if let Some(angle) = settings.crank_deg {
-            let joints = self.linkage.position(angle.to_radians()).joints();
-            return joints.ok_or_else(|| {
-                Refusal::about(
-                    settings,
-                    "crank_deg",
-                    format!("the links cannot be joined at a crank angle of {} degrees", exact(angle)),
-                    match self.start() {
-                        Ok(((other, _), _)) => {
-                            let other = brief(other.to_degrees(), 4);
-                            format!("choose another crank_deg, such as {other}, or leave it out")
-                        }
-                        Err(refusal) => refusal.help,
-                    },
-                )
-            });
-        }
-        self.start().map(|(_, joints)| joints)
+    pub(super) fn pose(&self) -> Result<Joints, Refusal> {
+        let Some(angle) = self.settings.crank_deg else { return self.start().map(|(_, joints)| joints) };
+        self.linkage.position(angle.to_radians()).joints().ok_or_else(|| {
+            let help = match self.start() {
+                Ok(((other, _), _)) => {
+                    let other = brief(other.to_degrees(), 4);
+                    format!("choose another crank_deg, such as {other}, or leave it out")
+                }
+                Err(refusal) => refusal.help,
+            };
+            let angle = exact(angle);
+            let message = format!("the links cannot be joined at a crank angle of {angle} degrees");
+            Refusal::about(self.settings, "crank_deg", message, help)
+        })
     }
 
     /// Returns the crank angle (radians), the assembly and the joints at which drawings start.
@@ -174,8 +174,15 @@ impl<'a> Model<'a> {
 
     /// Returns the four plates in their final sizes, each with its place in the layout (with room for the kerf).
     pub(super) fn plates(&self) -> Result<Vec<(Plate, Placement)>, Refusal> {
-        if let Some(refusal) = &self.crowded {
-            return Err(refusal.clone());
+        let (nearest, crowd) = nearest_holes(&self.linkage);
+        if self.hole >= nearest {
+            let (hole, apart) = (exact(self.hole), brief(nearest, 3));
+            return Err(Refusal::about(
+                self.settings,
+                "hole_mm",
+                format!("holes of {hole} mm run into each other: {crowd} are {apart} mm apart"),
+                format!("choose hole_mm below {apart}, or a larger scale"),
+            ));
         }
         let plates = Plate::all(&self.linkage, 0.5 * self.hole + self.margin);
         let mut top = 0.0;
@@ -224,32 +231,6 @@ pub(super) fn scaled(linkage: &FourBar, factor: f64) -> Result<FourBar, Refusal>
 
 fn longest(linkage: &FourBar) -> f64 {
     linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
-}
-
-fn check_size(linkage: &FourBar, settings: &Settings) -> Result<(), Refusal> {
-    let longest = longest(linkage);
-    if !LONGEST_MM.contains(&longest) {
-        return Err(Refusal::about(
-            settings,
-            "scale",
-            format!("the longest link would be {} mm long", brief(longest, 3)),
-            "set scale=.. so that it is between 0.01 and 10000000 mm",
-        ));
-    }
-    let coordinates = [linkage.crank_pivot(), linkage.follower_pivot()];
-    if coordinates.iter().any(|p| p.re.abs().max(p.im.abs()) > FARTHEST_MM) {
-        return Err(too_far(settings));
-    }
-    Ok(())
-}
-
-fn too_far(settings: &Settings) -> Refusal {
-    Refusal::about(
-        settings,
-        "scale",
-        "the drawing lies more than 1000 km from the origin",
-        "set a smaller scale, or move the problem to the origin",
-    )
 }
 
 /// Returns the names of each pair of distinct holes of a plate with their distance.

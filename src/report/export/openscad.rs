@@ -1,17 +1,17 @@
 //! An OpenSCAD script: every length is a parameter, the plates are laid out or assembled at a crank angle.
 
 use super::model::Model;
-use super::settings::{Refusal, Settings};
+use super::settings::Refusal;
 use crate::files::generator::mark;
 use crate::report::text::exact;
 
 /// Returns the script. Foreign text is in a comment on one line, cleaned of everything that would end the comment.
-pub(super) fn script(model: &Model<'_>, settings: &Settings) -> Result<String, Refusal> {
+pub(super) fn script(model: &Model<'_>) -> Result<String, Refusal> {
     let layout = model.plates()?;
     let ((angle, assembly), _) = model.start()?;
-    let (crank_deg, assembly) = match settings.crank_deg {
+    let (crank_deg, assembly) = match model.settings.crank_deg {
         Some(angle) => {
-            model.pose(settings)?;
+            model.pose()?;
             (angle, model.linkage.assembly())
         }
         None => (angle.to_degrees(), assembly),

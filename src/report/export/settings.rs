@@ -78,37 +78,34 @@ impl Settings {
     pub fn parse(format: Format, pairs: &[(String, String)]) -> Result<Self, Refusal> {
         let mut settings = Settings { typed: pairs.to_vec(), ..Settings::default() };
         for (key, value) in pairs {
-            settings.set(format, key, value).map_err(|(message, help)| Refusal {
-                setting: Some((key.clone(), value.clone())),
-                message,
-                help,
-            })?;
+            let about = |refusal| Refusal { setting: Some((key.clone(), value.clone())), ..refusal };
+            settings.set(format, key, value).map_err(about)?;
         }
         Ok(settings)
     }
 
-    fn set(&mut self, format: Format, key: &str, value: &str) -> Result<(), (String, String)> {
+    fn set(&mut self, format: Format, key: &str, value: &str) -> Result<(), Refusal> {
         let takes = format.settings();
         if !takes.contains(&key) {
             let list = format!("{} takes {}", format.name(), takes.join(", "));
             let hint = nearest(key, takes).map_or(String::new(), |n| format!("did you mean `{n}`? "));
-            let known = Format::ALL.iter().any(|other| other.settings().contains(&key));
-            let message = match known {
-                true => format!("`{key}` means nothing for {}", format.name()),
-                false => format!("there is no setting `{key}`"),
+            let message = if Format::ALL.iter().any(|other| other.settings().contains(&key)) {
+                format!("`{key}` means nothing for {}", format.name())
+            } else {
+                format!("there is no setting `{key}`")
             };
-            return Err((message, format!("{hint}{list}")));
+            return Err(Refusal::new(message, format!("{hint}{list}")));
         }
         match key {
-            "scale" => self.scale = Some(number(key, value, Range::Positive)?),
-            "hole_mm" => self.hole_mm = Some(number(key, value, Range::Positive)?),
-            "thickness_mm" => self.thickness_mm = Some(number(key, value, Range::Positive)?),
-            "chord_mm" => self.chord_mm = Some(number(key, value, Range::Positive)?),
-            "margin_mm" => self.margin_mm = Some(number(key, value, Range::Positive)?),
-            "kerf_mm" => self.kerf_mm = Some(number(key, value, Range::NotNegative)?),
-            "gap_mm" => self.gap_mm = Some(number(key, value, Range::NotNegative)?),
-            "crank_deg" => self.crank_deg = Some(number(key, value, Range::Any)?),
-            "omega_rad_s" => self.omega_rad_s = Some(number(key, value, Range::Any)?),
+            "scale" => self.scale = Some(number(key, value, POSITIVE)?),
+            "hole_mm" => self.hole_mm = Some(number(key, value, POSITIVE)?),
+            "thickness_mm" => self.thickness_mm = Some(number(key, value, POSITIVE)?),
+            "chord_mm" => self.chord_mm = Some(number(key, value, POSITIVE)?),
+            "margin_mm" => self.margin_mm = Some(number(key, value, POSITIVE)?),
+            "kerf_mm" => self.kerf_mm = Some(number(key, value, NOT_NEGATIVE)?),
+            "gap_mm" => self.gap_mm = Some(number(key, value, NOT_NEGATIVE)?),
+            "crank_deg" => self.crank_deg = Some(number(key, value, ANY)?),
+            "omega_rad_s" => self.omega_rad_s = Some(number(key, value, ANY)?),
             "samples" => self.samples = Some(count(key, value, 8..=100_000)?),
             "positions" => self.positions = Some(count(key, value, 1..=100_000)?),
             "size_px" => self.size_px = Some(count(key, value, 100..=4000)?),
@@ -116,7 +113,7 @@ impl Settings {
             "unit" => {
                 let found = Unit::ALL.into_iter().find(|unit| unit.label() == value);
                 self.unit = Some(found.ok_or_else(|| {
-                    (format!("`unit` is no unit of length: {value}"), "choose mm, cm, m or in".to_owned())
+                    Refusal::new(format!("`unit` is no unit of length: {value}"), "choose mm, cm, m or in")
                 })?);
             }
             _ => {}
@@ -140,42 +137,31 @@ impl Settings {
     }
 }
 
-/// The allowed range of a number.
-#[derive(Clone, Copy, PartialEq)]
-enum Range {
-    Positive,
-    NotNegative,
-    Any,
-}
-
 /// The largest number that a setting accepts.
 const LARGEST: f64 = 1e9;
 
-fn number(key: &str, value: &str, range: Range) -> Result<f64, (String, String)> {
-    let help = match range {
-        Range::Positive => "write a number above 0, such as 4 or 2.5",
-        Range::NotNegative => "write a number of 0 or more, such as 0.2",
-        Range::Any => "write a number, such as 30",
-    };
-    let wrong = |message: String| Err((message, help.to_owned()));
-    let Ok(number) = value.parse::<f64>() else {
-        let comma = value.contains(',').then_some(", with a decimal point instead of the comma");
-        return wrong(format!("`{key}` is not a number: {value}{}", comma.unwrap_or_default()));
-    };
-    // Written so that NaN is out of every range.
-    let good = number.abs() <= LARGEST
-        && match range {
-            Range::Positive => number >= 1.0 / LARGEST,
-            Range::NotNegative => number >= 0.0,
-            Range::Any => true,
-        };
-    if good { Ok(number) } else { wrong(format!("`{key}` is out of range: {value}")) }
+/// A range of numbers up to [`LARGEST`]: the least of them, and the remedy for others.
+type Range = (f64, &'static str);
+const POSITIVE: Range = (1.0 / LARGEST, "write a number above 0, such as 4 or 2.5");
+const NOT_NEGATIVE: Range = (0.0, "write a number of 0 or more, such as 0.2");
+const ANY: Range = (-LARGEST, "write a number, such as 30");
+
+fn number(key: &str, value: &str, (least, help): Range) -> Result<f64, Refusal> {
+    let wrong = |message: String| Err(Refusal::new(message, help));
+    match value.parse::<f64>() {
+        Ok(number) if (least..=LARGEST).contains(&number) => Ok(number),
+        Ok(_) => wrong(format!("`{key}` is out of range: {value}")),
+        Err(_) => {
+            let comma = if value.contains(',') { ", with a decimal point instead of the comma" } else { "" };
+            wrong(format!("`{key}` is not a number: {value}{comma}"))
+        }
+    }
 }
 
-fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, (String, String)> {
+fn count(key: &str, value: &str, range: std::ops::RangeInclusive<usize>) -> Result<usize, Refusal> {
     let found = value.parse::<usize>().ok().filter(|n| range.contains(n));
     found.ok_or_else(|| {
         let help = format!("write a whole number from {} to {}", range.start(), range.end());
-        (format!("`{key}` is no such number: {value}"), help)
+        Refusal::new(format!("`{key}` is no such number: {value}"), help)
     })
 }

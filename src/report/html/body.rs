@@ -2,6 +2,7 @@
 
 use super::page::{list, paragraph, section};
 use super::{Extent, candidate, data, exact, practicality, proof, table};
+use crate::files::name;
 use crate::record::{Candidate, Record};
 use crate::report::certificate as certificate_words;
 use crate::report::text::{capitalised, clean, significant};
@@ -109,10 +110,12 @@ fn verdict(record: &Record) -> String {
 
 /// Returns the commands that reproduce the same digits.
 fn reproduction(record: &Record) -> Markup {
-    let name = file_stem(&record.problem.name);
+    let name = name::legal(&record.problem.name, "problem");
+    let quoted = |path: String| if path.contains(' ') { format!("\"{path}\"") } else { path };
+    let (file, result) = (quoted(format!("{name}.toml")), quoted(format!("results/{name}")));
     let method = record.method.asked.name();
     let commands = format!(
-        "linkwright synth {name}.toml --method {method} --seed {}\nlinkwright verify results/{name}\nlinkwright report results/{name}\n",
+        "linkwright synth {file} --method {method} --seed {}\nlinkwright verify {result}\nlinkwright report {result}\n",
         record.seed
     );
     let again = if record.termination.reproducible {
@@ -137,12 +140,4 @@ fn reproduction(record: &Record) -> Markup {
         (paragraph("notes", again))
     };
     section("reproduce", "How to reproduce", inside)
-}
-
-/// Returns the name in a form that is safe in a command: letters, digits, dots, dashes; never empty.
-fn file_stem(name: &str) -> String {
-    let plain = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '-' };
-    let stem: String = clean(name).chars().take(crate::report::text::LONGEST_TEXT).map(plain).collect();
-    let stem = stem.trim_matches(['-', '.']).to_owned();
-    if stem.is_empty() { "problem".to_owned() } else { stem }
 }

@@ -146,8 +146,8 @@ fn chosen(record: &Record) -> Vec<usize> {
         return (0..n).filter(usable).collect();
     }
     let worst = record.candidates.iter().map(|c| c.error.max_at).filter(|i| *i < n);
-    let mut chosen: Vec<usize> = (0..MOST_POINTS).map(|i| i * n / MOST_POINTS).chain(worst).collect();
-    chosen.push(n - 1);
+    let mut chosen: Vec<usize> =
+        (0..MOST_POINTS).map(|i| i * n / MOST_POINTS).chain(worst).chain([n - 1]).collect();
     chosen.sort_unstable();
     chosen.dedup();
     chosen.into_iter().filter(usable).collect()

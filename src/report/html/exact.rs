@@ -41,7 +41,7 @@ fn table(record: &Record, linkages: &[ExactLinkage]) -> Markup {
         ("verdict", false, &|x| Cell::verdict(verdict(x), x.accepted)),
     ];
     let shown = linkages.iter().take(MOST_EXACT).zip(1..);
-    let rows = shown.map(|(x, i)| (Some(format!("x{i}")), Cell::number(f64::from(i), i.to_string()), x));
+    let rows = shown.map(|(x, i)| (Some(format!("x{i}")), Cell::whole(i), x));
     tabulated(("Exact linkages", "sortable wide tight"), ("#", true), &columns, rows)
 }
 

@@ -77,9 +77,9 @@ fn transmission(c: &Candidate) -> String {
     };
     let verdict = ForceTransmission::of(t.worst).words();
     format!(
-        "Transmission angle from {}° to {}° {over}: {} from 0° or 180° at its worst; {verdict}.",
+        "Transmission angle from {}° to {}° {over}: {}° from 0° or 180° at its worst; {verdict}.",
         significant(t.min, 4),
         significant(t.max, 4),
-        format_args!("{}°", significant(t.worst, 4)),
+        significant(t.worst, 4),
     )
 }

@@ -29,7 +29,7 @@ pub(super) mod page;
 mod practicality;
 mod proof;
 mod requirements;
-mod table;
+pub(super) mod table;
 
 pub use motion::{Drive, DriveKind};
 

@@ -1,10 +1,11 @@
 //! The drive of a mechanism on the page: the input that moves it, its range, and the places of the points in it.
 
+use crate::mechanism::four_bar::mobility::wrapped;
 use crate::mechanism::{AssemblyMode, FourBar, InputRange};
 use crate::report::scene::{middle_position, positions_at};
 use serde::Serialize;
 
-/// What the player's one parameter q, degrees, stands for.
+/// The meaning of the player's one parameter q, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DriveKind {
@@ -21,7 +22,7 @@ pub enum DriveKind {
 /// The motion that a page plays: the circuit of the first point, and of it the branch used or all of it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct Drive {
-    /// What the parameter stands for.
+    /// The meaning of the parameter.
     pub kind: DriveKind,
     /// The middle of the crank's range, degrees in (-180, 180].
     pub middle_deg: f64,
@@ -39,24 +40,21 @@ impl Drive {
         positions.retain(|(angle, _)| angle.is_finite());
         let (angle, assembly) = positions.first().copied().unwrap_or_else(|| middle_position(linkage));
         let circuit = mobility.branch(angle, assembly).circuit;
-        let t1 = i64::from(assembly);
-        match mobility.arc(circuit) {
-            None => {
-                let closes = mobility.input != InputRange::None;
-                let kind = if closes { DriveKind::Turn } else { DriveKind::None };
-                Drive { kind, middle_deg: 0.0, half_width_deg: 180.0, t1 }
-            }
-            Some(arc) => {
-                let both = positions
-                    .iter()
-                    .any(|(angle, t1)| *t1 != assembly && mobility.branch(*angle, *t1).circuit == circuit);
-                Drive {
-                    kind: if both { DriveKind::Through } else { DriveKind::Rock },
-                    middle_deg: crate::mechanism::four_bar::mobility::wrapped(arc.middle).to_degrees(),
-                    half_width_deg: arc.half_width.to_degrees(),
-                    t1,
-                }
-            }
+        let arc = mobility.arc(circuit);
+        let passes_toggles = || {
+            let on_circuit = |angle, t1| mobility.branch(angle, t1).circuit == circuit;
+            positions.iter().any(|(angle, t1)| *t1 != assembly && on_circuit(*angle, *t1))
+        };
+        Drive {
+            kind: match arc {
+                None if mobility.input == InputRange::None => DriveKind::None,
+                None => DriveKind::Turn,
+                Some(_) if passes_toggles() => DriveKind::Through,
+                Some(_) => DriveKind::Rock,
+            },
+            middle_deg: arc.map_or(0.0, |arc| wrapped(arc.middle).to_degrees()),
+            half_width_deg: arc.map_or(180.0, |arc| arc.half_width.to_degrees()),
+            t1: i64::from(assembly),
         }
     }
 }

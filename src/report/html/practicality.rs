@@ -2,9 +2,9 @@
 
 use super::Extent;
 use super::page::{list, paragraph, section};
-use super::table::{Cell, Column, scrolling, tabulated};
+use super::table::{Cell, Column, tabulated};
 use crate::judge::practicality::clearance::PivotDistance;
-use crate::judge::practicality::sensitivity::Sensitivity;
+use crate::judge::practicality::sensitivity::{Dimension, Sensitivity};
 use crate::judge::practicality::{Build, Practicality, usual_tolerance};
 use crate::record::{Candidate, Record};
 use crate::report::Colour;
@@ -86,20 +86,17 @@ fn joints(distances: &[PivotDistance], hole: f64) -> Markup {
 
 /// Returns the table of each dimension's effect on the path.
 fn sensitivities(felt: &Sensitivity) -> Markup {
-    let rows = felt.dimensions.iter().chain([&felt.ground]).map(|d| {
-        html! {
-            tr {
-                th scope="row" { (d.name) }
-                @for rate in [d.rms, d.worst] { td.n { (significant(rate, 3)) } }
-            }
-        }
-    });
-    let columns = [("dimension", false), ("rms", true), ("most", true)];
+    let columns: [Column<&Dimension>; 2] = [
+        ("rms", true, &|d| Cell::number(None, significant(d.rms, 3))),
+        ("most", true, &|d| Cell::number(None, significant(d.worst, 3))),
+    ];
+    let all = felt.dimensions.iter().chain([&felt.ground]);
+    let rows = all.map(|d| (None, Cell::words(d.name), d));
     html! {
         details {
             summary { "What an error of each dimension does" }
             (paragraph("notes", &shift(felt)))
-            (scrolling("Sensitivities", "tight", &columns, rows))
+            (tabulated(("Sensitivities", "tight"), ("dimension", false), &columns, rows))
         }
     }
 }

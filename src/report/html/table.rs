@@ -10,16 +10,22 @@ use maud::{Markup, Render, html};
 
 /// A cell: its text, and the number by which it is sorted.
 #[derive(Default)]
-pub(super) struct Cell {
-    text: String,
-    value: Option<f64>,
-    class: Option<&'static str>,
+pub(in crate::report) struct Cell {
+    pub(in crate::report) text: String,
+    pub(in crate::report) value: Option<f64>,
+    /// The class of its element; words have none.
+    pub(in crate::report) class: Option<&'static str>,
 }
 
 impl Cell {
-    /// Returns a cell with a number, right-aligned.
-    pub(super) fn number(value: f64, text: impl Into<String>) -> Self {
-        Cell { text: text.into(), value: Some(value).filter(|v| v.is_finite()), class: Some("n") }
+    /// Returns a cell with a number, right-aligned; the number may be missing.
+    pub(in crate::report) fn number(value: impl Into<Option<f64>>, text: impl Into<String>) -> Self {
+        Cell { text: text.into(), value: value.into().filter(|v| v.is_finite()), class: Some("n") }
+    }
+
+    /// Returns a cell with a whole number.
+    pub(in crate::report) fn whole(value: usize) -> Self {
+        Cell::number(value as f64, value.to_string())
     }
 
     /// Returns a cell with a number with this many significant digits.
@@ -33,7 +39,7 @@ impl Cell {
     }
 
     /// Returns a cell with words.
-    pub(super) fn words(text: impl Into<String>) -> Self {
+    pub(in crate::report) fn words(text: impl Into<String>) -> Self {
         Cell { text: text.into(), ..Cell::default() }
     }
 
@@ -114,12 +120,11 @@ pub(super) fn candidates(record: &Record) -> Markup {
     }
     let measure = record.problem.resolved.measure();
     let ranks = words::minimised(measure);
-    let worst_at = |c: &&Candidate| crate::report::table::worst_at(record, c);
     let columns: [Column<&Candidate>; 12] = [
         ("rms error", true, &|c| Cell::figure(c.error.rms, 4)),
         ("largest", true, &|c| Cell::figure(c.error.max, 4)),
         (if measure == Measure::LargestPart { "deviation at point" } else { "at point" }, true, &|c| {
-            Cell::number(worst_at(c) as f64, worst_at(c).to_string())
+            Cell::whole(crate::report::table::worst_at(record, c))
         }),
         (ranks.map_or("sum of squares", |(head, _)| head), true, &|c| {
             Cell::figure(if measure == Measure::Sum { c.error.sum_sq } else { c.error.objective }, 5)

@@ -30,7 +30,7 @@ impl Lock {
             let opened = File::options().create(true).truncate(false).write(true).open(&path);
             let file = opened.map_err(about(&path))?;
             match file.try_lock() {
-                Ok(()) if stands_at(&file, &path) => return Ok(Lock { path, file }),
+                Ok(()) if leads_to(&file, &path) => return Ok(Lock { path, file }),
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => break,
                 Err(TryLockError::Error(e)) => return Err(about(&path)(e)),
@@ -46,14 +46,14 @@ impl Lock {
     }
 
     /// Returns whether the lock is still the folder's: false if the folder was removed.
-    pub(super) fn stands(&self) -> bool {
-        stands_at(&self.file, &self.path)
+    pub(super) fn is_current(&self) -> bool {
+        leads_to(&self.file, &self.path)
     }
 
     /// Removes the lock file, unless it belongs to another run by now: a folder that was removed may have been created
     /// again. A file that cannot be removed is harmless; the next run takes it over.
     pub(super) fn release(&self) {
-        if self.stands() {
+        if self.is_current() {
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -61,7 +61,7 @@ impl Lock {
 
 /// Returns whether an open file is the one that a path leads to.
 #[cfg(unix)]
-fn stands_at(file: &File, path: &Path) -> bool {
+fn leads_to(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let of = |found: fs::Metadata| (found.dev(), found.ino());
     match (file.metadata(), fs::metadata(path)) {
@@ -72,6 +72,6 @@ fn stands_at(file: &File, path: &Path) -> bool {
 
 /// Returns whether the path exists: on these systems, an open file cannot be removed.
 #[cfg(not(unix))]
-fn stands_at(_: &File, path: &Path) -> bool {
+fn leads_to(_: &File, path: &Path) -> bool {
     path.exists()
 }

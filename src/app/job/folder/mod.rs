@@ -307,7 +307,7 @@ impl ResultsFolder {
     /// # Errors
     /// As [`ResultsFolder::replace`].
     pub fn write(&mut self, files: &[(String, Vec<u8>)]) -> Result<(), FolderError> {
-        if !self.lock.stands() {
+        if !self.lock.is_current() {
             disk::create_folders(&self.path).map_err(about(&self.path))?;
             self.lock = Lock::take(&self.path)?;
         }

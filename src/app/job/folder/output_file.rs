@@ -150,8 +150,7 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
             Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => Err(e.error),
             // Some file systems can only rename.
             Err(e) if fs::symlink_metadata(file.path).is_err() => {
-                e.file.persist(file.path).map_err(|e| e.error)?;
-                Ok(())
+                e.file.persist(file.path).map(drop).map_err(|e| e.error)
             }
             Err(e) => Err(e.error),
         },
@@ -164,9 +163,7 @@ fn write(file: &OutputFile<'_>, there: There, replace: Replace<'_>) -> io::Resul
 
 /// Replaces the file at a path by these bytes.
 pub(super) fn over(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let file = temporary(path, bytes)?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    temporary(path, bytes)?.persist(path).map(drop).map_err(|e| e.error)
 }
 
 /// Creates a temporary file beside a path, with these bytes.

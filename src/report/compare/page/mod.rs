@@ -5,11 +5,12 @@ use super::overlay;
 use super::overlay::Overlay;
 use super::trade_off;
 use super::trade_off::trade_off;
-use super::{Comparison, Ranked, SortKey, strokes, tables};
+use super::{Comparison, Ranked, SortKey, first_few, strokes, tables};
 use crate::record::Candidate;
 use crate::report::canvas::{Canvas, px};
 use crate::report::csv::PARAMETERS;
 use crate::report::html::page::Page;
+use crate::report::html::table::Cell;
 use crate::report::text::{brief, clean, exact};
 use crate::report::words::{defect_names, length_suffix};
 use maud::{Markup, PreEscaped, html};
@@ -32,7 +33,7 @@ impl<'a> Column<'a> {
 
     /// Returns a column with a figure.
     fn figure(head: &'a str, key: SortKey, digits: usize) -> Self {
-        Column::new(head, move |_, row| Cell::of(row.figure_of(key), tables::shown(row, key, digits)))
+        Column::new(head, move |_, row| Cell::number(row.figure_of(key), tables::shown(row, key, digits)))
     }
 
     /// Returns the column with a longer heading for screen readers.
@@ -144,9 +145,9 @@ impl Comparison {
             several => several.iter().map(|key| format!("rank by {}", key.name())).collect(),
         };
         let mut columns = vec![
-            Column::new("behind", |_, row| Cell::of(row.behind_percent, tables::behind(row)))
+            Column::new("behind", |_, row| Cell::number(row.behind_percent, tables::behind(row)))
                 .said("behind the best, per cent"),
-            Column::figure(self.sum_head(), self.first_figure(), 4),
+            Column::figure(self.first_head("sum of squares"), self.first_figure(), 4),
             Column::figure("rms", SortKey::Rms, 4),
             Column::figure("max", SortKey::Max, 4),
             Column::new("at", |_, row| Cell::whole(row.entry.candidate.error.max_at)).said("at which point"),
@@ -154,69 +155,60 @@ impl Comparison {
             Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
             Column::figure("link ratio", SortKey::LinkRatio, 3),
             Column::figure("size", SortKey::Size, 4),
-            Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name())),
-            Column::new("accepted", |_, row| Cell::word(&verdict(&row.entry.candidate))),
+            Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name())),
+            Column::new("accepted", |_, row| Cell::words(verdict(&row.entry.candidate))),
         ];
         let rank = |(k, head)| Column::new(head, move |_, row| Cell::whole(row.ranks[k]));
         columns.extend(ranks.iter().map(String::as_str).enumerate().map(rank));
-        html! {
-            section id="figures" {
-                h2 { "Figures" }
-                (self.sorted("Figures", &columns))
-                p.sub { (front) (unit) }
-            }
-        }
+        self.sorted(("figures", "Figures"), "Figures", &columns, &(front + &unit))
     }
 
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
-        let heads = [self.sum_head(), "rms", "max", "to curve", "transm.", "link ratio", "size"];
+        let heads =
+            [self.first_head("sum of squares"), "rms", "max", "to curve", "transm.", "link ratio", "size"];
         let column = |(head, key): (_, SortKey)| {
             Column::new(head, move |place, row| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();
                 let is_reference = self.reference == Some(place);
                 let shown = || tables::signed_percent(percent);
-                Cell::of(percent, if is_reference { "reference".to_owned() } else { shown() })
+                Cell::number(percent, if is_reference { "reference".to_owned() } else { shown() })
             })
         };
         let columns: Vec<Column> = heads.into_iter().zip(self.shown_figures()).map(column).collect();
-        Some(html! {
-            section id="differences" {
-                h2 { "Above " (clean(reference)) ", per cent of it" }
-                (self.sorted("Differences", &columns))
-                p.sub { "Where the reference's figure is 0 there is no percentage of it." }
-            }
-        })
+        let title = format!("Above {}, per cent of it", clean(reference));
+        let note = "Where the reference's figure is 0 there is no percentage of it.";
+        Some(self.sorted(("differences", "Differences"), &title, &columns, note))
     }
 
     fn parameter_section(&self) -> Markup {
         let mut columns =
-            vec![Column::new("type", |_, row| Cell::word(row.entry.candidate.linkage_type.name()))];
+            vec![Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name()))];
         columns.extend(PARAMETERS.iter().map(|parameter| {
             Column::new(parameter.0, |_, row| {
                 let (value, shown) =
                     tables::parameter(parameter, &row.entry.candidate.linkage, |x| brief(x, 6));
-                Cell::of(Some(value), shown)
+                Cell::number(value, shown)
             })
         }));
+        let note = "A, B fixed pivots; a crank, b coupler, c follower, d and e from its pins C and D to the coupler \
+                    point; t1 and t2 say on which side D and the coupler point lie.";
+        self.sorted(("parameters", "Parameters"), "Parameters", &columns, note)
+    }
+
+    /// Returns the section of a table, with a note below.
+    fn sorted(&self, (id, name): (&str, &str), title: &str, columns: &[Column], note: &str) -> Markup {
         html! {
-            section id="parameters" {
-                h2 { "Parameters" }
-                (self.sorted("Parameters", &columns))
-                p.sub {
-                    "A, B fixed pivots; a crank, b coupler, c follower, d and e from its pins C and D to the coupler \
-                     point; t1 and t2 say on which side D and the coupler point lie."
-                }
+            section id=(id) {
+                h2 { (title) }
+                (self.scrolling(name, columns))
+                p.sub { (note) }
             }
         }
     }
 
-    fn sum_head(&self) -> &'static str {
-        self.minimised().map_or("sum of squares", |(head, _)| head)
-    }
-
     /// Returns a table whose first columns are rank and label; each heading is a button that sorts.
-    fn sorted(&self, name: &str, columns: &[Column]) -> Markup {
+    fn scrolling(&self, name: &str, columns: &[Column]) -> Markup {
         let heads = [("#", Some("rank")), ("linkage", None)];
         let heads = heads.into_iter().chain(columns.iter().map(|column| (column.head, column.said)));
         html! {
@@ -240,9 +232,10 @@ impl Comparison {
                                     }
                                 }
                                 @for column in columns {
-                                    @let Cell { shown, value } = (column.cell)(place, row);
-                                    td class=[value.is_none().then_some("word")] data-value=[value] {
-                                        (clean(&shown))
+                                    @let Cell { text, value, class } = (column.cell)(place, row);
+                                    @let number = class.map(|_| value.map_or(String::new(), exact));
+                                    td class=[class.is_none().then_some("word")] data-value=[number] {
+                                        (clean(&text))
                                     }
                                 }
                             }
@@ -256,7 +249,6 @@ impl Comparison {
 
 /// Returns whether a candidate is accepted, with its defects or with the requirements that it misses.
 fn verdict(candidate: &Candidate) -> String {
-    const NAMED: usize = 3;
     match (candidate.accepted, candidate.defects.is_empty()) {
         (true, true) => return "yes".to_owned(),
         (true, false) => return format!("yes ({})", defect_names(candidate)),
@@ -267,32 +259,7 @@ fn verdict(candidate: &Candidate) -> String {
     let defects = candidate.defects.iter().map(|d| d.name());
     let others: Vec<&str> = defects.filter(|name| !unmet.contains(name)).collect();
     unmet.extend(others);
-    match unmet.len() {
-        0 => "no".to_owned(),
-        n if n > NAMED => format!("no: {} and {} more", unmet[..NAMED].join(", "), n - NAMED),
-        _ => format!("no: {}", unmet.join(", ")),
-    }
-}
-
-/// A cell of a table.
-struct Cell {
-    shown: String,
-    /// The number by which it is sorted, empty if it is missing; words (`None`) are sorted by themselves.
-    value: Option<String>,
-}
-
-impl Cell {
-    fn of(number: Option<f64>, shown: String) -> Cell {
-        Cell { shown, value: Some(number.map_or(String::new(), exact)) }
-    }
-
-    fn whole(number: usize) -> Cell {
-        Cell::of(Some(number as f64), number.to_string())
-    }
-
-    fn word(word: &str) -> Cell {
-        Cell { shown: word.to_owned(), value: None }
-    }
+    if unmet.is_empty() { "no".to_owned() } else { format!("no: {}", first_few(&unmet)) }
 }
 
 fn star(row: &Ranked) -> Markup {

@@ -19,7 +19,7 @@ use crate::task::Problem;
 ///
 /// ```
 /// use linkwright::AssemblyMode;
-/// use linkwright::internals::app::published::linkage_of;
+/// use linkwright::internals::app::suite::published::linkage_of;
 /// let vector = [4.0, 1.0, 3.0, 3.0, 1.5, 2.0, 5.0, 6.0, 0.0];
 /// let l = linkage_of(&vector, AssemblyMode::Plus).expect("four links and a point");
 /// assert_eq!((l.follower_pivot().re, l.crank(), l.crank_side()), (9.0, 1.0, 2.5));

@@ -1,6 +1,6 @@
 //! Measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked.
 
-use crate::app::given::{Chosen, Given, Run};
+use crate::app::inputs::{Chosen, Given, Run};
 use crate::files::diagnostic::escaped;
 use crate::files::linkage_file::LinkageFile;
 use crate::files::problem_file::ProblemFile;
@@ -114,8 +114,8 @@ impl Target {
 
     fn at(&self, linkage: &FourBar, crank_deg: &[f64], t1_at: &[AssemblyMode]) -> Option<Candidate> {
         let n = self.problem.task().len();
-        let positions = crank_deg.len() == n && t1_at.len() == n;
-        if positions { assess(&self.problem, linkage, crank_deg, t1_at) } else { None }
+        let has_all = crank_deg.len() == n && t1_at.len() == n;
+        has_all.then(|| assess(&self.problem, linkage, crank_deg, t1_at)).flatten()
     }
 }
 
