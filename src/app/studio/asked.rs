@@ -2,12 +2,10 @@
 
 use super::messages::{Ask, Known};
 use crate::files::diagnostic::Diagnostic;
-use crate::files::problem_file;
-use crate::files::problem_file::ProblemFile;
+use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::requirement::RequirementKind;
-use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
-use crate::task::{AngleOffset, TaskError};
+use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::{AngleOffset, PathTask, TaskError};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -92,42 +90,34 @@ fn without_line(Diagnostic { message, help, .. }: &Diagnostic) -> String {
     help.as_ref().map_or_else(|| message.clone(), |help| format!("{message}: {help}"))
 }
 
-/// The tables of a problem file in the order in which they are written, each with its keys: the key of an [`Ask`] and that
-/// of the file.
-const TABLES: [(&str, &[(&str, &str)]); 6] = [
-    ("", &[("name", "name"), ("source", "source"), ("unit", "unit")]),
-    (
-        "task.path",
-        &[
-            ("points", "points"),
-            ("closed", "closed"),
-            ("raw.smooth", "smooth"),
-            ("raw.samples", "samples"),
-            ("tolerances", "tolerance"),
-            ("tolerance", "tolerance"),
-            ("weights", "weight"),
-        ],
-    ),
-    ("task.path.timing", &[("timing.crank_deg", "crank_deg"), ("timing.offset", "offset")]),
+/// The tables of a problem file in the order in which they are written, each with the keys of an edit as the file has
+/// them; a key of a table within the edit is written without that table's name.
+const TABLES: [(&str, &[&str]); 6] = [
+    ("", &["name", "source", "unit"]),
+    ("task.path", &["points", "closed", "raw.smooth", "raw.samples", "tolerance", "weight"]),
+    ("task.path.timing", &["timing.crank_deg", "timing.offset"]),
     ("design", &[]),
     (
         "require",
         &[
-            ("types", "type"),
-            ("transmission_deg_min", "transmission_deg_min"),
-            ("link_ratio_max", "link_ratio_max"),
-            ("pivots_in", "pivots_in"),
-            ("footprint_in", "footprint_in"),
-            ("transmission_over", "transmission_over"),
-            ("order", "order"),
-            ("direction", "direction"),
-            ("circuit", "circuit"),
-            ("branch", "branch"),
-            ("closing", "closing"),
+            "type",
+            "transmission_deg_min",
+            "link_ratio_max",
+            "pivots_in",
+            "footprint_in",
+            "transmission_over",
+            "order",
+            "direction",
+            "circuit",
+            "branch",
+            "closing",
         ],
     ),
-    ("solve", &[("seed", "seed"), ("method", "method"), ("objective", "objective")]),
+    ("solve", &["seed", "method", "objective"]),
 ];
+
+/// The keys of an edit that have other names in a problem file.
+const RENAMED: [(&str, &str); 3] = [("tolerances", "tolerance"), ("weights", "weight"), ("types", "type")];
 
 /// A value as it is typed in problem files, points one a line.
 struct Typed<'a>(&'a toml::Value);
@@ -169,13 +159,12 @@ impl Ask {
     /// `design`, `require` and `solve`.
     pub fn problem_text(&self) -> Result<String, AskError> {
         let kept = self.kept_lines()?;
-        let given = self.as_table()?;
+        let given = toml::Value::Table(self.as_table()?);
         let mut text = String::from("# Drawn in linkwright's studio.\nformat = 1\n");
         for (table, keys) in TABLES {
-            let typed = keys.iter().filter_map(|(asked, key)| {
-                let mut parts = asked.split('.');
-                let first = given.get(parts.next()?)?;
-                let value = parts.try_fold(first, |value, part| value.get(part))?;
+            let typed = keys.iter().filter_map(|path| {
+                let value = path.split('.').try_fold(&given, |value, key| value.get(key))?;
+                let (_, key) = path.rsplit_once('.').unwrap_or(("", path));
                 Some(format!("{key} = {}\n", Typed(value)))
             });
             let kept = kept.iter().filter(|(place, _)| *place == table).map(|(_, line)| line.clone());
@@ -185,30 +174,26 @@ impl Ask {
             }
             text.push_str(&lines);
         }
-        if let Some(expect) = self.expect_text(&text) {
-            text.push_str(&expect);
-        }
+        text.extend(self.expect_text(&text));
         Ok(text)
     }
 
-    /// The edit as data, without values that a problem file need not give.
+    /// Returns the edit under the names of a problem file, without values that a file need not give.
     fn as_table(&self) -> Result<toml::Table, toml::ser::Error> {
-        let raw = self.raw_of_points();
-        let asked = Ask {
-            version: 0,
-            points: raw.map_or(&self.points, |raw| &raw.points).clone(),
-            raw: raw.cloned(),
-            tolerance: self.tolerance.filter(|_| self.tolerances.is_none()),
-            ..self.clone()
-        };
-        let mut table = toml::Table::try_from(&asked)?;
-        if asked.types.is_empty() {
-            table.remove("types");
+        let raw = self.raw_of_points().cloned();
+        let points = raw.as_ref().map_or(&self.points, |raw| &raw.points).clone();
+        let mut table = toml::Table::try_from(Ask { version: 0, points, raw, ..self.clone() })?;
+        for (asked, key) in RENAMED {
+            if let Some(value) = table.remove(asked) {
+                table.insert(key.to_owned(), value);
+            }
         }
-        if asked.timing.is_some_and(|timing| timing.offset == AngleOffset::default())
-            && let Some(timing) = table.get_mut("timing").and_then(toml::Value::as_table_mut)
-        {
-            timing.remove("offset");
+        if self.types.is_empty() {
+            table.remove("type");
+        }
+        let timing = table.get_mut("timing").and_then(toml::Value::as_table_mut);
+        if self.timing.as_ref().is_some_and(|timing| timing.offset == AngleOffset::default()) {
+            timing.map(|timing| timing.remove("offset"));
         }
         Ok(table)
     }
@@ -278,18 +263,14 @@ impl Ask {
     /// # Errors
     /// [`NotHere`] where the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
-        let ProblemSpec { task, design, require, solve } = &problem.spec;
-        let path = &task.path;
+        let ProblemSpec { task: TaskSpec { path }, require, solve, .. } = &problem.spec;
         let n = path.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
             return Err(NotHere::Points(n));
         }
         let all = path.tolerance.as_ref().and_then(|each| each.first().copied());
         let tolerance = all.filter(|all| path.tolerance.iter().flatten().all(|t| t == all));
-        let mut kept = design_lines(design, &problem.spec);
-        kept.extend(solve_lines(solve));
-        let mut ask = Ask {
-            version: 0,
+        let ask = Ask {
             name: problem.name.clone(),
             source: problem.source.clone(),
             unit: problem.unit,
@@ -313,14 +294,11 @@ impl Ask {
             closing: require.closing,
             method: solve.method,
             objective: solve.objective,
-            kept,
+            kept: kept(&problem.spec),
             expect: problem.expect.clone().map(|answer| Known { of: told(&problem.spec), answer }),
             seed: solve.seed,
-            moving: false,
-            fresh: false,
+            ..Ask::default()
         };
-        let others = require_lines(require, &ask);
-        ask.kept.extend(others);
         match ask.problem() {
             Ok(again) if again.expect != problem.expect => {
                 Err(NotHere::Other("what is known of its answer is another when it is read back".into()))
@@ -373,45 +351,37 @@ fn table<T: Serialize>(value: &T) -> toml::Table {
     toml::Table::try_from(value).unwrap_or_default()
 }
 
-/// The bounds that a problem gives, without those that the target gives by itself.
-fn design_lines(design: &DesignSpec, spec: &ProblemSpec) -> BTreeMap<String, String> {
-    let all = table(design);
-    let Ok(task) = spec.task.path.to_task() else { return BTreeMap::new() };
-    let mut usual = DesignSpec::default();
-    usual.resolve(&task);
-    let given: toml::Table = {
-        let usual = table(&usual);
-        all.iter()
-            .filter(|(key, value)| usual.get(*key) != Some(value))
-            .map(|(k, v)| (k.clone(), v.clone()))
-            .collect()
-    };
-    let again = given.clone().try_into::<DesignSpec>().map(|mut again| {
-        again.resolve(&task);
-        again
-    });
-    // Where leaving out what is usual changes something, everything is written.
-    let written = if again.as_ref() == Ok(design) { given } else { all };
-    differing("design", &written, &toml::Table::new())
+/// Returns the keys that a problem gives and the studio has no control for.
+fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
+    let ProblemSpec { task, design, require, solve } = spec;
+    let mut kept = task.path.to_task().map_or_else(
+        |_| BTreeMap::new(),
+        |task| differing("design", &bounds(design, &task), &toml::Table::new()),
+    );
+    let others = [
+        ("require", table(require), table(&RequireSpec::default())),
+        ("solve", table(solve), table(&SolveSpec::default())),
+    ];
+    for (name, mut given, usual) in others {
+        let shown = TABLES.iter().filter(|(table, _)| *table == name).flat_map(|(_, keys)| *keys);
+        given.retain(|key, _| !shown.clone().any(|shown| *shown == key));
+        kept.extend(differing(name, &given, &usual));
+    }
+    kept
 }
 
-/// The requirements that a problem gives and the studio has no control for.
-fn require_lines(require: &RequireSpec, ask: &Ask) -> BTreeMap<String, String> {
-    let shown = table(ask);
-    let mut others = table(require);
-    others.retain(|key, _| key != RequirementKind::Type.name() && !shown.contains_key(key));
-    differing("require", &others, &table(&RequireSpec::default()))
-}
-
-/// What a problem says of the search beside method, objective and seed.
-fn solve_lines(solve: &SolveSpec) -> BTreeMap<String, String> {
-    let default = SolveSpec {
-        method: solve.method,
-        objective: solve.objective,
-        seed: solve.seed,
-        ..SolveSpec::default()
+/// Returns the bounds that a problem gives, without those that the target gives by itself.
+fn bounds(design: &DesignSpec, task: &PathTask) -> toml::Table {
+    let resolved = |mut design: DesignSpec| {
+        design.resolve(task);
+        design
     };
-    differing("solve", &table(solve), &table(&default))
+    let (all, usual) = (table(design), table(&resolved(DesignSpec::default())));
+    let mut given = all.clone();
+    given.retain(|key, value| usual.get(key) != Some(value));
+    // If leaving out the usual bounds changes others, everything is written.
+    let again = given.clone().try_into().map(resolved);
+    if again.as_ref() == Ok(design) { given } else { all }
 }
 
 #[cfg(test)]

@@ -2,14 +2,14 @@
 //! comparisons are made from the record that it belongs to, by the functions that the command line calls.
 
 use super::asked::AskError;
-use super::messages::{Ask, Shown};
-use super::shelf::{Shelf, ShelfError};
+use super::house::House;
+use super::messages::{Ask, Shown, Target};
+use super::shelf::ShelfError;
 use crate::app::given::{Given, Run, Which};
 use crate::app::job::run::Job;
 use crate::app::measured::{NotCompared, compared};
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
-use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
 use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
@@ -17,9 +17,9 @@ use crate::report::compare::{SortKey, UnknownKey};
 use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, export};
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
-use crate::synthesis::errors_without;
-use crate::synthesis::{Budget, Context, SearchOutcome};
+use crate::synthesis::{Budget, Context, SearchOutcome, errors_without};
 use crate::task::Problem;
+use crate::task::spec::{ProblemSpec, TaskSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -81,15 +81,9 @@ pub struct DetailsAsk {
 /// What the report says of a linkage.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Details {
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
+    /// The problem that it was found for.
+    #[serde(flatten)]
+    pub target: Target,
     /// The tolerance at each point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<Vec<f64>>,
@@ -231,8 +225,6 @@ pub(super) enum DetailsError {
     Untrue { name: String, first: Mismatch },
     #[error("{name} has no candidate {rank}: it has {n}")]
     NoRank { name: String, rank: usize, n: usize },
-    #[error("there is no such candidate")]
-    NoCandidate,
     #[error(transparent)]
     Linkage(#[from] LinkageError),
     #[error("`crank_deg` and `t1_at` have one value for each of the {0} points")]
@@ -261,18 +253,17 @@ struct Found {
     index: usize,
 }
 
-/// Where linkages are looked for.
-#[derive(Clone, Copy)]
-pub(super) struct Sources<'a> {
-    pub(super) shelf: &'a Shelf,
-    pub(super) finished: &'a Finished,
+impl Found {
+    fn candidate(&self) -> &Candidate {
+        &self.record.candidates[self.index]
+    }
 }
 
-impl Sources<'_> {
-    fn find(self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
+impl House {
+    fn find(&self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
         match source {
             Source::Job(OfJob { name, rank }) => {
-                let record = self.shelf.record(name)?;
+                let record = self.jobs.shelf.record(name)?;
                 if let Some(first) = verify(&record)?.into_iter().next() {
                     return Err(DetailsError::Untrue { name: name.clone(), first });
                 }
@@ -286,7 +277,7 @@ impl Sources<'_> {
         }
     }
 
-    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
+    fn drawn(&self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
         let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
         let linkage = FourBar::new(drawn.linkage)?;
@@ -297,7 +288,7 @@ impl Sources<'_> {
         let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
         let t1_at = t1_at.ok_or(DetailsError::Assembly)?;
         let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
-        if let Some(record) = self.finished.of(&asked.digest) {
+        if let Some(record) = self.searches.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
@@ -313,30 +304,28 @@ impl Sources<'_> {
             annotate(&problem, candidate);
             candidate.error.to_raw = to_raw(&problem, candidate);
         }
-        Ok(Found { record: by_hand(asked, candidates), index: 0 })
+        // No search ended with it: it was fitted under the hand, and that was ended by hand.
+        let used = vec!["following-the-hand".into()];
+        let record = Record::new(asked, used, Reason::ByHand, Evaluations::default(), candidates);
+        Ok(Found { record, index: 0 })
     }
 
     /// What is known of a linkage.
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
-        let Found { record, index } = self.find(&ask.of, true)?;
-        let words = html::candidate_markup(&record, index).unwrap_or_default();
-        let summary = html::summary_markup(&record);
-        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
-        let path = &record.problem.resolved.task.path;
+    pub(super) fn details(&self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
+        let found = self.find(&ask.of, true)?;
+        let Found { record, index } = &found;
+        let ProblemSpec { task: TaskSpec { path }, require, .. } = &record.problem.resolved;
         Ok(Details {
-            name: record.problem.name.clone(),
-            unit: record.problem.unit,
-            points: path.points.clone(),
-            closed: path.closed,
+            target: Target::from(&record.problem),
             tolerance: path.tolerance.clone(),
-            transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
+            transmission_deg_min: require.transmission_deg_min,
             candidates: record.candidates.len(),
-            shown: Shown::from(candidate),
-            summary,
-            words,
+            shown: Shown::from(found.candidate()),
+            summary: html::summary_markup(record),
+            words: html::candidate_markup(record, *index).unwrap_or_default(),
         })
     }
 
@@ -344,22 +333,22 @@ impl Sources<'_> {
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
+    pub(super) fn file(&self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
         let plain = ["html", "sheet", "points"].contains(&ask.format.as_str());
         if plain && !ask.set.is_empty() {
             return Err(DetailsError::NoSettings(ask.format.clone()));
         }
-        let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
-        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
+        let found = self.find(&ask.of, ask.format == "html")?;
+        let Found { record, index } = &found;
         Ok(match ask.format.as_str() {
-            "html" => Handed::saved("html", html::report_html(&record, index)),
-            "sheet" => Handed::saved("svg", svg::candidate_svg(&record, index)),
-            "points" => Handed::saved("csv", csv::candidate_curve_csv(candidate)),
+            "html" => Handed::saved("html", html::report_html(record, *index)),
+            "sheet" => Handed::saved("svg", svg::candidate_svg(record, *index)),
+            "points" => Handed::saved("csv", csv::candidate_curve_csv(found.candidate())),
             other => {
                 let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
                 let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
-                let subject = Subject::of_candidate(&record, candidate);
+                let subject = Subject::of_candidate(record, found.candidate());
                 let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
                 Handed::saved(ending_of(format), bytes)
             }
@@ -370,7 +359,7 @@ impl Sources<'_> {
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
+    pub(super) fn compared(&self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
         if ask.of.is_empty() || ask.of.len() > MOST_COMPARED {
             return Err(DetailsError::HowMany);
         }
@@ -380,7 +369,7 @@ impl Sources<'_> {
             // With costs: they are worked out again where the record is proved.
             let Found { record, index } = self.find(source, true)?;
             let named = match source {
-                Source::Job(of) => self.shelf.folder().join(&of.name).display().to_string(),
+                Source::Job(of) => self.jobs.shelf.folder.join(&of.name).display().to_string(),
                 Source::Drawn(_) => format!("drawing {}", i + 1),
             };
             let run = Run { named, record, which: Which::Rank(index + 1) };
@@ -415,12 +404,6 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
     let budget = Budget::new(&cancel, Some(PATIENCE_S));
     errors_without::attach(Context::new(problem, &budget), &mut outcome);
     outcome.candidates
-}
-
-/// The record of a linkage that no search ended with: it was fitted under the hand, and that was ended by hand.
-fn by_hand(problem: ProblemRecord, candidates: Vec<Candidate>) -> Record {
-    let used = vec!["following-the-hand".into()];
-    Record::new(problem, used, Reason::ByHand, Evaluations::default(), candidates)
 }
 
 /// The ending of the files of a format.

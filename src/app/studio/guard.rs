@@ -6,7 +6,6 @@ use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use std::fmt::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -17,14 +16,14 @@ const BURST: f64 = 300.0;
 /// The longest time that a request may take, its body included.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Where a tab's WebSocket is.
+/// The path of a tab's WebSocket.
 pub(super) const LIVE: &str = "/live";
 /// The largest body and the largest message, bytes.
 pub(super) const MOST_BYTES: usize = 256 * 1024;
 
 /// What lets a browser in.
 pub(super) struct Guard {
-    port: u16,
+    pub(super) port: u16,
     /// The token of the address that is printed; taken by the first who brings it.
     token: Mutex<Option<String>>,
     /// What the cookie holds.
@@ -60,11 +59,7 @@ impl Bucket {
 fn random() -> Result<String, getrandom::Error> {
     let mut bytes = [0u8; 32];
     getrandom::fill(&mut bytes)?;
-    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    }))
+    Ok(bytes.map(|byte| format!("{byte:02x}")).concat())
 }
 
 /// Whether two secrets are equal, in a time that does not tell where they differ.
@@ -143,11 +138,13 @@ impl Guard {
     /// Why a request is refused before anything is done for it.
     fn refusal(&self, request: &Request) -> Option<(StatusCode, &'static str)> {
         let headers = request.headers();
-        let upgrade = request.uri().path() == LIVE;
+        let live = request.uri().path() == LIVE;
         let bucket = if self.knows(headers) { &self.known } else { &self.strangers };
-        if !self.is_for_us(headers) {
+        if headers.contains_key(header::UPGRADE) && !live {
+            Some((StatusCode::BAD_REQUEST, "there is nothing to upgrade here\n"))
+        } else if !self.is_for_us(headers) {
             Some((StatusCode::MISDIRECTED_REQUEST, "the studio answers to 127.0.0.1 alone\n"))
-        } else if !self.is_from_us(headers, upgrade || request.method() != Method::GET) {
+        } else if !self.is_from_us(headers, live || request.method() != Method::GET) {
             Some((StatusCode::FORBIDDEN, "only the studio's own page may ask\n"))
         } else if announced(headers) > MOST_BYTES as u64 {
             Some((StatusCode::PAYLOAD_TOO_LARGE, "this is more than the studio reads\n"))

@@ -1,6 +1,6 @@
 //! What is said of jobs, as JSON; the schemas are made from these types.
 
-use super::messages::{Ask, Shown};
+use super::messages::{Ask, Shown, Target};
 use crate::files::problem_file::ProblemFile;
 use crate::mechanism::Unit;
 use crate::record::{Candidate, ProblemRecord, Record};
@@ -187,15 +187,9 @@ pub struct Opened {
     /// Why it cannot, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
+    /// The problem.
+    #[serde(flatten)]
+    pub target: Target,
     /// The candidates, better first.
     pub candidates: Vec<Shown>,
     /// The names of the result's files.
@@ -206,13 +200,13 @@ impl Opened {
     /// Opens a record; `files` are the names of its result's files.
     pub(super) fn new(record: Record, files: Vec<String>) -> Opened {
         let candidates = record.candidates.iter().map(Shown::from).collect();
+        let target = Target::from(&record.problem);
         let ProblemRecord { name, source, unit, resolved: spec, .. } = record.problem;
-        let (points, closed) = (spec.task.path.points.clone(), spec.task.path.closed);
         let file = ProblemFile { name, source, unit, spec, expect: None, warnings: Vec::new() };
         let (ask, why_not) = match Ask::of(&file) {
             Ok(ask) => (Some(ask), None),
             Err(why) => (None, Some(why.to_string())),
         };
-        Opened { ask, why_not, name: file.name, unit, points, closed, candidates, files }
+        Opened { ask, why_not, target, candidates, files }
     }
 }

@@ -7,21 +7,19 @@
 //! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
 use super::asked::{AskError, MOST_POINTS};
-use super::job_messages::{JobAsk, JobProgress};
+use super::job_messages::{JobAsk, JobProgress, JobShown, JobState};
 use super::shelf::{Shelf, ShelfError};
-use crate::app::job::folder::{FolderError, is_in_use, replace_file};
+use super::tab::BUG;
+use crate::app::job::folder::{is_in_use, replace_file};
 use crate::app::job::run::Job;
-use crate::app::job::save;
-use crate::app::job::save::{Listener, Options, Ran, SaveError};
-use crate::files::name;
-use crate::files::name::NameError;
-use crate::files::problem_file;
-use crate::files::problem_file::ProblemFile;
+use crate::app::job::save::{self, Listener, Options, Ran};
+use crate::files::name::{self, NameError};
+use crate::files::problem_file::{self, ProblemFile};
 use crate::report::text::at_most;
 use crate::synthesis::Progress;
 use crate::task::Problem;
 use std::collections::BTreeMap;
-use std::io;
+use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,8 +30,8 @@ use std::time::{Duration, Instant};
 pub(super) const MOST_JOBS: usize = 16;
 /// Reasons of failed jobs that are kept.
 const MOST_FAILED: usize = 64;
-/// Where the problems of running jobs stand.
-const STARTED: &str = ".studio";
+/// The folder of the problems of running jobs.
+pub(super) const STARTED: &str = ".studio";
 /// How much lower than usual the priority of a job's threads is.
 const NICE: i32 = 10;
 
@@ -65,29 +63,16 @@ pub(super) enum Refusal {
     #[error("{MOST_JOBS} jobs are running: wait for one or stop it")]
     TooMany,
     #[error("the job cannot begin: {0}")]
-    NotBegun(#[from] JobError),
+    NotBegun(Failure),
 }
 
-/// Why a job failed.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum JobError {
-    #[error("no threads to search with: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error(transparent)]
-    Save(#[from] SaveError),
-    #[error(transparent)]
-    System(#[from] io::Error),
-    #[error(transparent)]
-    Json(#[from] serde_json::Error),
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    #[error("this is a bug of linkwright: please report it")]
-    Bug,
-}
+/// The reason why a job failed, whatever it was: it is only shown.
+pub(super) type Failure = Box<dyn Error + Send + Sync>;
 
 /// All jobs of a studio.
 pub(super) struct Jobs {
-    shelf: Shelf,
+    /// The folder of the results.
+    pub(super) shelf: Shelf,
     running: Mutex<Running>,
     ended: Condvar,
 }
@@ -131,18 +116,18 @@ impl OneJob {
         told.progress = Some(progress.clone());
     }
 
-    /// Whether it was told to stop.
-    pub(super) fn is_stopping(&self) -> bool {
-        self.cancel.load(Ordering::SeqCst)
+    /// Returns how it is shown.
+    pub(super) fn shown(&self, name: &str) -> JobShown {
+        let said = match &*self.told().said {
+            _ if self.cancel.load(Ordering::SeqCst) => "Stopping; what was found is being saved.".to_owned(),
+            "" => "Searching.".to_owned(),
+            said => said.to_owned(),
+        };
+        JobShown { progress: self.progress(), ..JobShown::new(name, JobState::Running, said, false) }
     }
 
-    /// What it has said of itself.
-    pub(super) fn said(&self) -> String {
-        self.told().said.clone()
-    }
-
-    /// Where it stands; `None` before its search has begun.
-    pub(super) fn progress(&self) -> Option<JobProgress> {
+    /// Returns how far it is; `None` before its search has begun.
+    fn progress(&self) -> Option<JobProgress> {
         let told = self.told();
         let progress = told.progress.as_ref()?;
         let elapsed_s = self.begun.elapsed().as_secs_f64();
@@ -192,11 +177,6 @@ impl Jobs {
         Jobs { shelf: Shelf::new(folder), running: Mutex::default(), ended: Condvar::new() }
     }
 
-    /// What the folder holds.
-    pub(super) fn shelf(&self) -> &Shelf {
-        &self.shelf
-    }
-
     fn running(&self) -> MutexGuard<'_, Running> {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -208,7 +188,7 @@ impl Jobs {
     }
 
     fn started(&self, name: &str) -> (PathBuf, String) {
-        (self.shelf.folder().join(STARTED), format!("{name}.json"))
+        (self.shelf.folder.join(STARTED), format!("{name}.json"))
     }
 
     /// The problem of a job that was begun and has not ended.
@@ -275,7 +255,7 @@ impl Jobs {
             if running.jobs.contains_key(&name) {
                 return Err(Refusal::Running(name));
             }
-            if is_in_use(&self.shelf.folder().join(&name)) {
+            if is_in_use(&self.shelf.folder.join(&name)) {
                 return Err(Refusal::InUse(name));
             }
             if running.jobs.len() >= MOST_JOBS {
@@ -284,19 +264,18 @@ impl Jobs {
             running.failed.remove(&name);
             running.jobs.insert(name.clone(), Arc::clone(&one));
         }
+        let jobs = Arc::clone(self);
         let begun = self.keep(&name, ask).and_then(|()| {
-            let (jobs, one) = (Arc::clone(self), Arc::clone(&one));
             let work = move || jobs.work(&job, options, &one);
             Ok(std::thread::Builder::new().name("job".into()).spawn(work)?)
         });
-        if let Err(why) = begun {
+        begun.map(drop).map_err(|why| {
             self.over(&name, Some(&why));
-            return Err(why.into());
-        }
-        Ok(())
+            Refusal::NotBegun(why)
+        })
     }
 
-    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), JobError> {
+    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), Failure> {
         let Some(ask) = ask else { return Ok(()) };
         let (folder, file) = self.started(name);
         std::fs::create_dir_all(&folder)?;
@@ -305,10 +284,10 @@ impl Jobs {
 
     fn work(&self, job: &Job, options: Options, one: &OneJob) {
         let ran = catch_unwind(AssertUnwindSafe(|| self.run(job, options, one)));
-        self.over(&job.name, ran.unwrap_or(Err(JobError::Bug)).err().as_ref());
+        self.over(&job.name, ran.unwrap_or_else(|_| Err(BUG.into())).err().as_ref());
     }
 
-    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), JobError> {
+    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), Failure> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| stand_back());
         let pool = pool.build()?;
@@ -319,7 +298,7 @@ impl Jobs {
             },
             tell: &|text| one.told().said = text.into(),
         };
-        let place = self.shelf.folder().join(&job.name);
+        let place = self.shelf.folder.join(&job.name);
         let run = || save::run(job, &place, options, listener, &one.cancel, one.begun);
         if let Ran::Written(written) = pool.install(run)? {
             for put in save::put_in_place(vec![written]) {
@@ -330,7 +309,7 @@ impl Jobs {
     }
 
     /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
-    fn over(&self, name: &str, failed: Option<&JobError>) {
+    fn over(&self, name: &str, failed: Option<&Failure>) {
         if failed.is_none() {
             let (folder, file) = self.started(name);
             // What cannot be taken away shows the job as broken off, and it can be taken up to its end.

@@ -1,11 +1,10 @@
 //! The list of jobs: those that run and all results of the folder, as they are shown.
 
 use super::job_messages::{JobList, JobShown, JobState};
-use super::jobs::Jobs;
+use super::jobs::{Jobs, STARTED};
+use super::shelf::names_in;
 use crate::files::name;
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 
 /// The most jobs in a list.
 const MOST_LISTED: usize = 500;
@@ -15,12 +14,9 @@ impl Jobs {
     pub(super) fn list(&self) -> JobList {
         let (running, failed) = self.now();
         let mut names: BTreeSet<String> = running.keys().chain(failed.keys()).cloned().collect();
-        names.extend(names_in(self.shelf().folder()));
-        names.extend(
-            names_in(&self.shelf().folder().join(".studio"))
-                .iter()
-                .filter_map(|name| name.strip_suffix(".json").map(str::to_owned)),
-        );
+        names.extend(names_in(&self.shelf.folder));
+        let begun = names_in(&self.shelf.folder.join(STARTED));
+        names.extend(begun.iter().filter_map(|file| file.strip_suffix(".json")).map(str::to_owned));
         names.retain(|name| name::check(name).is_ok());
         let mut jobs = Vec::new();
         let mut more = 0;
@@ -31,23 +27,17 @@ impl Jobs {
                 jobs.extend(self.one(&name));
             }
         }
-        JobList { folder: self.shelf().folder().display().to_string(), jobs, more }
+        JobList { folder: self.shelf.folder.display().to_string(), jobs, more }
     }
 
     /// One job; `None` where there is none of that name.
     pub(super) fn one(&self, name: &str) -> Option<JobShown> {
         let (running, failed) = self.now();
         if let Some(job) = running.get(name) {
-            let said = match (job.is_stopping(), job.said()) {
-                (true, _) => "Stopping; what was found is being saved.".to_owned(),
-                (false, said) if said.is_empty() => "Searching.".to_owned(),
-                (false, said) => said,
-            };
-            let shown = JobShown::new(name, JobState::Running, said, false);
-            return Some(JobShown { progress: job.progress(), ..shown });
+            return Some(job.shown(name));
         }
         let begun = self.begun(name).is_some();
-        let shown = self.shelf().shown(name, begun).or_else(|| {
+        let shown = self.shelf.shown(name, begun).or_else(|| {
             let said = "The studio ended before it did. It can go on from the beginning.".to_owned();
             begun.then(|| JobShown::new(name, JobState::BrokenOff, said, true))
         });
@@ -59,9 +49,4 @@ impl Jobs {
             }
         }
     }
-}
-
-fn names_in(folder: &Path) -> Vec<String> {
-    let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
-    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
 }

@@ -1,16 +1,13 @@
 //! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
 
 use crate::files::problem_file::Expect;
-use crate::judge::assess::assess;
-use crate::mechanism::Unit;
-use crate::mechanism::{LinkageType, NaturalCoordinates};
-use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation};
+use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
+use crate::record::{Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
-use crate::task::Problem;
 use crate::task::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec,
-    TransmissionOver,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, PathSpec, RawPoints,
+    TimingSpec, TransmissionOver,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -237,14 +234,8 @@ pub struct Shown {
 }
 
 impl Shown {
-    /// A real linkage through nine points, judged; `None` where it cannot be.
-    pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
-        let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
-        Some(Shown::judged(&judged, rank, linkage))
-    }
-
-    /// A real linkage through nine points that is judged already.
-    pub(super) fn judged(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+    /// Returns a real linkage through nine points that is judged.
+    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
         Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
@@ -274,6 +265,27 @@ impl From<&Candidate> for Shown {
             ability: None,
             certified_within: candidate.certified.map(|certified| certified.radius),
         }
+    }
+}
+
+/// The target of a problem, with its name.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Target {
+    /// The problem's name.
+    pub name: String,
+    /// The label of lengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+}
+
+impl From<&ProblemRecord> for Target {
+    fn from(ProblemRecord { name, unit, resolved, .. }: &ProblemRecord) -> Target {
+        let PathSpec { points, closed, .. } = &resolved.task.path;
+        Target { name: name.clone(), unit: *unit, points: points.clone(), closed: *closed }
     }
 }
 

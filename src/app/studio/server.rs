@@ -1,7 +1,7 @@
 //! Routes, the page, the WebSocket.
 
 use super::connection::Limited;
-use super::guard::{Guard, LIVE, MOST_BYTES, guarded};
+use super::guard::{Guard, MOST_BYTES, guarded};
 use super::house::{House, content};
 use super::jobs::Jobs;
 use super::messages::Ask;
@@ -12,7 +12,7 @@ use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
-use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -59,7 +59,6 @@ pub enum StudioError {
 pub struct Studio {
     runtime: Runtime,
     listener: TcpListener,
-    port: u16,
     house: Arc<House>,
 }
 
@@ -86,18 +85,13 @@ impl Studio {
             tabs: Arc::new(Semaphore::new(MOST_TABS)),
             closing: watch::Sender::new(false),
         };
-        Ok(Studio { runtime, listener, port, house: Arc::new(house) })
+        Ok(Studio { runtime, listener, house: Arc::new(house) })
     }
 
-    /// The port.
-    pub fn port(&self) -> u16 {
-        self.port
-    }
-
-    /// The address to open, with the token that lets one browser in.
+    /// Returns the address to open, with the token that lets one browser in.
     pub fn address(&self) -> String {
-        let token = self.house.guard.token().unwrap_or_default();
-        format!("http://127.0.0.1:{}/?token={token}", self.port)
+        let guard = &self.house.guard;
+        format!("http://127.0.0.1:{}/?token={}", guard.port, guard.token().unwrap_or_default())
     }
 
     /// Answers until `end` is set; then tells the tabs, stops their searches and returns.
@@ -105,7 +99,7 @@ impl Studio {
     /// # Errors
     /// [`StudioError::System`] where the server breaks down.
     pub fn serve(self, end: &AtomicBool) -> Result<(), StudioError> {
-        let Studio { runtime, listener, house, .. } = self;
+        let Studio { runtime, listener, house } = self;
         let (closing, jobs) = (house.closing.clone(), Arc::clone(&house.jobs));
         let app = router(house);
         let served = runtime.block_on(async {
@@ -142,16 +136,7 @@ fn router(house: Arc<House>) -> Router {
         .fallback(|| async { (StatusCode::NOT_FOUND, "there is no such page\n") })
         .layer(DefaultBodyLimit::max(MOST_BYTES))
         .layer(from_fn_with_state(guard, guarded))
-        .layer(from_fn(no_upgrade_elsewhere))
         .with_state(house)
-}
-
-/// An upgrade to anything is answered at one place alone.
-async fn no_upgrade_elsewhere(request: Request, next: Next) -> Response {
-    if request.headers().contains_key(header::UPGRADE) && request.uri().path() != LIVE {
-        return (StatusCode::BAD_REQUEST, "there is nothing to upgrade here\n").into_response();
-    }
-    next.run(request).await
 }
 
 /// Lets in whoever brings the cookie; the page itself lets in whoever brings the token.
