@@ -1,14 +1,14 @@
-//! Long searches: begun, watched, stopped, taken up again. Each runs as `linkwright synth` runs it, by
-//! [`save`], into a folder of its own.
+//! Runs long searches as jobs: begins, watches and stops them, and takes them up again. Each runs as `linkwright synth`
+//! runs it, by [`save`], into a folder of its own.
 //!
 //! Every job has as many threads as there are cores, all of low priority, so that jobs share the cores evenly, one
-//! that is alone has them all, and the hand's own answers come first. What is kept of a job in memory is where it
-//! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
+//! that is alone has them all, and the hand's own answers come first. Memory holds only the progress of a job;
+//! everything else is read from its folder. The problem of a job that runs is in `.studio/NAME.json`
 //! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
 use super::asked::{AskError, MOST_POINTS};
 use super::job_messages::{JobAsk, JobProgress, JobShown, JobState};
-use super::shelf::{Shelf, ShelfError};
+use super::shelf::{Shelf, ShelfError, plain_file};
 use super::tab::BUG;
 use crate::app::job::folder::{is_in_use, replace_file};
 use crate::app::job::run::Job;
@@ -32,13 +32,13 @@ pub(super) const MOST_JOBS: usize = 16;
 const MOST_FAILED: usize = 64;
 /// The folder of the problems of running jobs.
 pub(super) const STARTED: &str = ".studio";
-/// How much lower than usual the priority of a job's threads is.
+/// The niceness of a job's threads, above the usual.
 const NICE: i32 = 10;
 
-/// Why something is not done with a job.
+/// The reason why something is not done with a job.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Refusal {
-    /// There is none of this name.
+    /// No job has this name.
     #[error("there is no job named {0}")]
     Absent(String),
     #[error("no job named {0} is running")]
@@ -147,7 +147,7 @@ impl OneJob {
 }
 
 impl JobAsk {
-    /// The problem that is asked.
+    /// Returns the problem that is asked.
     ///
     /// # Errors
     /// [`AskError`].
@@ -172,7 +172,7 @@ impl JobAsk {
 }
 
 impl Jobs {
-    /// The jobs whose results stand in `folder`.
+    /// Creates the jobs whose results are in `folder`.
     pub(super) fn new(folder: &Path) -> Self {
         Jobs { shelf: Shelf::new(folder), running: Mutex::default(), ended: Condvar::new() }
     }
@@ -181,7 +181,7 @@ impl Jobs {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The jobs that run now, and why others failed.
+    /// Returns the jobs that run now, and the reasons why others failed.
     pub(super) fn now(&self) -> (BTreeMap<String, Arc<OneJob>>, BTreeMap<String, String>) {
         let running = self.running();
         (running.jobs.clone(), running.failed.clone())
@@ -191,14 +191,14 @@ impl Jobs {
         (self.shelf.folder.join(STARTED), format!("{name}.json"))
     }
 
-    /// The problem of a job that was begun and has not ended.
+    /// Returns the problem of a job that was begun and has not ended.
     pub(super) fn begun(&self, name: &str) -> Option<JobAsk> {
+        name::check(name).ok()?;
         let (folder, file) = self.started(name);
-        let text = std::fs::read(folder.join(file)).ok()?;
-        serde_json::from_slice(&text).ok()
+        serde_json::from_slice(&plain_file(&folder.join(file))?).ok()
     }
 
-    /// Begins a job; its name.
+    /// Begins a job and returns its name.
     ///
     /// # Errors
     /// [`Refusal`].
@@ -236,7 +236,7 @@ impl Jobs {
     /// Stops a job: its threads end at once, its best so far is saved.
     ///
     /// # Errors
-    /// [`Refusal::Absent`] where no such job runs.
+    /// [`Refusal::NotRunning`] if no such job runs.
     pub(super) fn cancel(&self, name: &str) -> Result<(), Refusal> {
         let job = self.running().jobs.get(name).cloned();
         job.ok_or_else(|| Refusal::NotRunning(name.to_owned()))?.cancel.store(true, Ordering::SeqCst);
@@ -308,11 +308,11 @@ impl Jobs {
         Ok(())
     }
 
-    /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
+    /// Notes that a job has ended. One that has failed keeps its problem, so that it can be taken up.
     fn over(&self, name: &str, failed: Option<&Failure>) {
         if failed.is_none() {
             let (folder, file) = self.started(name);
-            // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
+            // If the file stays, the job is shown as broken off, and can be taken up to its end.
             let _ = std::fs::remove_file(folder.join(file));
         }
         let mut running = self.running();

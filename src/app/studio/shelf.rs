@@ -1,5 +1,5 @@
-//! What the folder of results holds: read anew for every list, whoever made it. Nothing outside of it is read, links
-//! lead nowhere.
+//! Reads the folder of results, anew for every list, whoever wrote to it. Nothing outside of it is read, and no link is
+//! followed.
 
 use super::job_messages::{JobResult, JobShown, JobState};
 use crate::app::job::folder::{
@@ -14,17 +14,17 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
-/// The largest file of a result that is handed out.
+/// The largest file that is read whole, bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// A folder of results.
 pub(super) struct Shelf {
     pub(super) folder: PathBuf,
-    /// What was read of each record, as long as its file is the same.
+    /// The reading of each record, kept as long as its file is the same.
     read: Mutex<BTreeMap<String, (Stamp, Reading)>>,
 }
 
-/// Why a result has no record that can be read.
+/// The reason why a result has no record that can be read.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ShelfError {
     #[error("there is no result named {0}")]
@@ -57,19 +57,19 @@ impl Shelf {
         Shelf { folder: folder.to_path_buf(), read: Mutex::default() }
     }
 
-    /// The folder of a result, where there is one.
+    /// Returns the folder of a result, if there is one.
     pub(super) fn place(&self, name: &str) -> Option<PathBuf> {
         name::check(name).ok()?;
         let place = self.folder.join(name);
         is_folder(&place).then_some(place)
     }
 
-    /// Whether there is anything of that name.
+    /// Returns whether there is anything of that name.
     pub(super) fn holds(&self, name: &str) -> bool {
         fs::symlink_metadata(self.folder.join(name)).is_ok()
     }
 
-    /// The record of a result.
+    /// Returns the record of a result.
     ///
     /// # Errors
     /// [`ShelfError`].
@@ -81,16 +81,12 @@ impl Shelf {
         Ok(read_record(&place)?)
     }
 
-    /// A file of a result; `None` where it has none of that name.
+    /// Returns a file of a result; `None` if it has none of that name.
     pub(super) fn file(&self, name: &str, file: &str) -> Option<Vec<u8>> {
-        let place = self.place(name).filter(|_| is_result_file(file))?.join(file);
-        if !fs::symlink_metadata(&place).ok()?.is_file() {
-            return None;
-        }
-        read_at_most(&place, MOST_BYTES).ok()?
+        plain_file(&self.place(name).filter(|_| is_result_file(file))?.join(file))
     }
 
-    /// The names of a result's files, sorted.
+    /// Returns the names of a result's files, sorted.
     pub(super) fn files(&self, name: &str) -> Vec<String> {
         let mut names = self.place(name).map_or_else(Vec::new, |place| names_in(&place));
         names.retain(|name| is_result_file(name));
@@ -164,6 +160,14 @@ impl Shelf {
 pub(super) fn names_in(folder: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect()
+}
+
+/// Returns the bytes of a file; `None` if it is a link, no file or too large.
+pub(super) fn plain_file(path: &Path) -> Option<Vec<u8>> {
+    if !fs::symlink_metadata(path).ok()?.is_file() {
+        return None;
+    }
+    read_at_most(path, MOST_BYTES).ok()?
 }
 
 fn is_folder(path: &Path) -> bool {
