@@ -1,4 +1,4 @@
-//! What a tab asks as the text of a problem file, and a problem file as what a tab asks.
+//! Converts a tab's edit to the text of a problem file, and a problem file to an edit.
 
 use super::messages::{Ask, Known};
 use crate::files::diagnostic::Diagnostic;
@@ -12,12 +12,12 @@ use std::fmt::{self, Display};
 
 /// The most points of a target in the studio.
 pub const MOST_POINTS: usize = 1000;
-/// The most points that are carried along as what the target was smoothed or resampled from.
+/// The most digitised points that are carried along with the target that was made from them.
 const MOST_RAW: usize = 2000;
-/// The fewest.
+/// The fewest points of a target in the studio.
 const FEWEST_POINTS: usize = 3;
 
-/// Why a problem cannot be opened in the studio.
+/// The reason why a problem cannot be opened in the studio.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotHere {
     /// Too few points or too many.
@@ -26,7 +26,7 @@ pub enum NotHere {
          synth`, or write `samples = 60` in [task.path] to take that many along it"
     )]
     Points(usize),
-    /// The problem is not the same when it is read back from what the studio would ask.
+    /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
 }
@@ -46,10 +46,10 @@ pub enum AskError {
     /// The seed is too large for a problem file.
     #[error("the seed is at most {}", i64::MAX)]
     Seed,
-    /// A key is kept that is under none of `design`, `require` and `solve`.
+    /// A kept key is under another table than `design`, `require` and `solve`.
     #[error("{0:.60} cannot be kept: keys under design, require and solve can")]
     KeptKey(String),
-    /// A key is kept with a text that is no single value.
+    /// The text of a kept key is not a single value.
     #[error("{key} is kept with a value that is none of a problem file: {text:.60}")]
     KeptValue {
         /// The key.
@@ -119,7 +119,7 @@ const TABLES: [(&str, &[&str]); 6] = [
 /// The keys of an edit that have other names in a problem file.
 const RENAMED: [(&str, &str); 3] = [("tolerances", "tolerance"), ("weights", "weight"), ("types", "type")];
 
-/// A value as it is typed in problem files, points one a line.
+/// Writes a value as it is typed in problem files, points one a line.
 struct Typed<'a>(&'a toml::Value);
 
 impl Display for Typed<'_> {
@@ -143,7 +143,7 @@ impl Display for Typed<'_> {
     }
 }
 
-/// One value of TOML, written anew: a text that holds more than one, or none, is refused.
+/// Writes one value of TOML anew; a text that is not exactly one value is refused.
 fn one_value(key: &str, text: &str) -> Result<String, AskError> {
     let parsed: Result<toml::Table, _> = format!("value = {text}").parse();
     let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
@@ -152,10 +152,10 @@ fn one_value(key: &str, text: &str) -> Result<String, AskError> {
 }
 
 impl Ask {
-    /// The text of the problem file that asks the same.
+    /// Returns the text of the problem file that asks the same.
     ///
     /// # Errors
-    /// [`AskError`] where a part of it cannot be written there, as of [`kept`](Ask::kept) any but keys and values under
+    /// [`AskError`] if a part of it cannot be written there: of [`kept`](Ask::kept) everything but keys and values under
     /// `design`, `require` and `solve`.
     pub fn problem_text(&self) -> Result<String, AskError> {
         let kept = self.kept_lines()?;
@@ -198,7 +198,7 @@ impl Ask {
         Ok(table)
     }
 
-    /// What is known of the answer, where `text` asks the problem that it is known of.
+    /// Returns the table of the known answer if `text` asks the problem that it belongs to.
     fn expect_text(&self, text: &str) -> Option<String> {
         let known = self.expect.as_ref()?;
         let asked = problem_file::parse("drawing", text, None, &[]).ok()?;
@@ -207,7 +207,7 @@ impl Ask {
         Some(format!("\n{text}"))
     }
 
-    /// The lines of what is kept, each with its table.
+    /// Returns the lines of the kept keys, each with its table.
     fn kept_lines(&self) -> Result<Vec<(&'static str, String)>, AskError> {
         let plain = |key: &&str| {
             !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
@@ -222,7 +222,7 @@ impl Ask {
         self.kept.iter().map(line).collect()
     }
 
-    /// What the points were made from, where they still are.
+    /// Returns the digitised points if the target is still what smoothing and resampling make of them.
     fn raw_of_points(&self) -> Option<&RawPoints> {
         let within = |raw: &&RawPoints| {
             let smooth = raw.smooth.is_none_or(|deviation| deviation > 0.0 && deviation.is_finite());
@@ -233,7 +233,7 @@ impl Ask {
         self.raw.as_ref().filter(within).filter(|raw| raw.target(self.closed) == self.points)
     }
 
-    /// The problem that is asked, read as every problem file is.
+    /// Returns the problem that is asked, read as every problem file is.
     ///
     /// # Errors
     /// [`AskError`].
@@ -241,7 +241,7 @@ impl Ask {
         self.problem_with_text().map(|(problem, _)| problem)
     }
 
-    /// The problem that is asked, with the text of its file.
+    /// Returns the problem that is asked with the text of its file.
     ///
     /// # Errors
     /// [`AskError`].
@@ -258,10 +258,10 @@ impl Ask {
         Ok((problem, text))
     }
 
-    /// What to ask for a problem: everything that its file says.
+    /// Returns the edit that asks a problem, with everything that its file says.
     ///
     /// # Errors
-    /// [`NotHere`] where the studio cannot hold it.
+    /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
         let ProblemSpec { task: TaskSpec { path }, require, solve, .. } = &problem.spec;
         let n = path.points.len();
@@ -304,7 +304,7 @@ impl Ask {
                 Err(NotHere::Other("what is known of its answer is another when it is read back".into()))
             }
             Ok(again) if again.spec == problem.spec => Ok(ask),
-            // Digitised points that are too many to be carried along: what was made of them is the target all the same.
+            // Too many digitised points to be carried along: the target that was made of them is the same.
             Ok(again) if without_raw(&again.spec) == without_raw(&problem.spec) => Ok(ask),
             Ok(_) => Err(NotHere::Other("it is another when it is read back".into())),
             Err(why) => Err(NotHere::Other(why.to_string())),
@@ -312,7 +312,7 @@ impl Ask {
     }
 }
 
-/// Tells problems apart whose best answers may differ: by target, bounds, requirements and objective.
+/// Returns a hash that differs for problems whose best answers may differ: by target, bounds, requirements, objective.
 fn told(spec: &ProblemSpec) -> String {
     let ProblemSpec { task, design, require, solve } = &without_raw(spec);
     let text = serde_json::to_string(&(task, design, require, solve.objective)).unwrap_or_default();
@@ -329,7 +329,7 @@ fn without_raw(spec: &ProblemSpec) -> ProblemSpec {
     spec
 }
 
-/// The keys of a table whose values are not among the defaults, dotted, with their values as they are typed.
+/// Returns the dotted keys of a table whose values differ from the defaults, with their values as they are typed.
 fn differing(prefix: &str, table: &toml::Table, default: &toml::Table) -> BTreeMap<String, String> {
     let mut lines = BTreeMap::new();
     for (key, value) in table {

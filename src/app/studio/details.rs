@@ -1,5 +1,5 @@
-//! Everything that is known of one linkage: of a saved result, or as it stands under the hand. Details, files and
-//! comparisons are made from the record that it belongs to, by the functions that the command line calls.
+//! Describes, exports and compares linkages: of saved results, or under the hand. Details, files and comparisons are
+//! made from the record to which a linkage belongs, by the functions that the command line calls.
 
 use super::asked::AskError;
 use super::house::House;
@@ -29,14 +29,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Records of ended searches that are kept.
 const KEPT: usize = 16;
-/// What costs of a linkage under the hand may take, seconds.
+/// The time for the costs of a linkage under the hand, seconds.
 const PATIENCE_S: f64 = 1.5;
-/// The budget from which they are looked for, evaluations.
+/// The budget for these costs, evaluations.
 const EFFORT: u64 = 40_000;
 /// The most linkages of a comparison.
 pub(super) const MOST_COMPARED: usize = 20;
 
-/// Which linkage is meant.
+/// The source of a linkage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
@@ -56,7 +56,7 @@ pub struct OfJob {
     pub rank: usize,
 }
 
-/// A linkage as it stands under the hand: what of an answer's `Shown` decides it.
+/// A linkage under the hand: the parts of an answer's `Shown` that determine it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drawn {
@@ -74,11 +74,11 @@ pub struct Drawn {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DetailsAsk {
-    /// Which one.
+    /// The linkage.
     pub of: Source,
 }
 
-/// What the report says of a linkage.
+/// The report's text on a linkage, with its figures.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Details {
     /// The problem that it was found for.
@@ -90,11 +90,11 @@ pub struct Details {
     /// The least transmission angle that was asked for, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmission_deg_min: Option<f64>,
-    /// How many candidates the result has.
+    /// The number of candidates of the result.
     pub candidates: usize,
     /// The linkage.
     pub shown: Shown,
-    /// What came of the search, as markup without scripts.
+    /// The outcome of the search, as markup without scripts.
     pub summary: String,
     /// Figures, mobility, warnings, requirements with what they cost, dimensions: as markup without scripts.
     pub words: String,
@@ -104,7 +104,7 @@ pub struct Details {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExportAsk {
-    /// Which one.
+    /// The linkage.
     pub of: Source,
     /// A format of `linkwright export`, or `html` (the report), `sheet` (its drawing), `points` (CSV along the
     /// points).
@@ -118,9 +118,9 @@ pub struct ExportAsk {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CompareAsk {
-    /// Which ones: 1 to 20.
+    /// The linkages: 1 to 20.
     pub of: Vec<Source>,
-    /// What they are ranked by, as `linkwright compare --sort` takes it; empty: the sum of squared errors.
+    /// The figures that they are ranked by, as `linkwright compare --sort` takes them; empty: the sum of squared errors.
     #[serde(default)]
     pub sort: Vec<String>,
     /// `json`, or `html`, `csv`, `svg` for a file.
@@ -171,7 +171,7 @@ impl Handed {
         Handed::saved(ending.unwrap_or("bin"), bytes)
     }
 
-    /// Its media type.
+    /// Returns its media type.
     pub(super) fn media_type(&self) -> &'static str {
         match self.ending {
             "csv" => "text/csv; charset=utf-8",
@@ -211,7 +211,7 @@ impl Finished {
     }
 }
 
-/// Why nothing is said of a linkage.
+/// The reason why a linkage cannot be described, exported or compared.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum DetailsError {
     #[error(transparent)]
@@ -285,8 +285,8 @@ impl House {
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
             return Err(DetailsError::Positions(n));
         }
-        let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
-        let t1_at = t1_at.ok_or(DetailsError::Assembly)?;
+        let assembly = |t1: &i64| serde_json::from_value((*t1).into()).map_err(|_| DetailsError::Assembly);
+        let t1_at: Vec<AssemblyMode> = drawn.t1_at.iter().map(assembly).collect::<Result<_, _>>()?;
         let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
         if let Some(record) = self.searches.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
@@ -310,7 +310,7 @@ impl House {
         Ok(Found { record, index: 0 })
     }
 
-    /// What is known of a linkage.
+    /// Returns the details of a linkage.
     ///
     /// # Errors
     /// [`DetailsError`].
@@ -329,7 +329,7 @@ impl House {
         })
     }
 
-    /// A linkage as a file.
+    /// Returns a linkage as a file.
     ///
     /// # Errors
     /// [`DetailsError`].
@@ -355,7 +355,7 @@ impl House {
         })
     }
 
-    /// Linkages side by side.
+    /// Compares linkages side by side.
     ///
     /// # Errors
     /// [`DetailsError`].
@@ -385,11 +385,7 @@ impl House {
     }
 }
 
-fn assembly(t1: i64) -> Option<AssemblyMode> {
-    serde_json::from_value(t1.into()).ok()
-}
-
-/// A candidate with what its limits cost.
+/// Returns a candidate with the costs of its limits.
 fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
     let mut outcome = SearchOutcome {
         candidates: vec![candidate],
@@ -406,7 +402,7 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
     outcome.candidates
 }
 
-/// The ending of the files of a format.
+/// Returns the ending of the files of a format.
 fn ending_of(format: Format) -> &'static str {
     match format {
         Format::SvgPlates => "svg",

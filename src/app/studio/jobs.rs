@@ -7,8 +7,8 @@
 //! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
 use super::asked::{AskError, MOST_POINTS};
-use super::job_messages::{JobAsk, JobProgress, JobShown, JobState};
-use super::shelf::{Shelf, ShelfError, plain_file};
+use super::job_messages::{JobAsk, JobList, JobProgress, JobShown, JobState};
+use super::shelf::{Shelf, ShelfError, names_in, plain_file};
 use super::tab::BUG;
 use crate::app::job::folder::{is_in_use, replace_file};
 use crate::app::job::run::Job;
@@ -18,7 +18,7 @@ use crate::files::problem_file::{self, ProblemFile};
 use crate::report::text::at_most;
 use crate::synthesis::Progress;
 use crate::task::Problem;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -30,8 +30,10 @@ use std::time::{Duration, Instant};
 pub(super) const MOST_JOBS: usize = 16;
 /// Reasons of failed jobs that are kept.
 const MOST_FAILED: usize = 64;
+/// The most jobs in a list.
+const MOST_LISTED: usize = 500;
 /// The folder of the problems of running jobs.
-pub(super) const STARTED: &str = ".studio";
+const STARTED: &str = ".studio";
 /// The niceness of a job's threads, above the usual.
 const NICE: i32 = 10;
 
@@ -85,7 +87,7 @@ struct Running {
 }
 
 /// A job that runs.
-pub(super) struct OneJob {
+struct OneJob {
     cancel: AtomicBool,
     begun: Instant,
     points: usize,
@@ -94,30 +96,24 @@ pub(super) struct OneJob {
 
 #[derive(Default)]
 struct Told {
-    progress: Option<Progress>,
-    before: u64,
+    /// The latest progress, and the evaluations before the first.
+    progress: Option<(Progress, u64)>,
     said: String,
 }
 
 impl OneJob {
-    fn new(points: usize) -> Self {
-        OneJob { cancel: AtomicBool::new(false), begun: Instant::now(), points, told: Mutex::default() }
-    }
-
     fn told(&self) -> MutexGuard<'_, Told> {
         self.told.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn note(&self, progress: &Progress) {
         let mut told = self.told();
-        if told.progress.is_none() {
-            told.before = progress.evaluations;
-        }
-        told.progress = Some(progress.clone());
+        let before = told.progress.as_ref().map_or(progress.evaluations, |(_, before)| *before);
+        told.progress = Some((progress.clone(), before));
     }
 
     /// Returns how it is shown.
-    pub(super) fn shown(&self, name: &str) -> JobShown {
+    fn shown(&self, name: &str) -> JobShown {
         let said = match &*self.told().said {
             _ if self.cancel.load(Ordering::SeqCst) => "Stopping; what was found is being saved.".to_owned(),
             "" => "Searching.".to_owned(),
@@ -129,9 +125,9 @@ impl OneJob {
     /// Returns how far it is; `None` before its search has begun.
     fn progress(&self) -> Option<JobProgress> {
         let told = self.told();
-        let progress = told.progress.as_ref()?;
+        let (progress, before) = told.progress.as_ref()?;
         let elapsed_s = self.begun.elapsed().as_secs_f64();
-        let rate = progress.evaluations.saturating_sub(told.before) as f64 / elapsed_s.max(1e-3);
+        let rate = progress.evaluations.saturating_sub(*before) as f64 / elapsed_s.max(1e-3);
         let left = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
         Some(JobProgress {
             phase: progress.phase.to_owned(),
@@ -181,10 +177,43 @@ impl Jobs {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Returns the jobs that run now, and the reasons why others failed.
-    pub(super) fn now(&self) -> (BTreeMap<String, Arc<OneJob>>, BTreeMap<String, String>) {
-        let running = self.running();
-        (running.jobs.clone(), running.failed.clone())
+    /// Returns all jobs and results, by name.
+    pub(super) fn list(&self) -> JobList {
+        let folder = &self.shelf.folder;
+        let running: BTreeSet<String> = self.running().jobs.keys().cloned().collect();
+        let mut names: BTreeSet<String> = self.running().failed.keys().chain(&running).cloned().collect();
+        names.extend(names_in(folder));
+        let begun = names_in(&folder.join(STARTED));
+        names.extend(begun.iter().filter_map(|file| file.strip_suffix(".json")).map(str::to_owned));
+        names.retain(|name| name::check(name).is_ok());
+        let (mut jobs, mut more) = (Vec::new(), 0);
+        for name in names {
+            if jobs.len() >= MOST_LISTED && !running.contains(&name) {
+                more += 1;
+            } else {
+                jobs.extend(self.one(&name));
+            }
+        }
+        JobList { folder: folder.display().to_string(), jobs, more }
+    }
+
+    /// Returns one job; `None` if there is none of that name.
+    pub(super) fn one(&self, name: &str) -> Option<JobShown> {
+        let (job, failed) = {
+            let running = self.running();
+            (running.jobs.get(name).cloned(), running.failed.get(name).cloned())
+        };
+        if let Some(job) = job {
+            return Some(job.shown(name));
+        }
+        let begun = self.begun(name).is_some();
+        let shown = self.shelf.shown(name, begun).or_else(|| {
+            let said = "The studio ended before it did. It can go on from the beginning.".to_owned();
+            begun.then(|| JobShown::new(name, JobState::BrokenOff, said, true))
+        });
+        let Some(why) = failed else { return shown };
+        let result = shown.and_then(|shown| shown.result);
+        Some(JobShown { result, ..JobShown::new(name, JobState::Failed, why, begun) })
     }
 
     fn started(&self, name: &str) -> (PathBuf, String) {
@@ -192,7 +221,7 @@ impl Jobs {
     }
 
     /// Returns the problem of a job that was begun and has not ended.
-    pub(super) fn begun(&self, name: &str) -> Option<JobAsk> {
+    fn begun(&self, name: &str) -> Option<JobAsk> {
         name::check(name).ok()?;
         let (folder, file) = self.started(name);
         serde_json::from_slice(&plain_file(&folder.join(file))?).ok()
@@ -246,7 +275,9 @@ impl Jobs {
     /// Begins the work; `ask` is kept until it has ended.
     fn begin(self: &Arc<Self>, job: Job, options: Options, ask: Option<&JobAsk>) -> Result<(), Refusal> {
         let name = job.name.clone();
-        let one = Arc::new(OneJob::new(job.spec.task.path.points.len()));
+        let points = job.spec.task.path.points.len();
+        let (cancel, told) = (AtomicBool::new(false), Mutex::default());
+        let one = Arc::new(OneJob { cancel, begun: Instant::now(), points, told });
         {
             let mut running = self.running();
             if running.closed {

@@ -26,7 +26,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
-/// Requests that are worked on at once; more wait, and not for long.
+/// The most requests that are worked on at once; more wait, and not for long.
 pub(super) const AT_ONCE: usize = 2;
 
 /// The refusal of a body that is not what is asked for.
@@ -79,7 +79,7 @@ impl Route {
         Route::new(method, path, A::BODY, if method == "get" { get(handler) } else { post(handler) })
     }
 
-    /// Creates a `POST` of a message in JSON; `otherwise` refuses a body that is none.
+    /// Creates a `POST` of a message in JSON; another body is refused with `otherwise`.
     fn asked<M: DeserializeOwned + JsonSchema + 'static, A: Answer + 'static>(
         path: &'static str,
         otherwise: &'static str,

@@ -61,7 +61,7 @@ impl Shelf {
     pub(super) fn place(&self, name: &str) -> Option<PathBuf> {
         name::check(name).ok()?;
         let place = self.folder.join(name);
-        is_folder(&place).then_some(place)
+        fs::symlink_metadata(&place).is_ok_and(|found| found.is_dir()).then_some(place)
     }
 
     /// Returns whether there is anything of that name.
@@ -75,7 +75,7 @@ impl Shelf {
     /// [`ShelfError`].
     pub(super) fn record(&self, name: &str) -> Result<Record, ShelfError> {
         let place = self.place(name).ok_or_else(|| ShelfError::Absent(name.to_owned()))?;
-        if is_link(&place.join(RECORD)) {
+        if fs::symlink_metadata(place.join(RECORD)).is_ok_and(|found| found.is_symlink()) {
             return Err(ShelfError::Link(name.to_owned()));
         }
         Ok(read_record(&place)?)
@@ -168,12 +168,4 @@ pub(super) fn plain_file(path: &Path) -> Option<Vec<u8>> {
         return None;
     }
     read_at_most(path, MOST_BYTES).ok()?
-}
-
-fn is_folder(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
-}
-
-fn is_link(path: &Path) -> bool {
-    fs::symlink_metadata(path).is_ok_and(|found| found.is_symlink())
 }

@@ -1,4 +1,5 @@
-//! One tab's work, on a thread of its own: a mailbox of one, the answers that follow the hand, the search behind them.
+//! Works for one tab, on a thread of its own: a mailbox for one edit, answers that follow the hand, the search behind
+//! them.
 //!
 //! The latest edit wins: one that comes before the last was looked at takes its place. An edit cancels the search for
 //! the one before. Every tab has at most one search, and all searches together as many threads as there are cores.
@@ -21,9 +22,9 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// A hand that rests for so long lets the search begin though it has not let go.
+/// The time of rest after which the search begins though the hand has not let go.
 const REST: Duration = Duration::from_millis(150);
-/// Progress is told at most so often.
+/// The least time between two messages of progress.
 const TELL_EVERY: Duration = Duration::from_millis(120);
 
 const LOOKING: &str = "Looking for the first linkages.";
@@ -32,7 +33,7 @@ const SEARCHING: &str = "Searching for better ones.";
 pub(super) const BUG: &str = "this is a bug of linkwright: please report it";
 
 /// The latest answer for a tab, as JSON.
-pub(super) type Told = Option<Arc<str>>;
+pub(super) type Told = Arc<str>;
 
 /// The mailbox in which the server leaves what a tab has sent, and a search what it has found.
 #[derive(Default)]
@@ -52,7 +53,7 @@ struct Waiting {
 
 /// News of a search.
 enum News {
-    /// How far it is, and what it is doing.
+    /// The part of its budget that is used, and its activity in words.
     Progress(f64, String),
     First(Vec<Candidate>),
     /// The record, and how often the best of it came back.
@@ -88,10 +89,6 @@ impl Mailbox {
         }
         waiting.news.push((edit, news));
         self.bell.notify_one();
-    }
-
-    fn has_edit(&self) -> bool {
-        self.lock().edit.is_some()
     }
 
     /// Waits for something to do, until `until`. `None`: the tab is closed.
@@ -185,7 +182,7 @@ impl Tab {
         let (version, said, relaxations) = (self.version, said.into(), self.helps.clone());
         let answer = Answer { version, doing, said, progress, candidates, nine, relaxations };
         if let Ok(text) = serde_json::to_string(&answer) {
-            self.told.send_replace(Some(text.into()));
+            self.told.send_replace(text.into());
         }
     }
 
@@ -226,7 +223,7 @@ impl Tab {
         if problem.spec().solve.method == Method::Continuation {
             match self.nine.follow(problem, closed) {
                 Some(exact) => self.exact = Some(all_followed(&exact)),
-                // What was found for other points is nothing for these.
+                // Linkages for other points are no answers for these.
                 None => self.session.clear(),
             }
         } else {
@@ -245,7 +242,9 @@ impl Tab {
     /// Begins the search for the latest edit.
     fn search(&mut self) {
         self.begin = None;
-        let Some((job, problem)) = self.asked.clone().filter(|_| !self.mail.has_edit()) else { return };
+        let Some((job, problem)) = self.asked.clone().filter(|_| self.mail.lock().edit.is_none()) else {
+            return;
+        };
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let share = Arc::clone(&self.searches.running);
         let threads = (cores / (Arc::strong_count(&share) - 1)).max(1);
@@ -315,7 +314,7 @@ fn all_of(problem: &Problem, exact: &ExactRecord) -> (Counted, Vec<Shown>) {
     (Counted::of(exact), shown.collect())
 }
 
-/// Searches: a first look where nothing is there yet, then a whole run, the same as on the command line.
+/// Searches: a first look if nothing is there yet, then a whole run, the same as on the command line.
 fn searched(
     job: &Job,
     problem: &Problem,
@@ -346,7 +345,7 @@ fn searched(
         }
     };
     match pool.install(|| run(job, &Context { cancel, observer: &observer })) {
-        // What was cancelled is not what was asked.
+        // A cancelled search does not answer the edit.
         Ok(_) if cancel.load(Ordering::Relaxed) => {}
         Ok(finished) => {
             let (_, hits) = *heard.lock().unwrap_or_else(PoisonError::into_inner);
@@ -374,11 +373,11 @@ mod tests {
     }
 
     fn answer(told: &watch::Receiver<Told>) -> serde_json::Value {
-        serde_json::from_str(told.borrow().as_deref().expect("an answer")).expect("JSON")
+        serde_json::from_str(&told.borrow()).expect("JSON")
     }
 
     fn tab() -> (Tab, watch::Receiver<Told>) {
-        let (tell, told) = watch::channel::<Told>(None);
+        let (tell, told) = watch::channel(Told::default());
         (Tab { told: tell, ..Tab::default() }, told)
     }
 
