@@ -240,6 +240,7 @@ fn the_token_lets_one_in_and_strangers_stay_out() {
     assert_eq!(with(&upgrade, "/live"), 403);
     assert_eq!(with(&upgrade, "/"), 400);
     assert_eq!(with(&[("Host", &host), ("Host", "evil.example")], "/"), 421);
+    assert_eq!(with(&[("Origin", &origin), ("Origin", "http://evil.example")], "/"), 403);
     let body = egg(1, 12, 0.0).to_string();
     assert_eq!(studio.asks("POST", "/problem.toml", &[("Cookie", &cookie)], body.as_bytes()).status(), 403);
     assert_eq!(studio.asks("POST", "/problem.toml", &[("Origin", &origin)], body.as_bytes()).status(), 403);

@@ -434,8 +434,12 @@ fn what_is_wrong_with_a_request_is_said_and_nothing_outside_of_the_folder_is_rea
     fs::write(saved.join("broken/record.json"), "{").expect("written");
     fs::write(folder.path().join("secret.json"), "secret").expect("written");
     fs::write(folder.path().join("points.csv"), "x,y\n0,0\n1,1\n2,0\n").expect("written");
+    // The problem of a job, where no job of the studio would leave it.
+    fs::create_dir(saved.join(".studio")).expect("a folder");
+    fs::write(folder.path().join("outside.json"), r#"{"problem": "format = 1"}"#).expect("written");
     #[cfg(unix)]
     {
+        std::os::unix::fs::symlink("../../outside.json", saved.join(".studio/begun.json")).expect("a link");
         std::os::unix::fs::symlink(folder.path(), saved.join("link")).expect("a link");
         fs::create_dir(saved.join("linked")).expect("a folder");
         std::os::unix::fs::symlink("../../secret.json", saved.join("linked/record.json")).expect("a link");
@@ -470,6 +474,8 @@ fn what_is_wrong_with_a_request_is_said_and_nothing_outside_of_the_folder_is_rea
         "/jobs/%2e%2e",
         "/jobs/%2e%2e%2f",
         "/jobs/..%2fsecret.json",
+        "/jobs/..%2f..%2foutside",
+        "/jobs/begun",
         "/jobs/link/files/secret.json",
         "/jobs/link/opened",
         "/jobs/linked/files/record.json",

@@ -1,25 +1,23 @@
-//! What a tab asks as the text of a problem file, and a problem file as what a tab asks.
+//! Converts a tab's edit to the text of a problem file, and a problem file to an edit.
 
 use super::messages::{Ask, Known};
 use crate::files::diagnostic::Diagnostic;
-use crate::files::problem_file;
-use crate::files::problem_file::ProblemFile;
+use crate::files::problem_file::{self, ProblemFile};
 use crate::mechanism::MAX_MAGNITUDE;
-use crate::task::requirement::RequirementKind;
-use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec};
-use crate::task::{AngleOffset, TaskError};
+use crate::task::spec::{DesignSpec, ProblemSpec, RawPoints, RequireSpec, SolveSpec, TaskSpec};
+use crate::task::{AngleOffset, PathTask, TaskError};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
 
 /// The most points of a target in the studio.
 pub const MOST_POINTS: usize = 1000;
-/// The most points that are carried along as what the target was smoothed or resampled from.
+/// The most digitised points that are carried along with the target that was made from them.
 const MOST_RAW: usize = 2000;
-/// The fewest.
+/// The fewest points of a target in the studio.
 const FEWEST_POINTS: usize = 3;
 
-/// Why a problem cannot be opened in the studio.
+/// The reason why a problem cannot be opened in the studio.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NotHere {
     /// Too few points or too many.
@@ -28,7 +26,7 @@ pub enum NotHere {
          synth`, or write `samples = 60` in [task.path] to take that many along it"
     )]
     Points(usize),
-    /// The problem is not the same when it is read back from what the studio would ask.
+    /// The problem is another one after it is converted to an edit and back.
     #[error("the studio cannot hold all of this problem ({0}): run it with `linkwright synth`")]
     Other(String),
 }
@@ -48,10 +46,10 @@ pub enum AskError {
     /// The seed is too large for a problem file.
     #[error("the seed is at most {}", i64::MAX)]
     Seed,
-    /// A key is kept that is under none of `design`, `require` and `solve`.
+    /// A kept key is under another table than `design`, `require` and `solve`.
     #[error("{0:.60} cannot be kept: keys under design, require and solve can")]
     KeptKey(String),
-    /// A key is kept with a text that is no single value.
+    /// The text of a kept key is not a single value.
     #[error("{key} is kept with a value that is none of a problem file: {text:.60}")]
     KeptValue {
         /// The key.
@@ -92,44 +90,36 @@ fn without_line(Diagnostic { message, help, .. }: &Diagnostic) -> String {
     help.as_ref().map_or_else(|| message.clone(), |help| format!("{message}: {help}"))
 }
 
-/// The tables of a problem file in the order in which they are written, each with its keys: the key of an [`Ask`] and that
-/// of the file.
-const TABLES: [(&str, &[(&str, &str)]); 6] = [
-    ("", &[("name", "name"), ("source", "source"), ("unit", "unit")]),
-    (
-        "task.path",
-        &[
-            ("points", "points"),
-            ("closed", "closed"),
-            ("raw.smooth", "smooth"),
-            ("raw.samples", "samples"),
-            ("tolerances", "tolerance"),
-            ("tolerance", "tolerance"),
-            ("weights", "weight"),
-        ],
-    ),
-    ("task.path.timing", &[("timing.crank_deg", "crank_deg"), ("timing.offset", "offset")]),
+/// The tables of a problem file in the order in which they are written, each with the keys of an edit as the file has
+/// them; a key of a table within the edit is written without that table's name.
+const TABLES: [(&str, &[&str]); 6] = [
+    ("", &["name", "source", "unit"]),
+    ("task.path", &["points", "closed", "raw.smooth", "raw.samples", "tolerance", "weight"]),
+    ("task.path.timing", &["timing.crank_deg", "timing.offset"]),
     ("design", &[]),
     (
         "require",
         &[
-            ("types", "type"),
-            ("transmission_deg_min", "transmission_deg_min"),
-            ("link_ratio_max", "link_ratio_max"),
-            ("pivots_in", "pivots_in"),
-            ("footprint_in", "footprint_in"),
-            ("transmission_over", "transmission_over"),
-            ("order", "order"),
-            ("direction", "direction"),
-            ("circuit", "circuit"),
-            ("branch", "branch"),
-            ("closing", "closing"),
+            "type",
+            "transmission_deg_min",
+            "link_ratio_max",
+            "pivots_in",
+            "footprint_in",
+            "transmission_over",
+            "order",
+            "direction",
+            "circuit",
+            "branch",
+            "closing",
         ],
     ),
-    ("solve", &[("seed", "seed"), ("method", "method"), ("objective", "objective")]),
+    ("solve", &["seed", "method", "objective"]),
 ];
 
-/// A value as it is typed in problem files, points one a line.
+/// The keys of an edit that have other names in a problem file.
+const RENAMED: [(&str, &str); 3] = [("tolerances", "tolerance"), ("weights", "weight"), ("types", "type")];
+
+/// Writes a value as it is typed in problem files, points one a line.
 struct Typed<'a>(&'a toml::Value);
 
 impl Display for Typed<'_> {
@@ -153,7 +143,7 @@ impl Display for Typed<'_> {
     }
 }
 
-/// One value of TOML, written anew: a text that holds more than one, or none, is refused.
+/// Writes one value of TOML anew; a text that is not exactly one value is refused.
 fn one_value(key: &str, text: &str) -> Result<String, AskError> {
     let parsed: Result<toml::Table, _> = format!("value = {text}").parse();
     let value = parsed.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("value"));
@@ -162,20 +152,19 @@ fn one_value(key: &str, text: &str) -> Result<String, AskError> {
 }
 
 impl Ask {
-    /// The text of the problem file that asks the same.
+    /// Returns the text of the problem file that asks the same.
     ///
     /// # Errors
-    /// [`AskError`] where a part of it cannot be written there, as of [`kept`](Ask::kept) any but keys and values under
+    /// [`AskError`] if a part of it cannot be written there: of [`kept`](Ask::kept) everything but keys and values under
     /// `design`, `require` and `solve`.
     pub fn problem_text(&self) -> Result<String, AskError> {
         let kept = self.kept_lines()?;
-        let given = self.as_table()?;
+        let given = toml::Value::Table(self.as_table()?);
         let mut text = String::from("# Drawn in linkwright's studio.\nformat = 1\n");
         for (table, keys) in TABLES {
-            let typed = keys.iter().filter_map(|(asked, key)| {
-                let mut parts = asked.split('.');
-                let first = given.get(parts.next()?)?;
-                let value = parts.try_fold(first, |value, part| value.get(part))?;
+            let typed = keys.iter().filter_map(|path| {
+                let value = path.split('.').try_fold(&given, |value, key| value.get(key))?;
+                let (_, key) = path.rsplit_once('.').unwrap_or(("", path));
                 Some(format!("{key} = {}\n", Typed(value)))
             });
             let kept = kept.iter().filter(|(place, _)| *place == table).map(|(_, line)| line.clone());
@@ -185,35 +174,31 @@ impl Ask {
             }
             text.push_str(&lines);
         }
-        if let Some(expect) = self.expect_text(&text) {
-            text.push_str(&expect);
-        }
+        text.extend(self.expect_text(&text));
         Ok(text)
     }
 
-    /// The edit as data, without values that a problem file need not give.
+    /// Returns the edit under the names of a problem file, without values that a file need not give.
     fn as_table(&self) -> Result<toml::Table, toml::ser::Error> {
-        let raw = self.raw_of_points();
-        let asked = Ask {
-            version: 0,
-            points: raw.map_or(&self.points, |raw| &raw.points).clone(),
-            raw: raw.cloned(),
-            tolerance: self.tolerance.filter(|_| self.tolerances.is_none()),
-            ..self.clone()
-        };
-        let mut table = toml::Table::try_from(&asked)?;
-        if asked.types.is_empty() {
-            table.remove("types");
+        let raw = self.raw_of_points().cloned();
+        let points = raw.as_ref().map_or(&self.points, |raw| &raw.points).clone();
+        let mut table = toml::Table::try_from(Ask { version: 0, points, raw, ..self.clone() })?;
+        for (asked, key) in RENAMED {
+            if let Some(value) = table.remove(asked) {
+                table.insert(key.to_owned(), value);
+            }
         }
-        if asked.timing.is_some_and(|timing| timing.offset == AngleOffset::default())
-            && let Some(timing) = table.get_mut("timing").and_then(toml::Value::as_table_mut)
-        {
-            timing.remove("offset");
+        if self.types.is_empty() {
+            table.remove("type");
+        }
+        let timing = table.get_mut("timing").and_then(toml::Value::as_table_mut);
+        if self.timing.as_ref().is_some_and(|timing| timing.offset == AngleOffset::default()) {
+            timing.map(|timing| timing.remove("offset"));
         }
         Ok(table)
     }
 
-    /// What is known of the answer, where `text` asks the problem that it is known of.
+    /// Returns the table of the known answer if `text` asks the problem that it belongs to.
     fn expect_text(&self, text: &str) -> Option<String> {
         let known = self.expect.as_ref()?;
         let asked = problem_file::parse("drawing", text, None, &[]).ok()?;
@@ -222,7 +207,7 @@ impl Ask {
         Some(format!("\n{text}"))
     }
 
-    /// The lines of what is kept, each with its table.
+    /// Returns the lines of the kept keys, each with its table.
     fn kept_lines(&self) -> Result<Vec<(&'static str, String)>, AskError> {
         let plain = |key: &&str| {
             !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || "._-".contains(c))
@@ -237,7 +222,7 @@ impl Ask {
         self.kept.iter().map(line).collect()
     }
 
-    /// What the points were made from, where they still are.
+    /// Returns the digitised points if the target is still what smoothing and resampling make of them.
     fn raw_of_points(&self) -> Option<&RawPoints> {
         let within = |raw: &&RawPoints| {
             let smooth = raw.smooth.is_none_or(|deviation| deviation > 0.0 && deviation.is_finite());
@@ -248,7 +233,7 @@ impl Ask {
         self.raw.as_ref().filter(within).filter(|raw| raw.target(self.closed) == self.points)
     }
 
-    /// The problem that is asked, read as every problem file is.
+    /// Returns the problem that is asked, read as every problem file is.
     ///
     /// # Errors
     /// [`AskError`].
@@ -256,7 +241,7 @@ impl Ask {
         self.problem_with_text().map(|(problem, _)| problem)
     }
 
-    /// The problem that is asked, with the text of its file.
+    /// Returns the problem that is asked with the text of its file.
     ///
     /// # Errors
     /// [`AskError`].
@@ -273,23 +258,19 @@ impl Ask {
         Ok((problem, text))
     }
 
-    /// What to ask for a problem: everything that its file says.
+    /// Returns the edit that asks a problem, with everything that its file says.
     ///
     /// # Errors
-    /// [`NotHere`] where the studio cannot hold it.
+    /// [`NotHere`] if the studio cannot hold it.
     pub fn of(problem: &ProblemFile) -> Result<Ask, NotHere> {
-        let ProblemSpec { task, design, require, solve } = &problem.spec;
-        let path = &task.path;
+        let ProblemSpec { task: TaskSpec { path }, require, solve, .. } = &problem.spec;
         let n = path.points.len();
         if !(FEWEST_POINTS..=MOST_POINTS).contains(&n) {
             return Err(NotHere::Points(n));
         }
         let all = path.tolerance.as_ref().and_then(|each| each.first().copied());
         let tolerance = all.filter(|all| path.tolerance.iter().flatten().all(|t| t == all));
-        let mut kept = design_lines(design, &problem.spec);
-        kept.extend(solve_lines(solve));
-        let mut ask = Ask {
-            version: 0,
+        let ask = Ask {
             name: problem.name.clone(),
             source: problem.source.clone(),
             unit: problem.unit,
@@ -313,20 +294,17 @@ impl Ask {
             closing: require.closing,
             method: solve.method,
             objective: solve.objective,
-            kept,
+            kept: kept(&problem.spec),
             expect: problem.expect.clone().map(|answer| Known { of: told(&problem.spec), answer }),
             seed: solve.seed,
-            moving: false,
-            fresh: false,
+            ..Ask::default()
         };
-        let others = require_lines(require, &ask);
-        ask.kept.extend(others);
         match ask.problem() {
             Ok(again) if again.expect != problem.expect => {
                 Err(NotHere::Other("what is known of its answer is another when it is read back".into()))
             }
             Ok(again) if again.spec == problem.spec => Ok(ask),
-            // Digitised points that are too many to be carried along: what was made of them is the target all the same.
+            // Too many digitised points to be carried along: the target that was made of them is the same.
             Ok(again) if without_raw(&again.spec) == without_raw(&problem.spec) => Ok(ask),
             Ok(_) => Err(NotHere::Other("it is another when it is read back".into())),
             Err(why) => Err(NotHere::Other(why.to_string())),
@@ -334,7 +312,7 @@ impl Ask {
     }
 }
 
-/// Tells problems apart whose best answers may differ: by target, bounds, requirements and objective.
+/// Returns a hash that differs for problems whose best answers may differ: by target, bounds, requirements, objective.
 fn told(spec: &ProblemSpec) -> String {
     let ProblemSpec { task, design, require, solve } = &without_raw(spec);
     let text = serde_json::to_string(&(task, design, require, solve.objective)).unwrap_or_default();
@@ -351,7 +329,7 @@ fn without_raw(spec: &ProblemSpec) -> ProblemSpec {
     spec
 }
 
-/// The keys of a table whose values are not among the defaults, dotted, with their values as they are typed.
+/// Returns the dotted keys of a table whose values differ from the defaults, with their values as they are typed.
 fn differing(prefix: &str, table: &toml::Table, default: &toml::Table) -> BTreeMap<String, String> {
     let mut lines = BTreeMap::new();
     for (key, value) in table {
@@ -373,45 +351,37 @@ fn table<T: Serialize>(value: &T) -> toml::Table {
     toml::Table::try_from(value).unwrap_or_default()
 }
 
-/// The bounds that a problem gives, without those that the target gives by itself.
-fn design_lines(design: &DesignSpec, spec: &ProblemSpec) -> BTreeMap<String, String> {
-    let all = table(design);
-    let Ok(task) = spec.task.path.to_task() else { return BTreeMap::new() };
-    let mut usual = DesignSpec::default();
-    usual.resolve(&task);
-    let given: toml::Table = {
-        let usual = table(&usual);
-        all.iter()
-            .filter(|(key, value)| usual.get(*key) != Some(value))
-            .map(|(k, v)| (k.clone(), v.clone()))
-            .collect()
-    };
-    let again = given.clone().try_into::<DesignSpec>().map(|mut again| {
-        again.resolve(&task);
-        again
-    });
-    // Where leaving out what is usual changes something, everything is written.
-    let written = if again.as_ref() == Ok(design) { given } else { all };
-    differing("design", &written, &toml::Table::new())
+/// Returns the keys that a problem gives and the studio has no control for.
+fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
+    let ProblemSpec { task, design, require, solve } = spec;
+    let mut kept = task.path.to_task().map_or_else(
+        |_| BTreeMap::new(),
+        |task| differing("design", &bounds(design, &task), &toml::Table::new()),
+    );
+    let others = [
+        ("require", table(require), table(&RequireSpec::default())),
+        ("solve", table(solve), table(&SolveSpec::default())),
+    ];
+    for (name, mut given, usual) in others {
+        let shown = TABLES.iter().filter(|(table, _)| *table == name).flat_map(|(_, keys)| *keys);
+        given.retain(|key, _| !shown.clone().any(|shown| *shown == key));
+        kept.extend(differing(name, &given, &usual));
+    }
+    kept
 }
 
-/// The requirements that a problem gives and the studio has no control for.
-fn require_lines(require: &RequireSpec, ask: &Ask) -> BTreeMap<String, String> {
-    let shown = table(ask);
-    let mut others = table(require);
-    others.retain(|key, _| key != RequirementKind::Type.name() && !shown.contains_key(key));
-    differing("require", &others, &table(&RequireSpec::default()))
-}
-
-/// What a problem says of the search beside method, objective and seed.
-fn solve_lines(solve: &SolveSpec) -> BTreeMap<String, String> {
-    let default = SolveSpec {
-        method: solve.method,
-        objective: solve.objective,
-        seed: solve.seed,
-        ..SolveSpec::default()
+/// Returns the bounds that a problem gives, without those that the target gives by itself.
+fn bounds(design: &DesignSpec, task: &PathTask) -> toml::Table {
+    let resolved = |mut design: DesignSpec| {
+        design.resolve(task);
+        design
     };
-    differing("solve", &table(solve), &table(&default))
+    let (all, usual) = (table(design), table(&resolved(DesignSpec::default())));
+    let mut given = all.clone();
+    given.retain(|key, value| usual.get(key) != Some(value));
+    // If leaving out the usual bounds changes others, everything is written.
+    let again = given.clone().try_into().map(resolved);
+    if again.as_ref() == Ok(design) { given } else { all }
 }
 
 #[cfg(test)]

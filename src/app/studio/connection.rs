@@ -1,4 +1,4 @@
-//! Connections: so many at once, and none that stays silent.
+//! Limits connections: how many there are at once, and for how long one stays silent.
 
 use std::io;
 use std::net::SocketAddr;
@@ -6,19 +6,20 @@ use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 use std::time::Duration;
-use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
-use tokio::net::{TcpListener, TcpStream};
+use tokio::io::{AsyncRead, Join, ReadBuf, join};
+use tokio::net::TcpListener;
+use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
 /// Connections at once; more wait in the system's own short queue.
 const MOST: usize = 96;
-/// A connection that says nothing for so long is closed. A tab answers a ping more often than that.
+/// The time after which a connection that says nothing is closed. A tab answers a ping more often than that.
 const SILENCE: Duration = Duration::from_secs(45);
 
-/// A connection has so long for the head of its first request: one that comes letter by letter holds its place no longer.
+/// The time for the head of a connection's first request: one that comes letter by letter holds its place no longer.
 const FIRST_WORDS: Duration = Duration::from_secs(5);
-/// How a head ends.
+/// The end of a head.
 const END_OF_HEAD: &[u8] = b"\r\n\r\n";
 
 /// Listens for connections within the limits.
@@ -49,7 +50,8 @@ impl axum::serve::Listener for Limited {
                     // Without it small answers wait for a timer; with an old kernel they may.
                     let _ = stream.set_nodelay(true);
                     let silence = Box::pin(sleep(FIRST_WORDS));
-                    return (Connection { stream, silence, head: Some(0), _place: place }, from);
+                    let (stream, out) = stream.into_split();
+                    return (join(Incoming { stream, silence, head: Some(0), _place: place }, out), from);
                 }
                 // No more files may be open, or the other side has left: a little later there may be room.
                 Err(_) => sleep(Duration::from_millis(100)).await,
@@ -62,16 +64,20 @@ impl axum::serve::Listener for Limited {
     }
 }
 
-/// A connection that ends when nothing comes for [`SILENCE`], or not even a first request within [`FIRST_WORDS`].
-pub(super) struct Connection {
-    stream: TcpStream,
+/// A connection within the limits.
+pub(super) type Connection = Join<Incoming, OwnedWriteHalf>;
+
+/// The bytes that come in. They end when nothing comes for [`SILENCE`], or no whole head of a request within
+/// [`FIRST_WORDS`].
+pub(super) struct Incoming {
+    stream: OwnedReadHalf,
     silence: Pin<Box<Sleep>>,
-    /// How much of [`END_OF_HEAD`] has come last, until it has come.
+    /// The length of the part of [`END_OF_HEAD`] that has come last; `None`: all of it has come.
     head: Option<usize>,
     _place: OwnedSemaphorePermit,
 }
 
-/// How much of [`END_OF_HEAD`] stands at the end when more bytes come; `None`: it has come.
+/// Returns the length of the part of [`END_OF_HEAD`] with which the bytes so far end; `None`: all of it has come.
 fn after(mut there: usize, bytes: &[u8]) -> Option<usize> {
     for byte in bytes {
         there = match there {
@@ -86,7 +92,7 @@ fn after(mut there: usize, bytes: &[u8]) -> Option<usize> {
     Some(there)
 }
 
-impl AsyncRead for Connection {
+impl AsyncRead for Incoming {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -108,24 +114,6 @@ impl AsyncRead for Connection {
             Poll::Ready(()) => Poll::Ready(Err(io::ErrorKind::TimedOut.into())),
             Poll::Pending => Poll::Pending,
         }
-    }
-}
-
-impl AsyncWrite for Connection {
-    fn poll_write(
-        mut self: Pin<&mut Self>,
-        context: &mut Context<'_>,
-        bytes: &[u8],
-    ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(context, bytes)
-    }
-
-    fn poll_flush(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_flush(context)
-    }
-
-    fn poll_shutdown(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<io::Result<()>> {
-        Pin::new(&mut self.stream).poll_shutdown(context)
     }
 }
 

@@ -1,15 +1,15 @@
-//! Everything that is known of one linkage: of a saved result, or as it stands under the hand. Details, files and
-//! comparisons are made from the record that it belongs to, by the functions that the command line calls.
+//! Describes, exports and compares linkages: of saved results, or under the hand. Details, files and comparisons are
+//! made from the record to which a linkage belongs, by the functions that the command line calls.
 
 use super::asked::AskError;
-use super::messages::{Ask, Shown};
-use super::shelf::{Shelf, ShelfError};
+use super::house::House;
+use super::messages::{Ask, Shown, Target};
+use super::shelf::ShelfError;
 use crate::app::comparison::{NotCompared, compared};
 use crate::app::inputs::{Given, Run, Which};
 use crate::app::job::run::Job;
 use crate::judge::assess::{assess, to_raw};
 use crate::judge::verify::{Mismatch, verify};
-use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar, LinkageError, NaturalCoordinates};
 use crate::record::digest::ProblemError;
 use crate::record::{Candidate, Evaluations, ProblemRecord, Reason, Record};
@@ -17,9 +17,9 @@ use crate::report::compare::{SortKey, UnknownKey};
 use crate::report::export::{Format, Refusal, Settings, Subject, UnknownFormat, export};
 use crate::report::{csv, html, svg};
 use crate::synthesis::answers::annotate;
-use crate::synthesis::errors_without;
-use crate::synthesis::{Budget, Context, SearchOutcome};
+use crate::synthesis::{Budget, Context, SearchOutcome, errors_without};
 use crate::task::Problem;
+use crate::task::spec::{ProblemSpec, TaskSpec};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
@@ -29,14 +29,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Records of ended searches that are kept.
 const KEPT: usize = 16;
-/// What costs of a linkage under the hand may take, seconds.
+/// The time for the costs of a linkage under the hand, seconds.
 const PATIENCE_S: f64 = 1.5;
-/// The budget from which they are looked for, evaluations.
+/// The budget for these costs, evaluations.
 const EFFORT: u64 = 40_000;
 /// The most linkages of a comparison.
 pub(super) const MOST_COMPARED: usize = 20;
 
-/// Which linkage is meant.
+/// The source of a linkage.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
@@ -56,7 +56,7 @@ pub struct OfJob {
     pub rank: usize,
 }
 
-/// A linkage as it stands under the hand: what of an answer's `Shown` decides it.
+/// A linkage under the hand: the parts of an answer's `Shown` that determine it.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drawn {
@@ -74,33 +74,27 @@ pub struct Drawn {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct DetailsAsk {
-    /// Which one.
+    /// The linkage.
     pub of: Source,
 }
 
-/// What the report says of a linkage.
+/// The report's text on a linkage, with its figures.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Details {
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
+    /// The problem that it was found for.
+    #[serde(flatten)]
+    pub target: Target,
     /// The tolerance at each point.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<Vec<f64>>,
     /// The least transmission angle that was asked for, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmission_deg_min: Option<f64>,
-    /// How many candidates the result has.
+    /// The number of candidates of the result.
     pub candidates: usize,
     /// The linkage.
     pub shown: Shown,
-    /// What came of the search, as markup without scripts.
+    /// The outcome of the search, as markup without scripts.
     pub summary: String,
     /// Figures, mobility, warnings, requirements with what they cost, dimensions: as markup without scripts.
     pub words: String,
@@ -110,7 +104,7 @@ pub struct Details {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ExportAsk {
-    /// Which one.
+    /// The linkage.
     pub of: Source,
     /// A format of `linkwright export`, or `html` (the report), `sheet` (its drawing), `points` (CSV along the
     /// points).
@@ -124,9 +118,9 @@ pub struct ExportAsk {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CompareAsk {
-    /// Which ones: 1 to 20.
+    /// The linkages: 1 to 20.
     pub of: Vec<Source>,
-    /// What they are ranked by, as `linkwright compare --sort` takes it; empty: the sum of squared errors.
+    /// The figures that they are ranked by, as `linkwright compare --sort` takes them; empty: the sum of squared errors.
     #[serde(default)]
     pub sort: Vec<String>,
     /// `json`, or `html`, `csv`, `svg` for a file.
@@ -177,7 +171,7 @@ impl Handed {
         Handed::saved(ending.unwrap_or("bin"), bytes)
     }
 
-    /// Its media type.
+    /// Returns its media type.
     pub(super) fn media_type(&self) -> &'static str {
         match self.ending {
             "csv" => "text/csv; charset=utf-8",
@@ -217,7 +211,7 @@ impl Finished {
     }
 }
 
-/// Why nothing is said of a linkage.
+/// The reason why a linkage cannot be described, exported or compared.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum DetailsError {
     #[error(transparent)]
@@ -231,8 +225,6 @@ pub(super) enum DetailsError {
     Untrue { name: String, first: Mismatch },
     #[error("{name} has no candidate {rank}: it has {n}")]
     NoRank { name: String, rank: usize, n: usize },
-    #[error("there is no such candidate")]
-    NoCandidate,
     #[error(transparent)]
     Linkage(#[from] LinkageError),
     #[error("`crank_deg` and `t1_at` have one value for each of the {0} points")]
@@ -261,18 +253,17 @@ struct Found {
     index: usize,
 }
 
-/// Where linkages are looked for.
-#[derive(Clone, Copy)]
-pub(super) struct Sources<'a> {
-    pub(super) shelf: &'a Shelf,
-    pub(super) finished: &'a Finished,
+impl Found {
+    fn candidate(&self) -> &Candidate {
+        &self.record.candidates[self.index]
+    }
 }
 
-impl Sources<'_> {
-    fn find(self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
+impl House {
+    fn find(&self, source: &Source, with_costs: bool) -> Result<Found, DetailsError> {
         match source {
             Source::Job(OfJob { name, rank }) => {
-                let record = self.shelf.record(name)?;
+                let record = self.jobs.shelf.record(name)?;
                 if let Some(first) = verify(&record)?.into_iter().next() {
                     return Err(DetailsError::Untrue { name: name.clone(), first });
                 }
@@ -286,7 +277,7 @@ impl Sources<'_> {
         }
     }
 
-    fn drawn(self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
+    fn drawn(&self, drawn: &Drawn, with_costs: bool) -> Result<Found, DetailsError> {
         let file = drawn.ask.problem()?;
         let problem = Problem::new(file.spec.clone()).map_err(AskError::Task)?;
         let linkage = FourBar::new(drawn.linkage)?;
@@ -294,10 +285,10 @@ impl Sources<'_> {
         if drawn.crank_deg.len() != n || drawn.t1_at.len() != n {
             return Err(DetailsError::Positions(n));
         }
-        let t1_at: Option<Vec<AssemblyMode>> = drawn.t1_at.iter().map(|t1| assembly(*t1)).collect();
-        let t1_at = t1_at.ok_or(DetailsError::Assembly)?;
+        let assembly = |t1: &i64| serde_json::from_value((*t1).into()).map_err(|_| DetailsError::Assembly);
+        let t1_at: Vec<AssemblyMode> = drawn.t1_at.iter().map(assembly).collect::<Result<_, _>>()?;
         let asked = ProblemRecord::try_from(Job::from(file)).map_err(ProblemError::from)?;
-        if let Some(record) = self.finished.of(&asked.digest) {
+        if let Some(record) = self.searches.finished.of(&asked.digest) {
             let same = |c: &Candidate| c.linkage == linkage && c.crank_deg == drawn.crank_deg;
             if let Some(index) = record.candidates.iter().position(same) {
                 let mut record = (*record).clone();
@@ -313,64 +304,62 @@ impl Sources<'_> {
             annotate(&problem, candidate);
             candidate.error.to_raw = to_raw(&problem, candidate);
         }
-        Ok(Found { record: by_hand(asked, candidates), index: 0 })
+        // No search ended with it: it was fitted under the hand, and that was ended by hand.
+        let used = vec!["following-the-hand".into()];
+        let record = Record::new(asked, used, Reason::ByHand, Evaluations::default(), candidates);
+        Ok(Found { record, index: 0 })
     }
 
-    /// What is known of a linkage.
+    /// Returns the details of a linkage.
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn details(self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
-        let Found { record, index } = self.find(&ask.of, true)?;
-        let words = html::candidate_markup(&record, index).unwrap_or_default();
-        let summary = html::summary_markup(&record);
-        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
-        let path = &record.problem.resolved.task.path;
+    pub(super) fn details(&self, ask: &DetailsAsk) -> Result<Details, DetailsError> {
+        let found = self.find(&ask.of, true)?;
+        let Found { record, index } = &found;
+        let ProblemSpec { task: TaskSpec { path }, require, .. } = &record.problem.resolved;
         Ok(Details {
-            name: record.problem.name.clone(),
-            unit: record.problem.unit,
-            points: path.points.clone(),
-            closed: path.closed,
+            target: Target::from(&record.problem),
             tolerance: path.tolerance.clone(),
-            transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
+            transmission_deg_min: require.transmission_deg_min,
             candidates: record.candidates.len(),
-            shown: Shown::from(candidate),
-            summary,
-            words,
+            shown: Shown::from(found.candidate()),
+            summary: html::summary_markup(record),
+            words: html::candidate_markup(record, *index).unwrap_or_default(),
         })
     }
 
-    /// A linkage as a file.
+    /// Returns a linkage as a file.
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn file(self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
+    pub(super) fn file(&self, ask: &ExportAsk) -> Result<Handed, DetailsError> {
         let plain = ["html", "sheet", "points"].contains(&ask.format.as_str());
         if plain && !ask.set.is_empty() {
             return Err(DetailsError::NoSettings(ask.format.clone()));
         }
-        let Found { record, index } = self.find(&ask.of, ask.format == "html")?;
-        let candidate = record.candidates.get(index).ok_or(DetailsError::NoCandidate)?;
+        let found = self.find(&ask.of, ask.format == "html")?;
+        let Found { record, index } = &found;
         Ok(match ask.format.as_str() {
-            "html" => Handed::saved("html", html::report_html(&record, index)),
-            "sheet" => Handed::saved("svg", svg::candidate_svg(&record, index)),
-            "points" => Handed::saved("csv", csv::candidate_curve_csv(candidate)),
+            "html" => Handed::saved("html", html::report_html(record, *index)),
+            "sheet" => Handed::saved("svg", svg::candidate_svg(record, *index)),
+            "points" => Handed::saved("csv", csv::candidate_curve_csv(found.candidate())),
             other => {
                 let format: Format = other.parse()?;
                 let set: Vec<_> = ask.set.iter().map(|(k, v)| (k.clone(), v.clone())).collect();
                 let settings = Settings::parse(format, &set).map_err(DetailsError::Export)?;
-                let subject = Subject::of_candidate(&record, candidate);
+                let subject = Subject::of_candidate(record, found.candidate());
                 let bytes = export(&subject, format, &settings).map_err(DetailsError::Export)?.bytes;
                 Handed::saved(ending_of(format), bytes)
             }
         })
     }
 
-    /// Linkages side by side.
+    /// Compares linkages side by side.
     ///
     /// # Errors
     /// [`DetailsError`].
-    pub(super) fn compared(self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
+    pub(super) fn compared(&self, ask: &CompareAsk) -> Result<Handed, DetailsError> {
         if ask.of.is_empty() || ask.of.len() > MOST_COMPARED {
             return Err(DetailsError::HowMany);
         }
@@ -380,7 +369,7 @@ impl Sources<'_> {
             // With costs: they are worked out again where the record is proved.
             let Found { record, index } = self.find(source, true)?;
             let named = match source {
-                Source::Job(of) => self.shelf.folder().join(&of.name).display().to_string(),
+                Source::Job(of) => self.jobs.shelf.folder.join(&of.name).display().to_string(),
                 Source::Drawn(_) => format!("drawing {}", i + 1),
             };
             let run = Run { named, record, which: Which::Rank(index + 1) };
@@ -396,11 +385,7 @@ impl Sources<'_> {
     }
 }
 
-fn assembly(t1: i64) -> Option<AssemblyMode> {
-    serde_json::from_value(t1.into()).ok()
-}
-
-/// A candidate with what its limits cost.
+/// Returns a candidate with the costs of its limits.
 fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
     let mut outcome = SearchOutcome {
         candidates: vec![candidate],
@@ -417,13 +402,7 @@ fn priced(problem: &Problem, candidate: Candidate) -> Vec<Candidate> {
     outcome.candidates
 }
 
-/// The record of a linkage that no search ended with: it was fitted under the hand, and that was ended by hand.
-fn by_hand(problem: ProblemRecord, candidates: Vec<Candidate>) -> Record {
-    let used = vec!["following-the-hand".into()];
-    Record::new(problem, used, Reason::ByHand, Evaluations::default(), candidates)
-}
-
-/// The ending of the files of a format.
+/// Returns the ending of the files of a format.
 fn ending_of(format: Format) -> &'static str {
     match format {
         Format::SvgPlates => "svg",

@@ -1,4 +1,4 @@
-//! Who may ask: programs that name this host, pages that come from it, browsers that were let in with the token.
+//! Admits requests: those that name this host, from its own pages and from browsers that were let in with the token.
 
 use axum::body::Body;
 use axum::extract::{Request, State};
@@ -6,35 +6,34 @@ use axum::http::header::{self, HeaderMap, HeaderName, HeaderValue};
 use axum::http::{Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
-use std::fmt::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Requests a second that are answered in the long run, of those who are let in and of strangers each.
+/// The requests a second that are answered in the long run, of browsers with the cookie and of strangers each.
 const RATE: f64 = 100.0;
-/// Requests that are answered at once after a pause.
+/// The requests that are answered at once after a pause.
 const BURST: f64 = 300.0;
 /// The longest time that a request may take, its body included.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Where a tab's WebSocket is.
+/// The path of a tab's WebSocket.
 pub(super) const LIVE: &str = "/live";
 /// The largest body and the largest message, bytes.
 pub(super) const MOST_BYTES: usize = 256 * 1024;
 
-/// What lets a browser in.
+/// The secrets and the limits that admit requests.
 pub(super) struct Guard {
-    port: u16,
+    pub(super) port: u16,
     /// The token of the address that is printed; taken by the first who brings it.
     token: Mutex<Option<String>>,
-    /// What the cookie holds.
+    /// The value of the cookie.
     secret: String,
     known: Bucket,
     /// Apart, so that no page of another origin uses up what ours needs.
     strangers: Bucket,
 }
 
-/// Requests that are answered now, and when that was counted.
+/// The number of requests that would be answered now, and the time of that count.
 struct Bucket(Mutex<(f64, Instant)>);
 
 impl Bucket {
@@ -42,7 +41,7 @@ impl Bucket {
         Bucket(Mutex::new((BURST, Instant::now())))
     }
 
-    /// Whether there is room for one more request now.
+    /// Returns whether there is room for one more request now, and takes it.
     fn has_room(&self) -> bool {
         let mut bucket = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let now = Instant::now();
@@ -56,18 +55,14 @@ impl Bucket {
     }
 }
 
-/// 256 random bits as hexadecimal digits.
+/// Returns 256 random bits as hexadecimal digits.
 fn random() -> Result<String, getrandom::Error> {
     let mut bytes = [0u8; 32];
     getrandom::fill(&mut bytes)?;
-    Ok(bytes.iter().fold(String::new(), |mut text, byte| {
-        // Writing to a String cannot fail.
-        let _ = write!(text, "{byte:02x}");
-        text
-    }))
+    Ok(bytes.map(|byte| format!("{byte:02x}")).concat())
 }
 
-/// Whether two secrets are equal, in a time that does not tell where they differ.
+/// Returns whether two secrets are equal, in a time that does not depend on where they differ.
 fn same(one: &str, other: &str) -> bool {
     one.len() == other.len() && one.bytes().zip(other.bytes()).fold(0, |apart, (x, y)| apart | (x ^ y)) == 0
 }
@@ -83,7 +78,7 @@ impl Guard {
         })
     }
 
-    /// The token that has not been used yet.
+    /// Returns the token if it has not been used yet.
     pub(super) fn token(&self) -> Option<String> {
         self.token.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -98,7 +93,7 @@ impl Guard {
         right
     }
 
-    /// The cookie that says that the token was brought. Cookies know no ports, so the name does.
+    /// Returns the cookie for a browser that brought the token. Cookies hold for all ports, so its name holds the port.
     pub(super) fn cookie(&self) -> String {
         format!("{}={}; HttpOnly; SameSite=Strict; Path=/", self.cookie_name(), self.secret)
     }
@@ -107,7 +102,7 @@ impl Guard {
         format!("linkwright-studio-{}", self.port)
     }
 
-    /// Whether a request brings the cookie.
+    /// Returns whether a request brings the cookie.
     pub(super) fn knows(&self, headers: &HeaderMap) -> bool {
         let name = self.cookie_name();
         headers
@@ -119,7 +114,7 @@ impl Guard {
             .any(|(key, value)| key == name && same(value, &self.secret))
     }
 
-    /// Whether the request names this host: a page of another name that points here has another.
+    /// Returns whether a request names this host: a page under another name that leads here names that one.
     fn is_for_us(&self, headers: &HeaderMap) -> bool {
         let mut hosts = headers.get_all(header::HOST).iter();
         let host = hosts.next().and_then(|host| host.to_str().ok());
@@ -130,24 +125,24 @@ impl Guard {
             })
     }
 
-    /// Whether the request comes from our page; `needed`: whether it must say so.
+    /// Returns whether a request comes from our page alone; `needed`: whether it must say so.
     fn is_from_us(&self, headers: &HeaderMap, needed: bool) -> bool {
-        let text = |name: HeaderName| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
-        match (text(header::ORIGIN), text(header::HOST)) {
-            (None, _) => !needed,
-            (Some(origin), Some(host)) => origin.eq_ignore_ascii_case(&format!("http://{host}")),
-            (Some(_), None) => false,
-        }
+        let text = |value: &HeaderValue| value.to_str().map(str::to_ascii_lowercase).ok();
+        let ours = headers.get(header::HOST).and_then(text).map(|host| format!("http://{host}"));
+        let mut origins = headers.get_all(header::ORIGIN).iter().peekable();
+        (origins.peek().is_some() || !needed) && origins.all(|origin| ours.is_some() && text(origin) == ours)
     }
 
-    /// Why a request is refused before anything is done for it.
+    /// Returns the refusal of a request before anything is done for it.
     fn refusal(&self, request: &Request) -> Option<(StatusCode, &'static str)> {
         let headers = request.headers();
-        let upgrade = request.uri().path() == LIVE;
+        let live = request.uri().path() == LIVE;
         let bucket = if self.knows(headers) { &self.known } else { &self.strangers };
-        if !self.is_for_us(headers) {
+        if headers.contains_key(header::UPGRADE) && !live {
+            Some((StatusCode::BAD_REQUEST, "there is nothing to upgrade here\n"))
+        } else if !self.is_for_us(headers) {
             Some((StatusCode::MISDIRECTED_REQUEST, "the studio answers to 127.0.0.1 alone\n"))
-        } else if !self.is_from_us(headers, upgrade || request.method() != Method::GET) {
+        } else if !self.is_from_us(headers, live || request.method() != Method::GET) {
             Some((StatusCode::FORBIDDEN, "only the studio's own page may ask\n"))
         } else if announced(headers) > MOST_BYTES as u64 {
             Some((StatusCode::PAYLOAD_TOO_LARGE, "this is more than the studio reads\n"))
@@ -159,13 +154,13 @@ impl Guard {
     }
 }
 
-/// How long the body says it is; what says nothing clear is limited as it is read.
+/// Returns the announced length of a body; one without is limited as it is read.
 fn announced(headers: &HeaderMap) -> u64 {
     let length = headers.get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok());
     length.and_then(|text| text.parse().ok()).unwrap_or(0)
 }
 
-/// What every answer says of itself.
+/// Adds the headers that every answer has.
 fn with_headers(mut response: Response<Body>) -> Response<Body> {
     let policy = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; \
                   base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
@@ -182,7 +177,7 @@ fn with_headers(mut response: Response<Body>) -> Response<Body> {
     response
 }
 
-/// Stands before every route.
+/// Refuses or passes on every request, and limits its time.
 pub(super) async fn guarded(State(guard): State<Arc<Guard>>, request: Request, next: Next) -> Response<Body> {
     if let Some(refusal) = guard.refusal(&request) {
         // Whoever is refused makes room for others.

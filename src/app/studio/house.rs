@@ -1,7 +1,7 @@
 //! The state that all requests share, and the form of their answers.
 
 use super::asked::AskError;
-use super::details::{DetailsError, Sources};
+use super::details::DetailsError;
 use super::guard::Guard;
 use super::jobs::{Jobs, Refusal};
 use super::shelf::ShelfError;
@@ -25,13 +25,6 @@ pub(super) struct House {
     pub(super) work: Arc<Semaphore>,
     pub(super) tabs: Arc<Semaphore>,
     pub(super) closing: watch::Sender<bool>,
-}
-
-impl House {
-    /// Returns the places in which linkages are looked up.
-    pub(super) fn sources(&self) -> Sources<'_> {
-        Sources { shelf: self.jobs.shelf(), finished: self.searches.finished() }
-    }
 }
 
 /// The answer to a request, or its refusal.
@@ -67,10 +60,8 @@ impl Refusing for NameError {}
 
 impl Refusing for ShelfError {
     fn status(&self) -> StatusCode {
-        match self {
-            ShelfError::Absent(_) => StatusCode::NOT_FOUND,
-            ShelfError::Link(_) | ShelfError::Folder(_) => StatusCode::UNPROCESSABLE_ENTITY,
-        }
+        let absent = matches!(self, ShelfError::Absent(_));
+        if absent { StatusCode::NOT_FOUND } else { StatusCode::UNPROCESSABLE_ENTITY }
     }
 }
 

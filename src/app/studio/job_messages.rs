@@ -1,6 +1,6 @@
-//! What is said of jobs, as JSON; the schemas are made from these types.
+//! The messages about jobs, as JSON; the schemas are made from these types.
 
-use super::messages::{Ask, Shown};
+use super::messages::{Ask, Shown, Target};
 use crate::files::problem_file::ProblemFile;
 use crate::mechanism::Unit;
 use crate::record::{Candidate, ProblemRecord, Record};
@@ -26,7 +26,7 @@ pub struct JobAsk {
     pub replace: bool,
 }
 
-/// Where a job stands.
+/// The state of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum JobState {
@@ -42,7 +42,7 @@ pub enum JobState {
     Elsewhere,
     /// It could not be run or saved.
     Failed,
-    /// What its folder holds is no whole result.
+    /// Its folder does not hold a whole result.
     Unreadable,
 }
 
@@ -51,16 +51,16 @@ pub enum JobState {
 pub struct JobShown {
     /// Its name: that of its folder.
     pub name: String,
-    /// Where it stands.
+    /// Its state.
     pub state: JobState,
     /// The same in words.
     pub said: String,
-    /// Whether it can go on: from its checkpoint, or where there is none from the beginning.
+    /// Whether it can go on: from its checkpoint if there is one, else from the beginning.
     pub resumable: bool,
     /// While it runs: how far it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<JobProgress>,
-    /// What its folder holds.
+    /// The result in its folder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub result: Option<JobResult>,
 }
@@ -72,10 +72,10 @@ impl JobShown {
     }
 }
 
-/// How far a search is.
+/// The progress of a search.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct JobProgress {
-    /// What is being done.
+    /// The phase of the search.
     pub phase: String,
     /// Evaluations so far.
     pub evaluations: u64,
@@ -95,7 +95,7 @@ pub struct JobProgress {
     pub left_s: Option<f64>,
 }
 
-/// What a result's record says.
+/// The figures of a result's record.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct JobResult {
     /// The number of target points.
@@ -103,13 +103,13 @@ pub struct JobResult {
     /// The label of lengths.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unit: Option<Unit>,
-    /// Where every draw came from.
+    /// The seed of every draw.
     pub seed: u64,
     /// The method asked for.
     pub method: String,
-    /// How many candidates there are.
+    /// The number of candidates.
     pub candidates: usize,
-    /// How many of them are accepted.
+    /// The number of accepted candidates.
     pub accepted: usize,
     /// The best candidate.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -174,28 +174,22 @@ pub struct JobList {
     pub folder: String,
     /// The jobs.
     pub jobs: Vec<JobShown>,
-    /// How many more there are than are listed.
+    /// The number of further jobs that are not listed.
     pub more: usize,
 }
 
 /// A saved result, opened.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Opened {
-    /// What to ask for the same in a tab, where a tab can hold it.
+    /// The edit that asks the same in a tab, if a tab can hold it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ask: Option<Ask>,
-    /// Why it cannot, in words.
+    /// The reason why it cannot, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub why_not: Option<String>,
-    /// The problem's name.
-    pub name: String,
-    /// The label of lengths.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unit: Option<Unit>,
-    /// The target points.
-    pub points: Vec<[f64; 2]>,
-    /// Whether the target is a closed curve.
-    pub closed: bool,
+    /// The problem.
+    #[serde(flatten)]
+    pub target: Target,
     /// The candidates, better first.
     pub candidates: Vec<Shown>,
     /// The names of the result's files.
@@ -206,13 +200,13 @@ impl Opened {
     /// Opens a record; `files` are the names of its result's files.
     pub(super) fn new(record: Record, files: Vec<String>) -> Opened {
         let candidates = record.candidates.iter().map(Shown::from).collect();
+        let target = Target::from(&record.problem);
         let ProblemRecord { name, source, unit, resolved: spec, .. } = record.problem;
-        let (points, closed) = (spec.task.path.points.clone(), spec.task.path.closed);
         let file = ProblemFile { name, source, unit, spec, expect: None, warnings: Vec::new() };
         let (ask, why_not) = match Ask::of(&file) {
             Ok(ask) => (Some(ask), None),
             Err(why) => (None, Some(why.to_string())),
         };
-        Opened { ask, why_not, name: file.name, unit, points, closed, candidates, files }
+        Opened { ask, why_not, target, candidates, files }
     }
 }

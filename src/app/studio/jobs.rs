@@ -1,27 +1,25 @@
-//! Long searches: begun, watched, stopped, taken up again. Each runs as `linkwright synth` runs it, by
-//! [`save`], into a folder of its own.
+//! Runs long searches as jobs: begins, watches and stops them, and takes them up again. Each runs as `linkwright synth`
+//! runs it, by [`save`], into a folder of its own.
 //!
 //! Every job has as many threads as there are cores, all of low priority, so that jobs share the cores evenly, one
-//! that is alone has them all, and the hand's own answers come first. What is kept of a job in memory is where it
-//! stands; everything else is read from its folder. The problem of a job that runs stands in `.studio/NAME.json`
+//! that is alone has them all, and the hand's own answers come first. Memory holds only the progress of a job;
+//! everything else is read from its folder. The problem of a job that runs is in `.studio/NAME.json`
 //! beside the folders of results, until its result is saved: so one that was broken off or has failed can go on.
 
 use super::asked::{AskError, MOST_POINTS};
-use super::job_messages::{JobAsk, JobProgress};
-use super::shelf::{Shelf, ShelfError};
-use crate::app::job::folder::{FolderError, is_in_use, replace_file};
+use super::job_messages::{JobAsk, JobList, JobProgress, JobShown, JobState};
+use super::shelf::{Shelf, ShelfError, names_in, plain_file};
+use super::tab::BUG;
+use crate::app::job::folder::{is_in_use, replace_file};
 use crate::app::job::run::Job;
-use crate::app::job::save;
-use crate::app::job::save::{Listener, Options, Ran, SaveError};
-use crate::files::name;
-use crate::files::name::NameError;
-use crate::files::problem_file;
-use crate::files::problem_file::ProblemFile;
+use crate::app::job::save::{self, Listener, Options, Ran};
+use crate::files::name::{self, NameError};
+use crate::files::problem_file::{self, ProblemFile};
 use crate::report::text::at_most;
 use crate::synthesis::Progress;
 use crate::task::Problem;
-use std::collections::BTreeMap;
-use std::io;
+use std::collections::{BTreeMap, BTreeSet};
+use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,15 +30,17 @@ use std::time::{Duration, Instant};
 pub(super) const MOST_JOBS: usize = 16;
 /// Reasons of failed jobs that are kept.
 const MOST_FAILED: usize = 64;
-/// Where the problems of running jobs stand.
+/// The most jobs in a list.
+const MOST_LISTED: usize = 500;
+/// The folder of the problems of running jobs.
 const STARTED: &str = ".studio";
-/// How much lower than usual the priority of a job's threads is.
+/// The niceness of a job's threads, above the usual.
 const NICE: i32 = 10;
 
-/// Why something is not done with a job.
+/// The reason why something is not done with a job.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Refusal {
-    /// There is none of this name.
+    /// No job has this name.
     #[error("there is no job named {0}")]
     Absent(String),
     #[error("no job named {0} is running")]
@@ -65,29 +65,16 @@ pub(super) enum Refusal {
     #[error("{MOST_JOBS} jobs are running: wait for one or stop it")]
     TooMany,
     #[error("the job cannot begin: {0}")]
-    NotBegun(#[from] JobError),
+    NotBegun(Failure),
 }
 
-/// Why a job failed.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum JobError {
-    #[error("no threads to search with: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error(transparent)]
-    Save(#[from] SaveError),
-    #[error(transparent)]
-    System(#[from] io::Error),
-    #[error(transparent)]
-    Json(#[from] serde_json::Error),
-    #[error(transparent)]
-    Folder(#[from] FolderError),
-    #[error("this is a bug of linkwright: please report it")]
-    Bug,
-}
+/// The reason why a job failed, whatever it was: it is only shown.
+pub(super) type Failure = Box<dyn Error + Send + Sync>;
 
 /// All jobs of a studio.
 pub(super) struct Jobs {
-    shelf: Shelf,
+    /// The folder of the results.
+    pub(super) shelf: Shelf,
     running: Mutex<Running>,
     ended: Condvar,
 }
@@ -100,7 +87,7 @@ struct Running {
 }
 
 /// A job that runs.
-pub(super) struct OneJob {
+struct OneJob {
     cancel: AtomicBool,
     begun: Instant,
     points: usize,
@@ -109,44 +96,38 @@ pub(super) struct OneJob {
 
 #[derive(Default)]
 struct Told {
-    progress: Option<Progress>,
-    before: u64,
+    /// The latest progress, and the evaluations before the first.
+    progress: Option<(Progress, u64)>,
     said: String,
 }
 
 impl OneJob {
-    fn new(points: usize) -> Self {
-        OneJob { cancel: AtomicBool::new(false), begun: Instant::now(), points, told: Mutex::default() }
-    }
-
     fn told(&self) -> MutexGuard<'_, Told> {
         self.told.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn note(&self, progress: &Progress) {
         let mut told = self.told();
-        if told.progress.is_none() {
-            told.before = progress.evaluations;
-        }
-        told.progress = Some(progress.clone());
+        let before = told.progress.as_ref().map_or(progress.evaluations, |(_, before)| *before);
+        told.progress = Some((progress.clone(), before));
     }
 
-    /// Whether it was told to stop.
-    pub(super) fn is_stopping(&self) -> bool {
-        self.cancel.load(Ordering::SeqCst)
+    /// Returns how it is shown.
+    fn shown(&self, name: &str) -> JobShown {
+        let said = match &*self.told().said {
+            _ if self.cancel.load(Ordering::SeqCst) => "Stopping; what was found is being saved.".to_owned(),
+            "" => "Searching.".to_owned(),
+            said => said.to_owned(),
+        };
+        JobShown { progress: self.progress(), ..JobShown::new(name, JobState::Running, said, false) }
     }
 
-    /// What it has said of itself.
-    pub(super) fn said(&self) -> String {
-        self.told().said.clone()
-    }
-
-    /// Where it stands; `None` before its search has begun.
-    pub(super) fn progress(&self) -> Option<JobProgress> {
+    /// Returns how far it is; `None` before its search has begun.
+    fn progress(&self) -> Option<JobProgress> {
         let told = self.told();
-        let progress = told.progress.as_ref()?;
+        let (progress, before) = told.progress.as_ref()?;
         let elapsed_s = self.begun.elapsed().as_secs_f64();
-        let rate = progress.evaluations.saturating_sub(told.before) as f64 / elapsed_s.max(1e-3);
+        let rate = progress.evaluations.saturating_sub(*before) as f64 / elapsed_s.max(1e-3);
         let left = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
         Some(JobProgress {
             phase: progress.phase.to_owned(),
@@ -162,7 +143,7 @@ impl OneJob {
 }
 
 impl JobAsk {
-    /// The problem that is asked.
+    /// Returns the problem that is asked.
     ///
     /// # Errors
     /// [`AskError`].
@@ -187,38 +168,66 @@ impl JobAsk {
 }
 
 impl Jobs {
-    /// The jobs whose results stand in `folder`.
+    /// Creates the jobs whose results are in `folder`.
     pub(super) fn new(folder: &Path) -> Self {
         Jobs { shelf: Shelf::new(folder), running: Mutex::default(), ended: Condvar::new() }
-    }
-
-    /// What the folder holds.
-    pub(super) fn shelf(&self) -> &Shelf {
-        &self.shelf
     }
 
     fn running(&self) -> MutexGuard<'_, Running> {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The jobs that run now, and why others failed.
-    pub(super) fn now(&self) -> (BTreeMap<String, Arc<OneJob>>, BTreeMap<String, String>) {
-        let running = self.running();
-        (running.jobs.clone(), running.failed.clone())
+    /// Returns all jobs and results, by name.
+    pub(super) fn list(&self) -> JobList {
+        let folder = &self.shelf.folder;
+        let running: BTreeSet<String> = self.running().jobs.keys().cloned().collect();
+        let mut names: BTreeSet<String> = self.running().failed.keys().chain(&running).cloned().collect();
+        names.extend(names_in(folder));
+        let begun = names_in(&folder.join(STARTED));
+        names.extend(begun.iter().filter_map(|file| file.strip_suffix(".json")).map(str::to_owned));
+        names.retain(|name| name::check(name).is_ok());
+        let (mut jobs, mut more) = (Vec::new(), 0);
+        for name in names {
+            if jobs.len() >= MOST_LISTED && !running.contains(&name) {
+                more += 1;
+            } else {
+                jobs.extend(self.one(&name));
+            }
+        }
+        JobList { folder: folder.display().to_string(), jobs, more }
+    }
+
+    /// Returns one job; `None` if there is none of that name.
+    pub(super) fn one(&self, name: &str) -> Option<JobShown> {
+        let (job, failed) = {
+            let running = self.running();
+            (running.jobs.get(name).cloned(), running.failed.get(name).cloned())
+        };
+        if let Some(job) = job {
+            return Some(job.shown(name));
+        }
+        let begun = self.begun(name).is_some();
+        let shown = self.shelf.shown(name, begun).or_else(|| {
+            let said = "The studio ended before it did. It can go on from the beginning.".to_owned();
+            begun.then(|| JobShown::new(name, JobState::BrokenOff, said, true))
+        });
+        let Some(why) = failed else { return shown };
+        let result = shown.and_then(|shown| shown.result);
+        Some(JobShown { result, ..JobShown::new(name, JobState::Failed, why, begun) })
     }
 
     fn started(&self, name: &str) -> (PathBuf, String) {
-        (self.shelf.folder().join(STARTED), format!("{name}.json"))
+        (self.shelf.folder.join(STARTED), format!("{name}.json"))
     }
 
-    /// The problem of a job that was begun and has not ended.
-    pub(super) fn begun(&self, name: &str) -> Option<JobAsk> {
+    /// Returns the problem of a job that was begun and has not ended.
+    fn begun(&self, name: &str) -> Option<JobAsk> {
+        name::check(name).ok()?;
         let (folder, file) = self.started(name);
-        let text = std::fs::read(folder.join(file)).ok()?;
-        serde_json::from_slice(&text).ok()
+        serde_json::from_slice(&plain_file(&folder.join(file))?).ok()
     }
 
-    /// Begins a job; its name.
+    /// Begins a job and returns its name.
     ///
     /// # Errors
     /// [`Refusal`].
@@ -256,7 +265,7 @@ impl Jobs {
     /// Stops a job: its threads end at once, its best so far is saved.
     ///
     /// # Errors
-    /// [`Refusal::Absent`] where no such job runs.
+    /// [`Refusal::NotRunning`] if no such job runs.
     pub(super) fn cancel(&self, name: &str) -> Result<(), Refusal> {
         let job = self.running().jobs.get(name).cloned();
         job.ok_or_else(|| Refusal::NotRunning(name.to_owned()))?.cancel.store(true, Ordering::SeqCst);
@@ -266,7 +275,9 @@ impl Jobs {
     /// Begins the work; `ask` is kept until it has ended.
     fn begin(self: &Arc<Self>, job: Job, options: Options, ask: Option<&JobAsk>) -> Result<(), Refusal> {
         let name = job.name.clone();
-        let one = Arc::new(OneJob::new(job.spec.task.path.points.len()));
+        let points = job.spec.task.path.points.len();
+        let (cancel, told) = (AtomicBool::new(false), Mutex::default());
+        let one = Arc::new(OneJob { cancel, begun: Instant::now(), points, told });
         {
             let mut running = self.running();
             if running.closed {
@@ -275,7 +286,7 @@ impl Jobs {
             if running.jobs.contains_key(&name) {
                 return Err(Refusal::Running(name));
             }
-            if is_in_use(&self.shelf.folder().join(&name)) {
+            if is_in_use(&self.shelf.folder.join(&name)) {
                 return Err(Refusal::InUse(name));
             }
             if running.jobs.len() >= MOST_JOBS {
@@ -284,19 +295,18 @@ impl Jobs {
             running.failed.remove(&name);
             running.jobs.insert(name.clone(), Arc::clone(&one));
         }
+        let jobs = Arc::clone(self);
         let begun = self.keep(&name, ask).and_then(|()| {
-            let (jobs, one) = (Arc::clone(self), Arc::clone(&one));
             let work = move || jobs.work(&job, options, &one);
             Ok(std::thread::Builder::new().name("job".into()).spawn(work)?)
         });
-        if let Err(why) = begun {
+        begun.map(drop).map_err(|why| {
             self.over(&name, Some(&why));
-            return Err(why.into());
-        }
-        Ok(())
+            Refusal::NotBegun(why)
+        })
     }
 
-    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), JobError> {
+    fn keep(&self, name: &str, ask: Option<&JobAsk>) -> Result<(), Failure> {
         let Some(ask) = ask else { return Ok(()) };
         let (folder, file) = self.started(name);
         std::fs::create_dir_all(&folder)?;
@@ -305,10 +315,10 @@ impl Jobs {
 
     fn work(&self, job: &Job, options: Options, one: &OneJob) {
         let ran = catch_unwind(AssertUnwindSafe(|| self.run(job, options, one)));
-        self.over(&job.name, ran.unwrap_or(Err(JobError::Bug)).err().as_ref());
+        self.over(&job.name, ran.unwrap_or_else(|_| Err(BUG.into())).err().as_ref());
     }
 
-    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), JobError> {
+    fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), Failure> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| stand_back());
         let pool = pool.build()?;
@@ -319,7 +329,7 @@ impl Jobs {
             },
             tell: &|text| one.told().said = text.into(),
         };
-        let place = self.shelf.folder().join(&job.name);
+        let place = self.shelf.folder.join(&job.name);
         let run = || save::run(job, &place, options, listener, &one.cancel, one.begun);
         if let Ran::Written(written) = pool.install(run)? {
             for put in save::put_in_place(vec![written]) {
@@ -329,11 +339,11 @@ impl Jobs {
         Ok(())
     }
 
-    /// A job has ended. One that has failed keeps its problem, so that it can be taken up.
-    fn over(&self, name: &str, failed: Option<&JobError>) {
+    /// Notes that a job has ended. One that has failed keeps its problem, so that it can be taken up.
+    fn over(&self, name: &str, failed: Option<&Failure>) {
         if failed.is_none() {
             let (folder, file) = self.started(name);
-            // What cannot be taken away shows the job as broken off, and it can be taken up to its end.
+            // If the file stays, the job is shown as broken off, and can be taken up to its end.
             let _ = std::fs::remove_file(folder.join(file));
         }
         let mut running = self.running();

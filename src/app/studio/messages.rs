@@ -1,22 +1,19 @@
-//! What a tab and the studio say to each other, as JSON; the schemas are made from these types.
+//! The messages between a tab and the studio, as JSON; the schemas are made from these types.
 
 use crate::files::problem_file::Expect;
-use crate::judge::assess::assess;
-use crate::mechanism::Unit;
-use crate::mechanism::{LinkageType, NaturalCoordinates};
-use crate::record::{Candidate, ExactLinkage, ExactRecord, Relaxation};
+use crate::mechanism::{LinkageType, NaturalCoordinates, Unit};
+use crate::record::{Candidate, ExactLinkage, ExactRecord, ProblemRecord, Relaxation};
 use crate::report::exact;
 use crate::report::html::Drive;
-use crate::task::Problem;
 use crate::task::spec::{
-    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, RawPoints, TimingSpec,
-    TransmissionOver,
+    ClosingPolicy, DirectionPolicy, Method, Objective, OnePolicy, OrderPolicy, PathSpec, RawPoints,
+    TimingSpec, TransmissionOver,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A target and what its linkage must satisfy, as it stands in a tab. All lengths are in `unit`.
+/// An edit: a target and the requirements of its linkage, as a tab has them. All lengths are in `unit`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ask {
@@ -46,7 +43,7 @@ pub struct Ask {
     /// The crank angle at each point; absent: free.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub timing: Option<TimingSpec>,
-    /// What `points` were before they were smoothed or resampled; not read where they no longer come from it.
+    /// The digitised points that `points` were smoothed or resampled from; not read if they no longer are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub raw: Option<RawPoints>,
     /// The types allowed; empty: any.
@@ -70,7 +67,7 @@ pub struct Ask {
     /// Whether the points must be passed in order.
     #[serde(default, skip_serializing_if = "is_default")]
     pub order: OrderPolicy,
-    /// Which way the crank turns.
+    /// The way in which the crank turns.
     #[serde(default, skip_serializing_if = "is_default")]
     pub direction: DirectionPolicy,
     /// Whether the motion must stay on one circuit.
@@ -79,25 +76,25 @@ pub struct Ask {
     /// Whether the motion must stay on one branch.
     #[serde(default, skip_serializing_if = "is_default")]
     pub branch: OnePolicy,
-    /// How a target that ends where it begins is closed.
+    /// The way in which a target that ends where it begins is closed.
     #[serde(default, skip_serializing_if = "is_default")]
     pub closing: ClosingPolicy,
-    /// How to search; `continuation`: all linkages through exactly nine points.
+    /// The method of the search; `continuation`: all linkages through exactly nine points.
     #[serde(default, skip_serializing_if = "is_default")]
     pub method: Method,
-    /// What is minimised.
+    /// The quantity that is minimised.
     #[serde(default, skip_serializing_if = "is_default")]
     pub objective: Objective,
     /// Other keys of the problem file under `design`, `require` and `solve`, each with its value as it is typed there.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub kept: BTreeMap<String, String>,
-    /// Where the problem comes from, in words.
+    /// The source of the problem, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub source: Option<String>,
-    /// What is known of the answer; not read where the problem is another by now.
+    /// The known answer; not read if the problem is another by now.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expect: Option<Known>,
-    /// Where every draw comes from.
+    /// The seed of every draw.
     #[serde(default = "one")]
     pub seed: u64,
     /// The hand is still moving: the search waits until it rests.
@@ -108,11 +105,11 @@ pub struct Ask {
     pub fresh: bool,
 }
 
-/// What is known of a problem's answer, as it stands under `[expect]` in its file.
+/// The known answer of a problem, as under `[expect]` in its file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Known {
-    /// Tells the problem that it is known of: its target, bounds, requirements and objective.
+    /// A hash of the problem that it belongs to: of its target, bounds, requirements and objective.
     pub of: String,
     /// The figures.
     pub answer: Expect,
@@ -130,7 +127,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
-/// What the studio is doing for a tab.
+/// The activity of the studio for a tab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Doing {
@@ -150,19 +147,19 @@ pub enum Doing {
 pub struct Answer {
     /// The edit's version.
     pub version: u64,
-    /// What is being done.
+    /// The activity.
     pub doing: Doing,
-    /// The same in words: what is done, how sure it is, and what stands in the way.
+    /// The same in words: what is done, how sure it is, and what prevents better answers.
     pub said: String,
-    /// How far the search is, 0 to 1 of its budget; most end before it is used up.
+    /// The part of the search's budget that is used, 0 to 1; most searches end before it is used up.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<f64>,
     /// The linkages, better first; in exact mode all real ones through the nine points.
     pub candidates: Vec<Shown>,
-    /// In exact mode: how many linkages there are through the nine points, and of what kind.
+    /// In exact mode: the numbers of linkages through the nine points, by kind.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nine: Option<Counted>,
-    /// Where nothing is acceptable: the changes that help, nearest first.
+    /// If nothing is acceptable: the changes that help, nearest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub relaxations: Vec<Relaxation>,
 }
@@ -205,7 +202,7 @@ pub struct Shown {
     pub rank: usize,
     /// The linkage, as in linkage files.
     pub linkage: NaturalCoordinates,
-    /// How it is driven over its motion.
+    /// Its drive over its motion.
     pub drive: Drive,
     /// The crank angle at each target point, degrees.
     pub crank_deg: Vec<f64>,
@@ -228,23 +225,17 @@ pub struct Shown {
     pub accepted: bool,
     /// The requirements that are not met, by their keys, and the defects.
     pub unmet: Vec<String>,
-    /// Through nine points: what the best of the curve's six mechanisms can do.
+    /// Through nine points: the abilities of the best of the curve's six mechanisms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ability: Option<String>,
-    /// Through nine points: one exact linkage is proved to stand this near.
+    /// Through nine points: the proved distance within which there is one exact linkage.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified_within: Option<f64>,
 }
 
 impl Shown {
-    /// A real linkage through nine points, judged; `None` where it cannot be.
-    pub(super) fn exact(problem: &Problem, rank: usize, linkage: &ExactLinkage) -> Option<Shown> {
-        let judged = assess(problem, &linkage.linkage, &linkage.crank_deg, &linkage.t1_at)?;
-        Some(Shown::judged(&judged, rank, linkage))
-    }
-
-    /// A real linkage through nine points that is judged already.
-    pub(super) fn judged(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
+    /// Returns a real linkage through nine points that is judged.
+    pub(super) fn exact(judged: &Candidate, rank: usize, linkage: &ExactLinkage) -> Shown {
         Shown {
             rank,
             ability: Some(exact::ability(linkage).into()),
@@ -277,6 +268,27 @@ impl From<&Candidate> for Shown {
     }
 }
 
+/// The target of a problem, with its name.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct Target {
+    /// The problem's name.
+    pub name: String,
+    /// The label of lengths.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unit: Option<Unit>,
+    /// The target points.
+    pub points: Vec<[f64; 2]>,
+    /// Whether the target is a closed curve.
+    pub closed: bool,
+}
+
+impl From<&ProblemRecord> for Target {
+    fn from(ProblemRecord { name, unit, resolved, .. }: &ProblemRecord) -> Target {
+        let PathSpec { points, closed, .. } = &resolved.task.path;
+        Target { name: name.clone(), unit: *unit, points: points.clone(), closed: *closed }
+    }
+}
+
 /// A linkage to be written as a file.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -291,7 +303,7 @@ pub struct LinkageAsk {
     pub linkage: NaturalCoordinates,
 }
 
-/// What a text is.
+/// The kind of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -307,9 +319,9 @@ pub enum Kind {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Text {
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
-    /// What to call it in messages; a problem without a name takes this one's.
+    /// Its name in messages, and that of a problem without a name.
     #[serde(default)]
     pub name: String,
     /// The text itself.
@@ -317,23 +329,23 @@ pub struct Text {
     /// The id of a drawing's shape; absent: the first.
     #[serde(default)]
     pub svg_id: Option<String>,
-    /// How many points are taken along a drawing; absent: 60.
+    /// The number of points taken along a drawing; absent: 60.
     #[serde(default)]
     pub samples: Option<usize>,
-    /// What a drawing's physical lengths are to be given in; absent: mm.
+    /// The unit into which a drawing's physical lengths are converted; absent: mm.
     #[serde(default)]
     pub unit: Option<Unit>,
 }
 
-/// What was read.
+/// A text that was read.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Reading {
-    /// What to ask for it. Where it is not whole, only the points with what stands beside them, `closed` and `unit`
-    /// were in the text.
+    /// The edit that asks for it. If it is not whole, the text held only the points with their columns, `closed` and
+    /// `unit`.
     pub ask: Ask,
     /// Whether it is a whole problem, with its requirements.
     pub whole: bool,
-    /// What was ignored or cannot succeed.
+    /// Warnings about values that are ignored or cannot succeed.
     pub warnings: Vec<String>,
 }
 

@@ -1,17 +1,17 @@
 //! A local page that answers while a target is drawn.
 //!
 //! ```text
-//! messages.rs     what a tab says and what it is answered, as JSON
-//! asked.rs        what a tab asks as a problem file, and a problem file as what a tab asks
+//! messages.rs     the messages between a tab and the studio, as JSON
+//! asked.rs        a tab's edit as a problem file, and a problem file as an edit
 //! reading.rs      texts that are pasted or dropped, read by the readers of files
 //! tab.rs          one tab's work: a mailbox of one, the answers that follow the hand, the search behind them
-//! jobs.rs         long searches that are saved; shelf.rs: what the folder of results holds; listing.rs: both shown
+//! jobs.rs         long searches that are saved; shelf.rs: the folder of results
 //! details.rs      one linkage: what the report says of it, files, comparisons
 //! status.rs       how a search ended, in words
 //! routes.rs       every request that is answered; openapi.rs: the same described
 //! server.rs       the server, the page, the WebSocket
 //! house.rs        the state that all requests share, the form of their answers
-//! guard.rs        who may ask: Host, Origin, token and cookie, rate; headers of every answer
+//! guard.rs        admission: Host, Origin, token and cookie, rate; headers of every answer
 //! connection.rs   how many connections there may be, and for how long a silent one stays
 //! page/           the page, its style and its script: built from studio/
 //! ```
@@ -27,7 +27,6 @@ mod guard;
 mod house;
 pub mod job_messages;
 mod jobs;
-mod listing;
 pub mod messages;
 pub mod openapi;
 pub mod reading;

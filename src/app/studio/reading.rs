@@ -2,10 +2,8 @@
 
 use super::asked::{AskError, MOST_POINTS, NotHere, said};
 use super::messages::{Ask, Kind, Reading, Text};
-use crate::files::problem_file;
-use crate::files::svg_file;
-use crate::files::svg_file::SvgOptions;
-use crate::files::{name, points_file};
+use crate::files::svg_file::{self, SvgOptions};
+use crate::files::{name, points_file, problem_file};
 use crate::task::spec::TimingSpec;
 
 /// Reads a text as the file that it would be. No other file is opened.

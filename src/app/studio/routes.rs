@@ -26,9 +26,11 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
 
-/// Requests that are worked on at once; more wait, and not for long.
+/// The most requests that are worked on at once; more wait, and not for long.
 pub(super) const AT_ONCE: usize = 2;
 
+/// The refusal of a body that is not what is asked for.
+const UNREADABLE: &str = "this cannot be read";
 const JSON: &str = "application/json";
 const TOML: &str = "application/toml; charset=utf-8";
 const JS: &str = "text/javascript; charset=utf-8";
@@ -77,13 +79,14 @@ impl Route {
         Route::new(method, path, A::BODY, if method == "get" { get(handler) } else { post(handler) })
     }
 
-    /// Creates a `POST` of a message.
-    fn asked<M: Message + 'static, A: Answer + 'static>(
+    /// Creates a `POST` of a message in JSON; another body is refused with `otherwise`.
+    fn asked<M: DeserializeOwned + JsonSchema + 'static, A: Answer + 'static>(
         path: &'static str,
+        otherwise: &'static str,
         answer: fn(&House, M) -> Answered<A>,
     ) -> Route {
-        let read = |body: Bytes| {
-            let refused = |e| Refused(StatusCode::UNPROCESSABLE_ENTITY, format!("{}: {e}", M::REFUSED));
+        let read = move |body: Bytes| {
+            let refused = |e| Refused(StatusCode::UNPROCESSABLE_ENTITY, format!("{otherwise}: {e}"));
             serde_json::from_slice(&body).map_err(refused)
         };
         let handler = move |State(house), body| worked(house, move |house| answer(house, read(body)?));
@@ -108,29 +111,6 @@ impl Route {
         };
         Route { status, handler: self.handler.layer(map_response(set)), ..self }
     }
-}
-
-/// A message that a request brings.
-trait Message: DeserializeOwned + JsonSchema {
-    /// The refusal of a body that is no such message.
-    const REFUSED: &str = "this cannot be read";
-}
-
-impl Message for CompareAsk {}
-impl Message for DetailsAsk {}
-impl Message for ExportAsk {}
-impl Message for JobAsk {}
-
-impl Message for Ask {
-    const REFUSED: &str = "this is no edit";
-}
-
-impl Message for LinkageAsk {
-    const REFUSED: &str = "this is no linkage";
-}
-
-impl Message for Text {
-    const REFUSED: &str = "this is no text with its kind";
 }
 
 /// An answer with the description of its body.
@@ -186,17 +166,17 @@ fn routes_of_the_page() -> Vec<Route> {
         plain("/openapi.json", JSON, get(async || document().response())).summed_up("This document."),
         plain("/beginning.json", JSON, get(beginning))
             .summed_up("The `Ask` of the problem that the studio was started with, or null."),
-        Route::asked("/problem.toml", |_, ask: Ask| Ok(Handed::shown("toml", ask.problem_with_text()?.1)))
+        Route::asked("/problem.toml", "this is no edit", |_, ask: Ask| Ok(Handed::shown("toml", ask.problem_with_text()?.1)))
             .giving(TOML)
             .summed_up("The problem file that asks the same."),
-        Route::asked("/linkage.toml", |_, ask: LinkageAsk| {
+        Route::asked("/linkage.toml", "this is no linkage", |_, ask: LinkageAsk| {
             name::check(&ask.name)?;
             let linkage = FourBar::new(ask.linkage)?;
             Ok(Handed::shown("toml", linkage_file::to_toml(&ask.name, ask.unit, &linkage)))
         })
         .giving(TOML)
         .summed_up("The linkage file of a linkage."),
-        Route::asked("/read", |_, text: Text| Ok(reading::read(&text)?)).summed_up(
+        Route::asked("/read", "this is no text with its kind", |_, text: Text| Ok(reading::read(&text)?)).summed_up(
             "What to ask for a text that was pasted or dropped: a points file, a drawing or a problem file.",
         ),
     ]
@@ -206,7 +186,7 @@ fn routes_of_jobs() -> Vec<Route> {
     vec![
         Route::named("get", "/jobs", |house, ()| Ok(house.jobs.list()))
             .summed_up("All jobs: those that run and all results of the folder, whoever made them."),
-        Route::asked("/jobs", |house, ask: JobAsk| job(house, &house.jobs.start(&ask)?))
+        Route::asked("/jobs", UNREADABLE, |house, ask: JobAsk| job(house, &house.jobs.start(&ask)?))
             .with(StatusCode::CREATED)
             .summed_up(
                 "Begins a search whose result is saved, the same to the byte as that of `linkwright synth`.",
@@ -223,13 +203,13 @@ fn routes_of_jobs() -> Vec<Route> {
         .with(StatusCode::ACCEPTED)
         .summed_up("Takes up a job that was stopped or broken off, from its checkpoint where there is one."),
         Route::named("get", "/jobs/{name}/opened", |house, name: String| {
-            let shelf = house.jobs.shelf();
+            let shelf = &house.jobs.shelf;
             Ok(Opened::new(shelf.record(&name)?, shelf.files(&name)))
         })
         .summed_up("A saved result: its problem as a tab asks it, its candidates."),
         Route::named("get", "/jobs/{name}/files/{file}", |house, (name, file): (String, String)| {
             let absent = || format!("there is no file {file} of a result named {name}");
-            let bytes = house.jobs.shelf().file(&name, &file);
+            let bytes = house.jobs.shelf.file(&name, &file);
             Ok(Handed::named(&file, bytes.ok_or_else(|| Refused(StatusCode::NOT_FOUND, absent()))?))
         })
         .summed_up("A file of a saved result, such as record.json, as it is on the disk."),
@@ -238,11 +218,11 @@ fn routes_of_jobs() -> Vec<Route> {
 
 fn routes_of_linkages() -> Vec<Route> {
     vec![
-        Route::asked("/details", |house, ask: DetailsAsk| Ok(house.sources().details(&ask)?))
+        Route::asked("/details", UNREADABLE, |house, ask: DetailsAsk| Ok(house.details(&ask)?))
             .summed_up("Everything that the report says of a linkage."),
-        Route::asked("/export", |house, ask: ExportAsk| Ok(house.sources().file(&ask)?))
+        Route::asked("/export", UNREADABLE, |house, ask: ExportAsk| Ok(house.file(&ask)?))
             .summed_up("A linkage as a file, as `linkwright export` and `linkwright report` write it."),
-        Route::asked("/compare", |house, ask: CompareAsk| Ok(house.sources().compared(&ask)?))
+        Route::asked("/compare", UNREADABLE, |house, ask: CompareAsk| Ok(house.compared(&ask)?))
             .giving(JSON)
             .summed_up("Linkages side by side, as `linkwright compare` puts them."),
     ]

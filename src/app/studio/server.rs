@@ -1,7 +1,7 @@
-//! Routes, the page, the WebSocket.
+//! Serves the routes, the page and the tabs' WebSockets.
 
 use super::connection::Limited;
-use super::guard::{Guard, LIVE, MOST_BYTES, guarded};
+use super::guard::{Guard, MOST_BYTES, guarded};
 use super::house::{House, content};
 use super::jobs::Jobs;
 use super::messages::Ask;
@@ -12,7 +12,7 @@ use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{HeaderMap, StatusCode, Uri, header};
-use axum::middleware::{Next, from_fn, from_fn_with_state};
+use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr};
@@ -25,18 +25,18 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 use tokio::time::{interval, sleep, timeout};
 
-/// Tabs at once.
+/// The most tabs at once.
 const MOST_TABS: usize = 16;
-/// A tab that takes no answer for so long is closed.
+/// The time after which a tab that takes no answer is closed.
 const PATIENCE: Duration = Duration::from_secs(10);
-/// A tab is pinged so often.
+/// The time between two pings of a tab.
 const PING: Duration = Duration::from_secs(15);
-/// How often it is looked whether the studio is to end.
+/// The time between two looks whether the studio is to end.
 const LOOK: Duration = Duration::from_millis(50);
-/// How long connections have to end.
+/// The time that connections have to end.
 const FAREWELL: Duration = Duration::from_secs(2);
 
-/// Why there is no studio.
+/// The reason why there is no studio.
 #[derive(Debug, thiserror::Error)]
 pub enum StudioError {
     /// The port is taken, or may not be used.
@@ -44,7 +44,7 @@ pub enum StudioError {
     Port {
         /// The port.
         port: u16,
-        /// Why.
+        /// The error of the system.
         source: io::Error,
     },
     /// The system gives no random numbers for the token.
@@ -55,11 +55,10 @@ pub enum StudioError {
     System(#[from] io::Error),
 }
 
-/// A studio that listens, and answers when it is [served](Studio::serve).
+/// A studio that listens, and answers while it [serves](Studio::serve).
 pub struct Studio {
     runtime: Runtime,
     listener: TcpListener,
-    port: u16,
     house: Arc<House>,
 }
 
@@ -68,7 +67,7 @@ impl Studio {
     /// results in folders inside of `results`.
     ///
     /// # Errors
-    /// [`StudioError`] where the port is taken or the system gives no server.
+    /// [`StudioError`] if the port is taken or the system gives no server.
     pub fn bind(port: u16, beginning: Option<&Ask>, results: &Path) -> Result<Studio, StudioError> {
         // One thread carries messages; the work is done on others.
         let runtime = Builder::new_current_thread().enable_io().enable_time().build()?;
@@ -86,32 +85,27 @@ impl Studio {
             tabs: Arc::new(Semaphore::new(MOST_TABS)),
             closing: watch::Sender::new(false),
         };
-        Ok(Studio { runtime, listener, port, house: Arc::new(house) })
+        Ok(Studio { runtime, listener, house: Arc::new(house) })
     }
 
-    /// The port.
-    pub fn port(&self) -> u16 {
-        self.port
-    }
-
-    /// The address to open, with the token that lets one browser in.
+    /// Returns the address to open, with the token that lets one browser in.
     pub fn address(&self) -> String {
-        let token = self.house.guard.token().unwrap_or_default();
-        format!("http://127.0.0.1:{}/?token={token}", self.port)
+        let guard = &self.house.guard;
+        format!("http://127.0.0.1:{}/?token={}", guard.port, guard.token().unwrap_or_default())
     }
 
-    /// Answers until `end` is set; then tells the tabs, stops their searches and returns.
+    /// Answers until `end` is set; then closes the tabs, stops their searches and returns.
     ///
     /// # Errors
-    /// [`StudioError::System`] where the server breaks down.
+    /// [`StudioError::System`] if the server breaks down.
     pub fn serve(self, end: &AtomicBool) -> Result<(), StudioError> {
-        let Studio { runtime, listener, house, .. } = self;
+        let Studio { runtime, listener, house } = self;
         let (closing, jobs) = (house.closing.clone(), Arc::clone(&house.jobs));
         let app = router(house);
         let served = runtime.block_on(async {
             let mut goodbye = closing.subscribe();
             let server = axum::serve(Limited::new(listener), app).with_graceful_shutdown(async move {
-                // It is told once, or the sender is gone: either way the end has come.
+                // An error says that the sender is gone: the end has come as well.
                 let _ = goodbye.wait_for(|closing| *closing).await;
             });
             let asked_to_end = async {
@@ -142,16 +136,7 @@ fn router(house: Arc<House>) -> Router {
         .fallback(|| async { (StatusCode::NOT_FOUND, "there is no such page\n") })
         .layer(DefaultBodyLimit::max(MOST_BYTES))
         .layer(from_fn_with_state(guard, guarded))
-        .layer(from_fn(no_upgrade_elsewhere))
         .with_state(house)
-}
-
-/// An upgrade to anything is answered at one place alone.
-async fn no_upgrade_elsewhere(request: Request, next: Next) -> Response {
-    if request.headers().contains_key(header::UPGRADE) && request.uri().path() != LIVE {
-        return (StatusCode::BAD_REQUEST, "there is nothing to upgrade here\n").into_response();
-    }
-    next.run(request).await
 }
 
 /// Lets in whoever brings the cookie; the page itself lets in whoever brings the token.
@@ -166,7 +151,7 @@ fn stranger() -> Response {
     (StatusCode::FORBIDDEN, why).into_response()
 }
 
-/// The page; with the token in the address, the cookie and the way to the address without it.
+/// Answers with the page; with the token in the address, with the cookie and the way to the address without it.
 pub(super) async fn page(State(house): State<Arc<House>>, uri: Uri, headers: HeaderMap) -> Response {
     let token = uri.query().and_then(|query| query.strip_prefix("token="));
     match token {
@@ -181,7 +166,7 @@ pub(super) async fn page(State(house): State<Arc<House>>, uri: Uri, headers: Hea
     }
 }
 
-/// A tab's WebSocket.
+/// Opens a tab's WebSocket.
 pub(super) async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgrade) -> Response {
     let Ok(place) = Arc::clone(&house.tabs).try_acquire_owned() else {
         let why = format!("{MOST_TABS} tabs are open: close one\n");
@@ -194,12 +179,12 @@ pub(super) async fn live(State(house): State<Arc<House>>, upgrade: WebSocketUpgr
         .on_upgrade(move |socket| tab(socket, house, place))
 }
 
-/// Carries what a tab says to its mailbox and the latest answer to the tab.
+/// Carries a tab's messages to its mailbox and the latest answer to the tab.
 ///
 /// Its place is free again when its worker has ended.
 async fn tab(mut socket: WebSocket, house: Arc<House>, place: OwnedSemaphorePermit) {
     let mail = Arc::new(Mailbox::default());
-    let (tell, mut told) = watch::channel::<Told>(None);
+    let (tell, mut told) = watch::channel(Told::default());
     let (mine, searches) = (Arc::clone(&mail), Arc::clone(&house.searches));
     let worker = std::thread::Builder::new().name("tab".into()).spawn(move || {
         let _place = place;
@@ -212,11 +197,10 @@ async fn tab(mut socket: WebSocket, house: Arc<House>, place: OwnedSemaphorePerm
     let mut ping = interval(PING);
     loop {
         let send = tokio::select! {
-            changed = told.changed() => match (changed, told.borrow_and_update().clone()) {
-                (Ok(()), Some(answer)) => Message::Text(answer.as_ref().into()),
-                (Ok(()), None) => continue,
+            changed = told.changed() => match changed {
+                Ok(()) => Message::Text((&**told.borrow_and_update()).into()),
                 // The worker is gone: there is nothing more to say.
-                (Err(_), _) => break,
+                Err(_) => break,
             },
             _ = ping.tick() => Message::Ping(Bytes::new()),
             _ = closing.wait_for(|closing| *closing) => break,

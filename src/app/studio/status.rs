@@ -1,11 +1,11 @@
-//! What a search came to, in words: how sure it is, and where nothing is acceptable what stands in the way.
+//! Words for a search: what it is doing, how it ended, how sure its answer is, and which requirements conflict.
 
 use crate::record::{Completeness, ExactRecord, Reason, Record};
 use crate::report::{exact, table};
 use crate::synthesis::{HitsSoFar, Progress};
 use crate::task::requirement::RequirementKind;
 
-/// What a search is doing.
+/// Describes the activity of a search.
 pub(super) fn under_way(progress: &Progress) -> String {
     match (progress.phase, progress.accepted) {
         ("what would help", _) => "Nothing acceptable was found: trying which change would help.".into(),
@@ -20,13 +20,13 @@ pub(super) fn under_way(progress: &Progress) -> String {
     }
 }
 
-/// How a search ended and how sure its best answer is.
+/// Describes how a search ended and how sure its best answer is.
 pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> String {
     let end = table::ending_sentences(record);
     let mut said = match record.candidates.first() {
         None => "Nothing was found.".to_owned(),
         Some(best) if best.accepted => sure(record, hits),
-        // What the attempts with other requirements came to says nothing of this one.
+        // The hits of attempts with other requirements say nothing about this one.
         Some(_) => format!("{} {}", in_the_way(record), sure(record, None)),
     };
     said.push('\n');
@@ -34,7 +34,7 @@ pub(super) fn ended(record: &Record, hits: Option<HitsSoFar>) -> String {
     said
 }
 
-/// How sure it is that nothing better was missed.
+/// Describes how sure it is that nothing better was missed.
 fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
     if let Some(exact) = record.exact.as_ref().filter(|_| record.method.used == ["continuation"]) {
         return match exact.completeness {
@@ -77,13 +77,13 @@ fn sure(record: &Record, hits: Option<HitsSoFar>) -> String {
     }
 }
 
-/// A requirement in plain words.
+/// Returns a requirement in plain words.
 pub(super) fn plain(key: &str) -> String {
     let bounds = || key.strip_prefix("design.").map_or(key.to_owned(), |key| format!("the bounds of {key}"));
     RequirementKind::with_key(key).map_or_else(bounds, |kind| kind.definition().plain.to_owned())
 }
 
-/// Which requirements are not met together, and whether a change helps.
+/// Names the requirements that are not met together, and says whether a change helps.
 fn in_the_way(record: &Record) -> String {
     let among = record.conflict.as_ref().map_or(&[][..], |conflict| &conflict.among);
     let named: Vec<String> = among.iter().map(|key| plain(key)).collect();
@@ -102,7 +102,7 @@ fn in_the_way(record: &Record) -> String {
     format!("{way} {help}")
 }
 
-/// All linkages through nine points, counted in words; proofs where there are any.
+/// Counts all linkages through nine points in words, with proofs if there are any.
 pub(super) fn census(record: &ExactRecord) -> Vec<String> {
     if record.completeness == Completeness::NonGeneric && record.census.classes == 0 {
         return vec![
@@ -112,7 +112,7 @@ pub(super) fn census(record: &ExactRecord) -> Vec<String> {
     }
     let [found, real, paths, proof] = exact::sentences(record);
     let counted = &record.census;
-    // What is isolated is known by its proof.
+    // Solutions are known to be isolated by their proofs.
     match (counted.certified, record.completeness) {
         (0, Completeness::Complete) => vec![found, real],
         (0, _) => vec![format!("{} solutions up to cognates so far, not yet proved.", counted.classes), real],
