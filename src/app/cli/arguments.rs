@@ -94,7 +94,7 @@ pub struct Synth {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Set any key of the problem file, e.g. --set solve.candidates=9
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "solve.candidates=9"))]
     pub set: Vec<(String, String)>,
     /// The answers alone, not what conflicts, what can be built or what limits cost: as `--set solve.advice=false`
     #[arg(long)]
@@ -191,7 +191,6 @@ pub struct Verify {
 #[derive(Debug, Args)]
 pub struct Certify {
     /// A result's folder
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// How far below the best candidate the proved bound may be, relative
     #[arg(long, value_name = "G", default_value_t = CertifySpec::default().gap, allow_negative_numbers = true, value_parser = gap)]
@@ -214,7 +213,6 @@ pub struct Certify {
 #[derive(Debug, Args)]
 pub struct Report {
     /// A result's folder or record.json; `:2` shows its second candidate first
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// Where the page goes [default: report.html in the folder, or beside a record under another name]
     #[arg(long, value_name = "FILE")]
@@ -228,7 +226,6 @@ pub struct Report {
 #[derive(Debug, Args)]
 pub struct Analyze {
     /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
-    #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
     #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
@@ -269,7 +266,6 @@ pub struct Analyze {
 #[derive(Debug, Args)]
 pub struct Cognates {
     /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
-    #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
     #[arg(long, value_name = "DIR")]
@@ -286,7 +282,6 @@ pub struct Cognates {
 #[derive(Debug, Args)]
 pub struct Build {
     /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
     #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
@@ -304,7 +299,6 @@ pub struct Build {
 #[command(group = clap::ArgGroup::new("stock").required(true).args(["grid", "lengths", "pitches"]))]
 pub struct Snap {
     /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The stock: multiples of this, in the file's unit
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
@@ -336,7 +330,6 @@ pub struct Snap {
 #[derive(Debug, Args)]
 pub struct Suite {
     /// Only problems whose name or file name holds this
-    #[arg(value_name = "FILTER")]
     pub filter: Option<String>,
     /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
     /// problems/literature where it is here, else the same files, which linkwright holds]
@@ -364,7 +357,6 @@ pub struct Suite {
 #[derive(Debug, Args)]
 pub struct Studio {
     /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
-    #[arg(value_name = "PROBLEM")]
     pub problem: Option<PathBuf>,
     /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
     #[arg(long, value_name = "N")]
@@ -381,13 +373,12 @@ pub struct Studio {
 #[derive(Debug, Args)]
 pub struct Export {
     /// A result's folder or record.json (its first candidate), either with `:2` for another, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// svg, svg-plates, dxf, dxf-plates, stl, scad, csv, toml, json, cut-list or cut-list-csv
     #[arg(long, value_name = "FORMAT")]
     pub format: Format,
     /// Set a size or the scale, e.g. --set hole_mm=4
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "hole_mm=4"))]
     pub set: Vec<(String, String)>,
     /// Write it to this file [default: to standard output]
     #[arg(long, value_name = "FILE")]
@@ -440,7 +431,7 @@ fn gap(text: &str) -> Result<f64, ValueError> {
 }
 
 fn certify_key(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = key_value(text)?;
+    let (key, value) = pair(text, "solve.candidates=9")?;
     if key != "certify.time_limit_s" {
         return Err(ValueError::NotOfCertify);
     }
@@ -459,21 +450,13 @@ fn kept(text: &str) -> Result<String, ValueError> {
 }
 
 fn dimension(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = key_value(text)?;
+    let (key, value) = pair(text, "solve.candidates=9")?;
     let number = match key.as_str() {
         key if Length::named(key).is_some() => positive(&value)?,
         "ground_angle_deg" => finite(&value)?,
         _ => return Err(ValueError::NotADimension),
     };
     Ok((key, number))
-}
-
-fn key_value(text: &str) -> Result<(String, String), ValueError> {
-    pair(text, "solve.candidates=9")
-}
-
-fn setting(text: &str) -> Result<(String, String), ValueError> {
-    pair(text, "hole_mm=4")
 }
 
 fn pair(text: &str, example: &'static str) -> Result<(String, String), ValueError> {

@@ -1,7 +1,7 @@
 //! `compare`: results and linkages side by side.
 
 use super::arguments::Compare;
-use super::output::Output;
+use super::output::{Form, Output};
 use super::result;
 use super::result::{Given, Which};
 use super::{Ended, refuse, refuse_at, terminal};
@@ -15,10 +15,8 @@ use std::path::Path;
 /// Runs the command.
 pub fn run(options: &Compare) -> Result<Ended, Ended> {
     let target = options.target.as_deref().map(target_of).transpose()?;
-    let mut given = Vec::new();
-    for argument in &options.results {
-        given.push((argument.as_path(), result::read(argument)?));
-    }
+    let read = options.results.iter().map(|argument| Ok((argument.as_path(), result::read(argument)?)));
+    let mut given = read.collect::<Result<Vec<_>, Ended>>()?;
     let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
     let comparison = match compared(&given, target.as_ref(), &options.sort, reference.as_deref()) {
         Ok(comparison) => comparison,
@@ -50,17 +48,15 @@ fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<S
     for (path, one) in given.iter() {
         let labels = labels(one, path);
         if *path == name || labels.contains(&typed) {
-            let label = labels.iter().find(|label| **label == typed && matches!(one, Given::Run(_)));
-            let first = || match one {
-                Given::Run(run) => run.one().map(|chosen| chosen.label),
-                Given::Linkage(_) => Ok(path.display().to_string()),
+            let label = match one {
+                Given::Linkage(_) => path.display().to_string(),
+                Given::Run(_) if labels.contains(&typed) => typed,
+                Given::Run(run) => run.one()?.label,
             };
-            let label = label.map_or_else(first, |label| Ok(label.clone()))?;
             return Ok(shown_as(&label, given));
         }
     }
-    let read = result::read(name)?;
-    let label = match read {
+    let label = match result::read(name)? {
         Given::Run(mut run) => {
             let label = run.one()?.label;
             if run.which == Which::All {
@@ -89,17 +85,13 @@ fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
 
 /// Writes the files that were asked for and prints the tables or JSON.
 fn deliver(options: &Compare, comparison: &Comparison) -> Result<Ended, Ended> {
-    let forms: [(&Option<_>, _, &dyn Fn() -> String); 3] = [
+    let forms: [Form<'_>; 3] = [
         (&options.csv, FileKind::Csv, &|| comparison.csv()),
         (&options.svg, FileKind::Svg, &|| comparison.svg()),
         (&options.html, FileKind::Html, &|| comparison.html()),
     ];
-    let asked = forms.iter().filter_map(|(path, kind, text)| Some((path.as_deref()?, *kind, text())));
-    let asked: Vec<(&Path, FileKind, String)> = asked.collect();
-    let files: Vec<_> = asked.iter().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
     let inputs = options.results.iter().chain(&options.target).chain(&options.reference);
-    Output::new(inputs, options.force).write(&files)?;
-    let written: Vec<String> = files.iter().map(|(path, ..)| escaped(&path.display().to_string())).collect();
+    let written = Output::new(inputs, options.force).write_asked(&forms)?;
     if options.json {
         comparison.notes().iter().for_each(|note| terminal::tell(&format!("note: {}", escaped(note))));
         terminal::answer(&comparison.json());

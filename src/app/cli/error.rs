@@ -10,9 +10,6 @@ pub enum CommandError {
     /// The system refuses a path.
     #[error("{path}: {source}")]
     Io { path: String, source: io::Error },
-    /// A folder cannot be written to.
-    #[error("{path} cannot be written to: {source}")]
-    NotWritable { path: String, source: io::Error },
     /// A file may not be replaced or cannot be written.
     #[error(transparent)]
     Folder(#[from] FolderError),
@@ -32,5 +29,5 @@ pub enum CommandError {
     SamePlace { one: String, other: String, place: String },
     /// A problem file is invalid.
     #[error("{}", .0.message)]
-    Problem(Box<Diagnostic>),
+    Problem(#[from] Box<Diagnostic>),
 }

@@ -4,14 +4,13 @@ use super::arguments::Synth;
 use super::error::CommandError;
 use super::terminal;
 use crate::app::job::run::Job;
-use crate::files::diagnostic::escaped;
 use crate::files::input_text;
 use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use ariadne::ReportKind;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Where results go when nothing is said.
@@ -27,9 +26,9 @@ pub struct Input {
     pub job: Result<(Job, PathBuf), CommandError>,
 }
 
-/// Reads everything that is to be run, in the order in which it was named, the files of a folder by name. What is
-/// wrong with a file is told at once.
-pub fn load(options: &Synth) -> Vec<Input> {
+/// Reads everything that is to be run, in the order in which it was named, the files of a folder by name. Faults of a
+/// file are reported at once. Also returns whether the inputs are a batch.
+pub fn load(options: &Synth) -> (Vec<Input>, bool) {
     let mut files = Vec::new();
     for path in &options.files {
         if !path.is_dir() {
@@ -48,14 +47,10 @@ pub fn load(options: &Synth) -> Vec<Input> {
     let several = files.len() > 1 || options.files.iter().any(|path| path.is_dir());
     // The file that writes to each folder.
     let mut taken = BTreeMap::new();
-    let mut input = |(path, why): (PathBuf, Option<CommandError>)| {
+    let input = |(path, why): (PathBuf, Option<CommandError>)| {
         let file = path.display().to_string();
-        let job = match why {
-            Some(why) => Err(why),
-            None => problem_file::load_any(&path, &overrides)
-                .map_err(CommandError::Problem)
-                .and_then(|problem| job(options, problem, several, &file, &mut taken)),
-        };
+        let problem = why.map_or_else(|| Ok(problem_file::load_any(&path, &overrides)?), Err);
+        let job = problem.and_then(|problem| job(options, problem, several, &file, &mut taken));
         match &job {
             Err(CommandError::Problem(diagnostic)) => terminal::diagnose(ReportKind::Error, diagnostic),
             Err(why) => terminal::complain(&why.to_string()),
@@ -63,7 +58,7 @@ pub fn load(options: &Synth) -> Vec<Input> {
         }
         Input { file, job }
     };
-    files.into_iter().map(&mut input).collect()
+    (files.into_iter().map(input).collect(), several)
 }
 
 /// The job of a problem and its folder, which no file before it has taken.
@@ -77,60 +72,55 @@ fn job(
     for warning in &problem.warnings {
         terminal::diagnose(ReportKind::Warning, warning);
     }
-    let place = place(options, &problem, several);
-    match taken.entry(place.clone()) {
-        Entry::Occupied(one) => Err(CommandError::SamePlace {
-            one: one.get().clone(),
-            other: file.to_owned(),
-            place: place.display().to_string(),
-        }),
-        Entry::Vacant(free) => {
-            free.insert(file.to_owned());
-            Ok((problem.into(), place))
-        }
+    let place = match &options.out {
+        Some(out) if !several => out.clone(),
+        _ => folder_of_all(options).join(&problem.name),
+    };
+    if let Some(one) = taken.get(&place) {
+        let (one, other) = (one.clone(), file.to_owned());
+        return Err(CommandError::SamePlace { one, other, place: place.display().to_string() });
     }
+    taken.insert(place.clone(), file.to_owned());
+    Ok((problem.into(), place))
 }
 
-/// Where the summary of a batch goes.
+/// Returns the folder for the summary of a batch.
 pub fn folder_of_all(options: &Synth) -> &Path {
     options.out.as_deref().unwrap_or(Path::new(RESULTS))
 }
 
-fn place(options: &Synth, problem: &ProblemFile, several: bool) -> PathBuf {
-    match &options.out {
-        Some(out) if !several => out.clone(),
-        _ => folder_of_all(options).join(&problem.name),
-    }
-}
-
-/// The problem files of a folder, by name: every `*.toml` in it, not below, but for those that say of themselves that
-/// they are something else. These are named in a warning.
+/// Lists the problem files of a folder, by name: every `*.toml` in it, not below, but for those that say of themselves
+/// that they are something else. These are named in a warning.
 fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    let shown = escaped(&folder.display().to_string());
-    let failed = |source| CommandError::Io { path: shown.clone(), source };
-    let entries = fs::read_dir(folder).map_err(failed)?;
-    let mut files = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !path.is_dir() {
-            files.push(path);
-        }
-        if files.len() > MOST_FILES {
-            return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });
-        }
+    let shown = terminal::shown(folder);
+    let mut files = toml_files(folder).map_err(|source| CommandError::Io { path: shown.clone(), source })?;
+    files.retain(|path| !path.is_dir());
+    if files.len() > MOST_FILES {
+        return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });
     }
-    files.sort();
-    let (problems, others): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| !is_something_else(path));
+    let (others, problems): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| is_something_else(path));
     for other in others {
         terminal::tell(&format!(
             "warning: {} is no problem file (it has no [task]): skipped",
-            escaped(&other.display().to_string())
+            terminal::shown(&other)
         ));
     }
     if problems.is_empty() {
         return Err(CommandError::NoProblems(shown));
     }
     Ok(problems)
+}
+
+/// Lists the TOML files of a folder, not below it, by name.
+///
+/// # Errors
+/// The error of the system.
+pub fn toml_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut files = paths.collect::<io::Result<Vec<_>>>()?;
+    files.retain(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
+    files.sort();
+    Ok(files)
 }
 
 /// Whether a file can be read as TOML and has no task. What cannot be read is not passed over in silence.

@@ -59,33 +59,22 @@ use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::process::ExitCode;
 
-/// How a command ended, the gravest last: of several inputs the gravest is that of the command.
+/// The end of a command, as its exit code; the gravest is the last: of several inputs the gravest is that of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Ended {
     /// Done, and something acceptable was found or the check passed.
-    Good,
+    Good = 0,
     /// It ran, but nothing is acceptable or the check failed.
-    Bad,
+    Bad = 1,
     /// Bad input or usage.
-    Refused,
-    /// A part of a batch met a bug of ours; the others ran.
-    Bug,
+    Refused = 2,
+    /// A bug of ours; the other parts of a batch ran.
+    Bug = 70,
     /// Interrupted; the best so far is saved.
-    Interrupted,
-}
-
-impl From<Ended> for ExitCode {
-    fn from(ended: Ended) -> ExitCode {
-        ExitCode::from(match ended {
-            Ended::Good => 0,
-            Ended::Bad => 1,
-            Ended::Refused => 2,
-            Ended::Bug => BUG,
-            Ended::Interrupted => 130,
-        })
-    }
+    Interrupted = 130,
 }
 
 /// Complains of the reason for which a command refuses its input.
@@ -94,27 +83,30 @@ fn refuse(why: impl Display) -> Ended {
     Ended::Refused
 }
 
+/// Complains of the reason for which a file or a folder is refused.
+fn refuse_path(path: &Path, why: impl Display) -> Ended {
+    refuse(format!("{}: {why}", path.display()))
+}
+
 /// Shows the place at which an input is refused.
 fn refuse_at(diagnostic: Box<Diagnostic>) -> Ended {
     terminal::diagnose(ReportKind::Error, &diagnostic);
     Ended::Refused
 }
 
-/// The exit code of a panic: a bug of ours.
-const BUG: u8 = 70;
-
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
     interrupt::outlive_large_files();
     let arguments = Arguments::parse();
-    match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command).unwrap_or_else(|ended| ended))) {
-        Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),
-        Ok(ended) => ended.into(),
+    let ended = match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
+        Ok(Ok(Ended::Good)) if terminal::lost() => Ended::Refused,
+        Ok(Ok(ended) | Err(ended)) => ended,
         Err(_) => {
             terminal::complain("this is a bug of linkwright: please report it with the input that shows it");
-            ExitCode::from(BUG)
+            Ended::Bug
         }
-    }
+    };
+    ExitCode::from(ended as u8)
 }
 
 fn dispatch(command: Command) -> Result<Ended, Ended> {

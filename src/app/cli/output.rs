@@ -1,9 +1,13 @@
 //! Files that a command writes where its user says: what is there and is not ours stays, unless `--force`.
 
-use super::{Ended, refuse, result};
+use super::{Ended, refuse, result, terminal};
 use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};
 use crate::files::generator::FileKind;
 use std::path::{Path, PathBuf};
+
+/// A form in which an answer can be written: the path that was given for it, if any, and its text, made when it is
+/// wanted.
+pub type Form<'a> = (&'a Option<PathBuf>, FileKind, &'a dyn Fn() -> String);
 
 /// The rule by which a command's files replace others.
 pub struct Output {
@@ -31,10 +35,25 @@ impl Output {
     ///
     /// # Errors
     /// [`Ended::Refused`]; the reason has been told.
-    pub fn write(&self, files: &[(&Path, FileKind, &[u8])]) -> Result<(), Ended> {
-        let files: Vec<OutputFile<'_>> =
-            files.iter().map(|(path, kind, bytes)| OutputFile { path, kind: *kind, bytes }).collect();
+    pub fn write(&self, files: &[(impl AsRef<Path>, FileKind, impl AsRef<[u8]>)]) -> Result<(), Ended> {
+        let files = files.iter().map(|(path, kind, bytes)| OutputFile {
+            path: path.as_ref(),
+            kind: *kind,
+            bytes: bytes.as_ref(),
+        });
+        let files: Vec<OutputFile<'_>> = files.collect();
         self.with(|replace| write_files(&files, replace))
+    }
+
+    /// Makes and writes the files whose paths were given, and returns these paths as they are shown.
+    ///
+    /// # Errors
+    /// [`Ended::Refused`]; the reason has been told.
+    pub fn write_asked(&self, forms: &[Form<'_>]) -> Result<Vec<String>, Ended> {
+        let asked = forms.iter().filter_map(|(path, kind, text)| Some((path.as_deref()?, *kind, text())));
+        let asked: Vec<_> = asked.collect();
+        self.write(&asked)?;
+        Ok(asked.iter().map(|(path, ..)| terminal::shown(path)).collect())
     }
 
     fn with(&self, act: impl Fn(Replace<'_>) -> Result<(), FolderError>) -> Result<(), Ended> {

@@ -2,8 +2,8 @@
 
 use super::arguments::Report;
 use super::output::Output;
-use super::result::{Run, Which, read_run_of};
-use super::{Ended, refuse, terminal};
+use super::result::{Run, Which, mismatches, read_run_of};
+use super::{Ended, terminal};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::report::html::report_html;
@@ -27,17 +27,15 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     };
     let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
     let page = report_html(&run.record, first);
-    let output = Output::new([&options.result], options.force);
-    output.write(&[(&place, FileKind::Html, page.as_bytes())])?;
-    terminal::answer(&format!("{}\n", escaped(&place.display().to_string())));
+    Output::new([&options.result], options.force).write(&[(&place, FileKind::Html, page)])?;
+    terminal::answer(&format!("{}\n", terminal::shown(&place)));
     Ok(Ended::Good)
 }
 
 /// A report shows figures as they were proved by the record: one that is not true gets none.
 fn is_true(run: &Run) -> Result<(), Ended> {
     let shown = escaped(&run.named);
-    let mismatches = crate::judge::verify::verify(&run.record)
-        .map_err(|e| refuse(format!("{shown}: the recorded problem is none: {e}")))?;
+    let mismatches = mismatches(Path::new(&run.named), &run.record)?;
     if mismatches.is_empty() {
         return Ok(());
     }

@@ -2,7 +2,7 @@
 
 use super::arguments::Studio;
 use super::inputs::RESULTS;
-use super::{Ended, interrupt, refuse, refuse_at, terminal};
+use super::{Ended, interrupt, refuse, refuse_at, refuse_path, terminal};
 use crate::app::studio;
 use crate::app::studio::StudioError;
 use crate::app::studio::messages::Ask;
@@ -40,7 +40,7 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
 /// Reads the problem that the page begins with.
 fn beginning(path: &Path) -> Result<Ask, Ended> {
     let problem = load_any(path, &[]).map_err(refuse_at)?;
-    Ask::of(&problem).map_err(|why| refuse(format!("{}: {why}", path.display())))
+    Ask::of(&problem).map_err(|why| refuse_path(path, why))
 }
 
 /// Opens the address in the usual browser. Where there is none, the address is on the terminal.
