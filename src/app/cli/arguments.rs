@@ -91,7 +91,7 @@ pub struct Synth {
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
     /// Where every draw comes from: as `--set solve.seed=..`
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Set any key of the problem file, e.g. --set solve.candidates=9
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "solve.candidates=9"))]
@@ -100,7 +100,7 @@ pub struct Synth {
     #[arg(long)]
     pub no_advice: bool,
     /// Threads [default: all cores]; they change the time, never a digit
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Go on from the checkpoint that an interrupted run left, skip what is done
     #[arg(long)]
@@ -231,7 +231,7 @@ pub struct Analyze {
     #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     pub angle: Option<Vec<f64>>,
     /// This many crank angles, evenly over a full turn
-    #[arg(long, value_name = "N", conflicts_with = "angle", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", conflicts_with = "angle", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cycle: Option<u32>,
     /// Speed of the crank, rad/s
     #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
@@ -336,7 +336,7 @@ pub struct Suite {
     #[arg(long, value_name = "DIR")]
     pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: u64,
     /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
     #[arg(long)]
@@ -359,7 +359,7 @@ pub struct Studio {
     /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
     pub problem: Option<PathBuf>,
     /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
     /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
     #[arg(long, value_name = "DIR")]
@@ -431,7 +431,7 @@ fn gap(text: &str) -> Result<f64, ValueError> {
 }
 
 fn certify_key(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = pair(text, "solve.candidates=9")?;
+    let (key, value) = pair(text, "certify.time_limit_s=60")?;
     if key != "certify.time_limit_s" {
         return Err(ValueError::NotOfCertify);
     }
@@ -450,7 +450,7 @@ fn kept(text: &str) -> Result<String, ValueError> {
 }
 
 fn dimension(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = pair(text, "solve.candidates=9")?;
+    let (key, value) = pair(text, "a=2.5")?;
     let number = match key.as_str() {
         key if Length::named(key).is_some() => positive(&value)?,
         "ground_angle_deg" => finite(&value)?,
