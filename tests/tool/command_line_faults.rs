@@ -159,6 +159,17 @@ fn cognates_of_a_linkage_with_the_longest_name_are_linkage_files() {
 }
 
 #[test]
+fn cognates_that_are_refused_make_no_folder() {
+    let folder = TempDir::new().expect("a folder");
+    let hoeken = root().join("problems/linkages/hoeken.toml").display().to_string();
+    let arguments = ["cognates", &hoeken, "--out", "c", "--svg", "c/hoeken-cognate-1.toml"];
+    let output = linkwright(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("named twice"), "{}", said(&output));
+    assert!(!folder.path().join("c").exists());
+}
+
+#[test]
 fn names_that_a_system_or_a_shell_takes_for_something_else_are_refused() {
     let folder = TempDir::new().expect("a folder");
     for name in ["CON", "nul", "COM1", "lpt9.v2", "-rf", "--help", "end.", "end "] {

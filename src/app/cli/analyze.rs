@@ -128,10 +128,8 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
         written.push((path.clone(), FileKind::Svg, cognates_svg(&name, unit, &linkage, &found)));
     }
     let output = Output::new([&options.linkage], options.force);
-    // Looked at before the folder is made.
-    for (path, kind, _) in &written {
-        output.check(path, *kind)?;
-    }
+    // Before the folder is made.
+    output.check(&written)?;
     if let Some(out) = &options.out {
         std::fs::create_dir_all(out).map_err(|e| refuse_path(out, e))?;
     }

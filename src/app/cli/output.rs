@@ -22,33 +22,26 @@ impl Output {
         Output { inputs: inputs.into_iter().map(|input| result::file_of(input)).collect(), force }
     }
 
-    /// Refuses a place that may not be written to, before the work. The header row of a table is not known then: for
-    /// tables this is left to [`Output::write`].
+    /// Refuses places that may not be written to, before the work. A table needs its header row for that.
     ///
     /// # Errors
-    /// [`Ended::Refused`]; the reason has been told.
-    pub fn check(&self, path: &Path, kind: FileKind) -> Result<(), Ended> {
-        self.with(|replace| check_files(&[OutputFile { path, kind, bytes: b"" }], replace))
+    /// [`Ended::Refused`]; the reason has been reported.
+    pub fn check(&self, files: &[(impl AsRef<Path>, FileKind, impl AsRef<[u8]>)]) -> Result<(), Ended> {
+        self.act(files, check_files)
     }
 
     /// Writes all the files, or refuses before the first.
     ///
     /// # Errors
-    /// [`Ended::Refused`]; the reason has been told.
+    /// [`Ended::Refused`]; the reason has been reported.
     pub fn write(&self, files: &[(impl AsRef<Path>, FileKind, impl AsRef<[u8]>)]) -> Result<(), Ended> {
-        let files = files.iter().map(|(path, kind, bytes)| OutputFile {
-            path: path.as_ref(),
-            kind: *kind,
-            bytes: bytes.as_ref(),
-        });
-        let files: Vec<OutputFile<'_>> = files.collect();
-        self.with(|replace| write_files(&files, replace))
+        self.act(files, write_files)
     }
 
     /// Makes and writes the files whose paths were given, and returns these paths as they are shown.
     ///
     /// # Errors
-    /// [`Ended::Refused`]; the reason has been told.
+    /// [`Ended::Refused`]; the reason has been reported.
     pub fn write_asked(&self, forms: &[Form<'_>]) -> Result<Vec<String>, Ended> {
         let asked = forms.iter().filter_map(|(path, kind, text)| Some((path.as_deref()?, *kind, text())));
         let asked: Vec<_> = asked.collect();
@@ -56,9 +49,18 @@ impl Output {
         Ok(asked.iter().map(|(path, ..)| terminal::shown(path)).collect())
     }
 
-    fn with(&self, act: impl Fn(Replace<'_>) -> Result<(), FolderError>) -> Result<(), Ended> {
+    fn act(
+        &self,
+        files: &[(impl AsRef<Path>, FileKind, impl AsRef<[u8]>)],
+        act: fn(&[OutputFile<'_>], Replace<'_>) -> Result<(), FolderError>,
+    ) -> Result<(), Ended> {
+        let files = files.iter().map(|(path, kind, bytes)| OutputFile {
+            path: path.as_ref(),
+            kind: *kind,
+            bytes: bytes.as_ref(),
+        });
         let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let replace = if self.force { Replace::Anything } else { Replace::Ours(&inputs) };
-        act(replace).map_err(refuse)
+        act(&files.collect::<Vec<_>>(), replace).map_err(refuse)
     }
 }

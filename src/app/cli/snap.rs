@@ -46,9 +46,9 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
     let subject = subject(&options.result)?;
-    // Told before the work, not after it.
+    // Before the work, not after it.
     if let Some(path) = linkage_place(options) {
-        output(options).check(path, FileKind::Linkage)?;
+        output(options).check(&[(path, FileKind::Linkage, "")])?;
     }
     let request = Request {
         stock,

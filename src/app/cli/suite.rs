@@ -13,7 +13,7 @@ use crate::record::suite::Suite;
 use crate::report::suite::{suite_markdown, suite_text};
 use crate::task::spec::CertifySpec;
 use ariadne::ReportKind;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The folder of the literature's problems in the repository.
 const PROBLEMS: &str = "problems/literature";
@@ -39,7 +39,7 @@ pub fn run(asked: &Asked) -> Result<Ended, Ended> {
         + "\n";
     terminal::answer(&if asked.json { json.clone() } else { suite_text(&suite, terminal::colour()) });
     if let Some(place) = place.filter(|_| suite.complete) {
-        place.write(&suite, &json)?;
+        place.output.write(&place.files(&json, &suite_markdown(&suite)))?;
         if !asked.json {
             terminal::answer(&format!("\n  Written to {RESULTS}/{PAGE} and {RESULTS}/{DATA}\n"));
         }
@@ -150,17 +150,17 @@ impl Place {
         let folder = Path::new(RESULTS);
         let place = Place { folder, made: !folder.exists(), output: Output::new([], force) };
         std::fs::create_dir_all(folder).map_err(|e| refuse_path(folder, e))?;
-        place.output.check(&folder.join(DATA), FileKind::SuiteJson)?;
-        place.output.check(&folder.join(PAGE), FileKind::SuiteMarkdown)?;
+        place.output.check(&place.files("", ""))?;
         tempfile::tempfile_in(folder)
             .map_err(|e| refuse(format!("{} cannot be written to: {e}", folder.display())))?;
         Ok(place)
     }
 
-    fn write(&self, suite: &Suite, json: &str) -> Result<(), Ended> {
-        let data = (self.folder.join(DATA), FileKind::SuiteJson, json);
-        let page = suite_markdown(suite);
-        self.output.write(&[data, (self.folder.join(PAGE), FileKind::SuiteMarkdown, &page)])
+    fn files<'a>(&self, json: &'a str, page: &'a str) -> [(PathBuf, FileKind, &'a str); 2] {
+        [
+            (self.folder.join(DATA), FileKind::SuiteJson, json),
+            (self.folder.join(PAGE), FileKind::SuiteMarkdown, page),
+        ]
     }
 }
 
