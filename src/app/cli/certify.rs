@@ -6,7 +6,9 @@ use super::result;
 use super::{Ended, interrupt, refuse, refuse_path, terminal};
 use crate::app::job::files;
 use crate::app::job::files::Timing;
-use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, read_at_most, replace_file};
+use crate::app::job::folder::{
+    CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, read_at_most, replace_file,
+};
 use crate::app::job::save::SaveError;
 use crate::judge::certificate::checkpoint::{MAX_BYTES, REMEDY};
 use crate::judge::certificate::{Proof, Request, ResumeError};
@@ -28,6 +30,10 @@ pub fn run(options: &Certify) -> Result<Ended, Ended> {
     if !options.result.is_dir() {
         result::read_run_of(&options.result, "certify")?;
         return Err(refuse_path(&options.result, "certify writes into the result's folder; give the folder"));
+    }
+    if !options.result.join(RECORD).is_file() {
+        // A folder that never held a result is refused for that, not for its contents.
+        result::read_run_of(&options.result, "certify")?;
     }
     // Taken before the record is read, so that no other run changes it, and before the work, so that a place that cannot
     // be written to is reported at once.
