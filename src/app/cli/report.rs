@@ -4,6 +4,7 @@ use super::arguments::Report;
 use super::output::Output;
 use super::result::{Run, Which, mismatches, read_run_of};
 use super::{Ended, terminal};
+use crate::app::job::folder::RECORD;
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::report::html::report_html;
@@ -53,7 +54,12 @@ fn is_true(run: &Run) -> Result<(), Ended> {
     Err(Ended::Bad)
 }
 
-/// `report.html` in the result's folder; beside a record that was named by its file, `NAME.html`.
+/// Returns the usual place of the page: `report.html` in the result's folder; for a record under another name, that name
+/// with the ending `.html`.
 fn beside(named: &Path) -> PathBuf {
-    if named.is_file() { named.with_extension("html") } else { named.join("report.html") }
+    match named.file_name() {
+        Some(name) if name == RECORD && named.is_file() => named.with_file_name("report.html"),
+        _ if named.is_file() => named.with_extension("html"),
+        _ => named.join("report.html"),
+    }
 }
