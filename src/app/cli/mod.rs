@@ -58,7 +58,7 @@ use arguments::{Arguments, Command};
 use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
 use std::fmt::Display;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::catch_unwind;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -97,16 +97,28 @@ fn refuse_at(diagnostic: Box<Diagnostic>) -> Ended {
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
     interrupt::outlive_large_files();
-    let arguments = Arguments::parse();
-    let ended = match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command))) {
-        Ok(Ok(Ended::Good)) if terminal::lost() => Ended::Refused,
-        Ok(Ok(ended) | Err(ended)) => ended,
+    let run = || arguments().and_then(|arguments| dispatch(arguments.command)).unwrap_or_else(|ended| ended);
+    let ended = match catch_unwind(run) {
+        Ok(Ended::Good) if terminal::lost() => Ended::Refused,
+        Ok(ended) => ended,
         Err(_) => {
             terminal::complain("this is a bug of linkwright: please report it with the input that shows it");
             Ended::Bug
         }
     };
     ExitCode::from(ended as u8)
+}
+
+/// Returns what was typed. Help that was asked for is printed as an answer.
+fn arguments() -> Result<Arguments, Ended> {
+    Arguments::try_parse().map_err(|e| {
+        let printed = e.print();
+        if e.use_stderr() {
+            return Ended::Refused;
+        }
+        terminal::note(printed);
+        Ended::Good
+    })
 }
 
 fn dispatch(command: Command) -> Result<Ended, Ended> {

@@ -3,18 +3,21 @@
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::report::Colour;
 use ariadne::{Config, IndexType, Label, Report, ReportKind, Source};
-use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::io::{self, ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether an answer could not be written.
 static LOST: AtomicBool = AtomicBool::new(false);
 
-/// Writes the answer to stdout. A reader that went away (`| head`) is no failure of ours; a full disk is
-/// complained of, and [`lost`] remembers it.
+/// Writes the answer to stdout. A full disk is complained of, and [`lost`] remembers it.
 pub fn answer(text: &str) {
     let mut out = stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    note(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Takes note of how writing to stdout ended. A reader that went away (`| head`) is no failure of ours.
+pub fn note(written: io::Result<()>) {
     if let Err(e) = written
         && e.kind() != ErrorKind::BrokenPipe
         && !LOST.swap(true, Ordering::Relaxed)
