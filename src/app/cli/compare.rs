@@ -5,7 +5,7 @@ use super::output::{Form, Output};
 use super::result;
 use super::result::{Given, Which};
 use super::{Ended, refuse, refuse_at, terminal};
-use crate::app::measured::{NotCompared, Target, compared};
+use crate::app::measured::{NotCompared, Target, compared, label_of_file};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
@@ -38,25 +38,25 @@ fn target_of(path: &Path) -> Result<Target, Ended> {
     Target::new(file).map_err(refuse)
 }
 
-/// The label of what differences are from; read and put to the others where it is none of them.
+/// Returns the label in the tables of the result that the differences are from. It is read and put to the others if it is
+/// none of them.
 fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<String, Ended> {
     let typed = name.display().to_string();
     let labels = |given: &Given, path: &Path| match given {
         Given::Run(run) => run.chosen().into_iter().map(|chosen| chosen.label).collect(),
         Given::Linkage(file) => vec![path.display().to_string(), file.name.clone()],
     };
-    for (path, one) in given.iter() {
+    for (i, (path, one)) in given.iter().enumerate() {
         let labels = labels(one, path);
         if *path == name || labels.contains(&typed) {
-            let label = match one {
-                Given::Linkage(_) => path.display().to_string(),
+            return Ok(match one {
+                Given::Linkage(_) => label_of_file(given, i),
                 Given::Run(_) if labels.contains(&typed) => typed,
                 Given::Run(run) => run.one()?.label,
-            };
-            return Ok(shown_as(&label, given));
+            });
         }
     }
-    let label = match result::read(name)? {
+    match result::read(name)? {
         Given::Run(mut run) => {
             let label = run.one()?.label;
             if run.which == Which::All {
@@ -65,22 +65,13 @@ fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<S
             if !given.iter().any(|(path, one)| labels(one, path).contains(&label)) {
                 given.push((name, Given::Run(run)));
             }
-            label
+            Ok(label)
         }
         linkage => {
             given.push((name, linkage));
-            typed
+            Ok(label_of_file(given, given.len() - 1))
         }
-    };
-    Ok(shown_as(&label, given))
-}
-
-/// What a linkage file or a candidate is called in the tables.
-fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
-    let file = given
-        .iter()
-        .position(|(path, one)| matches!(one, Given::Linkage(_)) && path.display().to_string() == label);
-    file.map_or_else(|| label.to_owned(), |i| crate::app::measured::label_of_file(given, i))
+    }
 }
 
 /// Writes the files that were asked for and prints the tables or JSON.

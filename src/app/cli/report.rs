@@ -35,20 +35,18 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
 
 /// A report shows figures as they were proved by the record: one that is not true gets none.
 fn is_true(run: &Run) -> Result<(), Ended> {
-    let shown = escaped(&run.named);
     let mismatches = mismatches(Path::new(&run.named), &run.record)?;
     if mismatches.is_empty() {
         return Ok(());
     }
-    terminal::complain(&format!(
-        "{shown}: this record is not true, so a report would show figures that are not so:"
-    ));
-    for mismatch in mismatches.iter().take(NAMED) {
+    let why = "this record is not true, so a report would show figures that are not so:";
+    terminal::complain(&format!("{}: {why}", run.named));
+    let (named, more) = mismatches.split_at(mismatches.len().min(NAMED));
+    for mismatch in named {
         terminal::tell(&format!("  {}", escaped(&mismatch.to_string())));
     }
-    if mismatches.len() > NAMED {
-        let more = mismatches.len() - NAMED;
-        terminal::tell(&format!("  and {more} more: linkwright verify names them all"));
+    if !more.is_empty() {
+        terminal::tell(&format!("  and {} more: linkwright verify names them all", more.len()));
     }
     terminal::tell("run the problem again to have a true record");
     Err(Ended::Bad)

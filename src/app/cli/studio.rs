@@ -18,11 +18,12 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
     let beginning = options.problem.as_deref().map(beginning).transpose()?;
     let beginning = beginning.as_ref();
     let results = options.out.as_deref().unwrap_or(Path::new(RESULTS));
+    let bind = |port| studio::Studio::bind(port, beginning, results);
     let bound = match options.port {
-        Some(port) => studio::Studio::bind(port, beginning, results),
-        // The usual port may be another studio's.
-        None => match studio::Studio::bind(PORT, beginning, results) {
-            Err(StudioError::Port { .. }) => studio::Studio::bind(0, beginning, results),
+        Some(port) => bind(port),
+        None => match bind(PORT) {
+            // The usual port may be another studio's.
+            Err(StudioError::Port { .. }) => bind(0),
             bound => bound,
         },
     };

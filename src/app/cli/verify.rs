@@ -41,23 +41,22 @@ fn one(path: &Path, options: &Verify) -> Result<Ended, Ended> {
     if options.certificate {
         mismatches.extend(certificate_of(path, &record)?);
     }
-    let leaves = if options.leaves { Some(check_leaves(path, &record)?) } else { None };
-    if mismatches.is_empty() && !matches!(leaves, Some(Err(_))) {
-        say_true(&shown, &record, options, leaves.and_then(Result::ok));
-        return Ok(Ended::Good);
-    }
-    let wrong = leaves.and_then(Result::err);
+    let leaves = options.leaves.then(|| check_leaves(path, &record)).transpose()?;
+    let wrong = match leaves.transpose() {
+        Ok(checked) if mismatches.is_empty() => {
+            say_true(&shown, &record, options, checked);
+            return Ok(Ended::Good);
+        }
+        wrong => wrong.err(),
+    };
     let untrue = !mismatches.is_empty() || wrong.as_ref().is_some_and(CheckError::is_refuted);
     terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
     for mismatch in mismatches {
         terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
     }
     if let Some(why) = wrong {
-        terminal::answer(&format!(
-            "  {}: {}\n",
-            terminal::shown(&leaves_of(path)),
-            escaped(&why.to_string())
-        ));
+        let leaves = terminal::shown(&leaves_of(path));
+        terminal::answer(&format!("  {leaves}: {}\n", escaped(&why.to_string())));
     }
     Ok(Ended::Bad)
 }
