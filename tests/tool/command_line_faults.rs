@@ -180,6 +180,15 @@ fn a_folder_without_a_record_is_refused_for_that_by_certify() {
 }
 
 #[test]
+fn a_folder_that_cannot_be_made_is_refused_with_the_remedy() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("results"), "mine").expect("there is room");
+    let output = linkwright(folder.path(), &["suite", "--write"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("; choose another name"), "{}", said(&output));
+}
+
+#[test]
 fn the_page_of_a_record_that_is_named_in_its_own_folder_is_report_html() {
     let folder = place();
     let output = linkwright(&folder.path().join("r"), &["report", "record.json"]);

@@ -2,7 +2,7 @@
 
 use super::arguments::{Analyze, Cognates};
 use super::output::{Form, Output};
-use super::{Ended, refuse, refuse_path, result, terminal};
+use super::{Ended, refuse, refuse_io, refuse_path, result, terminal};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
@@ -131,7 +131,7 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     // Before the folder is made.
     output.check(&written)?;
     if let Some(out) = &options.out {
-        std::fs::create_dir_all(out).map_err(|e| refuse_path(out, e))?;
+        std::fs::create_dir_all(out).map_err(|e| refuse_io(out, e))?;
     }
     output.write(&written)?;
     for (path, ..) in &written {

@@ -3,7 +3,7 @@
 use super::arguments::Certify;
 use super::progress::Shown;
 use super::result;
-use super::{Ended, interrupt, refuse, refuse_path, terminal};
+use super::{Ended, interrupt, refuse, refuse_io, refuse_path, terminal};
 use crate::app::job::files;
 use crate::app::job::files::Timing;
 use crate::app::job::folder::{
@@ -131,7 +131,7 @@ fn kept(options: &Certify) -> Result<Option<Vec<u8>>, Ended> {
             }
             Ok(None)
         }
-        Err(e) => Err(refuse_path(&place, e)),
+        Err(e) => Err(refuse_io(&place, e)),
     }
 }
 

@@ -2,15 +2,11 @@
 
 use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
-use std::io;
 
 /// The reason why a command cannot be carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
-    /// The system refuses a path.
-    #[error("{path}: {source}")]
-    Io { path: String, source: io::Error },
-    /// A file may not be replaced or cannot be written.
+    /// A file may not be replaced or cannot be written, or a folder cannot be read.
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// The file in the place of a batch's summary is no summary; there is no `--force` for it.

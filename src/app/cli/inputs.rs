@@ -3,6 +3,7 @@
 use super::arguments::Synth;
 use super::error::CommandError;
 use super::terminal;
+use crate::app::job::folder::FolderError;
 use crate::app::job::run::Job;
 use crate::files::input_text;
 use crate::files::problem_file;
@@ -93,7 +94,8 @@ pub fn folder_of_all(options: &Synth) -> &Path {
 /// that they are something else. These are named in a warning.
 fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
     let shown = terminal::shown(folder);
-    let mut files = toml_files(folder).map_err(|source| CommandError::Io { path: shown.clone(), source })?;
+    let unreadable = |source| FolderError::Io { path: folder.display().to_string(), source };
+    let mut files = toml_files(folder).map_err(unreadable)?;
     files.retain(|path| !path.is_dir());
     if files.len() > MOST_FILES {
         return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });

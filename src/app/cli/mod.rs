@@ -52,12 +52,14 @@ mod synth;
 mod terminal;
 mod verify;
 
+use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
 use crate::files::schema::{reference, schema};
 use arguments::{Arguments, Command};
 use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
 use std::fmt::Display;
+use std::io;
 use std::panic::catch_unwind;
 use std::path::Path;
 use std::process::ExitCode;
@@ -86,6 +88,11 @@ fn refuse(why: impl Display) -> Ended {
 /// Complains of the reason for which a file or a folder is refused.
 fn refuse_path(path: &Path, why: impl Display) -> Ended {
     refuse(format!("{}: {why}", path.display()))
+}
+
+/// Complains of a path that the system refuses, with the remedy.
+fn refuse_io(path: &Path, source: io::Error) -> Ended {
+    refuse(FolderError::Io { path: path.display().to_string(), source })
 }
 
 /// Shows the place at which an input is refused.

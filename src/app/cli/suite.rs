@@ -4,7 +4,7 @@ use super::arguments::Suite as Asked;
 use super::inputs::toml_files;
 use super::output::Output;
 use super::progress::Shown;
-use super::{Ended, interrupt, refuse, refuse_at, refuse_path, terminal};
+use super::{Ended, interrupt, refuse, refuse_at, refuse_io, terminal};
 use crate::app::suite::{Options, Step, literature, suite};
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
@@ -149,7 +149,7 @@ impl Place {
     fn take(force: bool) -> Result<Self, Ended> {
         let folder = Path::new(RESULTS);
         let place = Place { folder, made: !folder.exists(), output: Output::new([], force) };
-        std::fs::create_dir_all(folder).map_err(|e| refuse_path(folder, e))?;
+        std::fs::create_dir_all(folder).map_err(|e| refuse_io(folder, e))?;
         place.output.check(&place.files("", ""))?;
         tempfile::tempfile_in(folder)
             .map_err(|e| refuse(format!("{} cannot be written to: {e}", folder.display())))?;

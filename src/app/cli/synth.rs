@@ -261,7 +261,7 @@ fn ended_of(outcome: &Outcome) -> Ended {
 /// Writes the summary of a batch to its folder.
 fn write_summary(options: &Synth, rows: &[BatchRow<'_>]) -> Result<(), CommandError> {
     let folder = inputs::folder_of_all(options);
-    let failed = |source| CommandError::Io { path: folder.display().to_string(), source };
+    let failed = |source| FolderError::Io { path: folder.display().to_string(), source };
     std::fs::create_dir_all(folder).map_err(failed)?;
     summary(options, rows, write_files)
 }

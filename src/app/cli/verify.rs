@@ -4,7 +4,7 @@ use super::arguments::Verify;
 use super::progress::Shown;
 use super::result;
 use super::result::Which;
-use super::{Ended, interrupt, refuse_path, terminal};
+use super::{Ended, interrupt, refuse_io, refuse_path, terminal};
 use crate::app::job::folder::{LEAVES, read_at_most};
 use crate::files::diagnostic::escaped;
 use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
@@ -128,7 +128,7 @@ fn check_leaves(path: &Path, record: &Record) -> Result<Result<CheckedLeaves, Ch
     let file = leaves_of(path);
     let read = read_at_most(&file, MAX_BYTES).map_err(|e| match e.kind() {
         io::ErrorKind::NotFound => refuse_path(&file, "there are no leaves; run certify with --leaves first"),
-        _ => refuse_path(&file, e),
+        _ => refuse_io(&file, e),
     })?;
     let too_large = || refuse_path(&file, format!("leaves have at most {MAX_BYTES} bytes"));
     let bytes = read.ok_or_else(too_large)?;
