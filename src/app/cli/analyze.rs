@@ -1,4 +1,4 @@
-//! `analyze` and `cognates`: what a given linkage does.
+//! `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve.
 
 use super::arguments::{Analyze, Cognates};
 use super::output::{Form, Output};

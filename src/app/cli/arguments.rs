@@ -1,4 +1,4 @@
-//! What can be typed.
+//! Commands and options, with their help texts and the checks of their values.
 
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;

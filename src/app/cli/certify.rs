@@ -1,4 +1,4 @@
-//! `certify`: a bound below which no linkage that it covers can be.
+//! `certify`: lower bounds of the error, by branch and bound.
 
 use super::arguments::Certify;
 use super::progress::Shown;
@@ -19,7 +19,7 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What is proved is kept this often, so that a process that is killed loses no more.
+/// The time between two checkpoints, so that a process that is killed loses no more.
 const KEPT_EVERY: Duration = Duration::from_secs(60);
 /// The file with a run's times.
 const TIMING: &str = "timing.json";

@@ -1,4 +1,4 @@
-//! `check`: is a file what it should be?
+//! `check`: reads files and reports their faults without running anything.
 
 use super::arguments::Check;
 use super::{Ended, refuse_at, terminal};
@@ -62,8 +62,8 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
     Ok((summary, file.warnings))
 }
 
-/// Whether a file has one of the tables that only a linkage file has; what cannot be read is left to the
-/// problem reader's diagnostics.
+/// Returns whether a file has one of the tables that only a linkage file has. An unreadable file is left to the problem
+/// reader's diagnostics.
 fn is_linkage_file(path: &Path) -> bool {
     // A pipe can be read only once.
     let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };

@@ -1,4 +1,4 @@
-//! The reasons for which a command refuses its input, if no room below the command line names them.
+//! Errors of commands, apart from those that another layer names.
 
 use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;

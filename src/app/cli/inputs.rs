@@ -1,4 +1,4 @@
-//! What `synth` is given: files, and folders of problem files; and where the result of each goes.
+//! Inputs of `synth`: files and folders of problem files, each with the folder of its result.
 
 use super::arguments::Synth;
 use super::error::CommandError;
@@ -14,7 +14,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Where results go when nothing is said.
+/// The usual folder of results.
 pub const RESULTS: &str = "results";
 /// The most files of a folder.
 const MOST_FILES: usize = 100_000;
@@ -23,7 +23,7 @@ const MOST_FILES: usize = 100_000;
 pub struct Input {
     /// The file as it was named, or the folder that names none.
     pub file: String,
-    /// The job and its folder, or why there is none; the reason has been told.
+    /// The job and its folder; an error has been reported.
     pub job: Result<(Job, PathBuf), CommandError>,
 }
 
@@ -62,7 +62,7 @@ pub fn load(options: &Synth) -> (Vec<Input>, bool) {
     (files.into_iter().map(input).collect(), several)
 }
 
-/// The job of a problem and its folder, which no file before it has taken.
+/// Returns the job of a problem and its folder, which no file before it has taken.
 fn job(
     options: &Synth,
     problem: ProblemFile,
@@ -125,7 +125,7 @@ pub fn toml_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Whether a file can be read as TOML and has no task. What cannot be read is not passed over in silence.
+/// Returns whether a file can be read as TOML and has no task. An unreadable file is not passed over in silence.
 fn is_something_else(path: &Path) -> bool {
     let Ok(text) = input_text::read(path) else { return false };
     text.trim_start_matches('\u{feff}').parse::<toml::Table>().is_ok_and(|table| !table.contains_key("task"))

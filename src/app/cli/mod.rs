@@ -5,19 +5,19 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`analyze`] | `analyze` and `cognates`: what a given linkage does |
-//! | [`arguments`] | what can be typed |
-//! | [`build`] | `build`: what stands between a linkage and a workshop |
-//! | [`certify`] | `certify`: a bound below which no linkage that it covers can be |
-//! | [`check`] | `check`: is a file what it should be? |
+//! | [`analyze`] | `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve |
+//! | [`arguments`] | commands and options, with their help texts and the checks of their values |
+//! | [`build`] | `build`: layers, distances and sensitivities of a linkage that is to be built |
+//! | [`certify`] | `certify`: lower bounds of the error, by branch and bound |
+//! | [`check`] | `check`: reads files and reports their faults without running anything |
 //! | [`compare`] | `compare`: results and linkages side by side |
-//! | [`error`] | the reasons for which a command refuses its input, if no room below the command line names them |
+//! | [`error`] | errors of commands, apart from those that another layer names |
 //! | [`export`] | `export`: a linkage as a file to build from |
-//! | [`inputs`] | what `synth` is given: files, and folders of problem files; and where the result of each goes |
+//! | [`inputs`] | inputs of `synth`: files and folders of problem files, each with the folder of its result |
 //! | [`interrupt`] | signals |
 //! | [`man`] | `man`: the manual pages, made from the same definitions that `--help` is made from |
 //! | [`new`] | `new`: a problem file to start from |
-//! | [`output`] | files that a command writes where its user says: what is there and is not ours stays, unless `--force` |
+//! | [`output`] | output files at places that a user names: files of other origin are kept, unless `--force` |
 //! | [`progress`] | a bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it |
 //! | [`report`] | `report`: a result as a page, from its record alone |
 //! | [`result`] | RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate, or a linkage file |

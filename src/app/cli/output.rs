@@ -1,4 +1,4 @@
-//! Files that a command writes where its user says: what is there and is not ours stays, unless `--force`.
+//! Output files at places that a user names: files of other origin are kept, unless `--force`.
 
 use super::{Ended, refuse, result, terminal};
 use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};

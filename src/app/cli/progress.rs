@@ -71,8 +71,8 @@ impl Shown {
         Shown::new(name, silent, None)
     }
 
-    /// Moves the bar, or writes a line where there is none. Words come many times during work whose time is measured:
-    /// most are dropped at once.
+    /// Moves the bar, or writes a line without one. Reports come many times during work whose time is measured: most are
+    /// dropped at once.
     fn show(&self, [done, total]: [u64; 2], beside: impl FnOnce() -> String, line: impl FnOnce() -> String) {
         let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
         if self.silent || self.start.elapsed() < QUIET_FOR {
@@ -145,7 +145,7 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What is proved by now.
+/// Describes the state of a proof in a line.
 fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
     format!(
         "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {} (gap {} %)",

@@ -20,7 +20,7 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     let first = match run.which {
         Which::All => 0,
         Which::Rank(rank) => rank - 1,
-        // Where it is one of the candidates, that one; else it stands after them.
+        // It follows the candidates, unless it is one of them.
         Which::Buildable => run.record.buildable.as_ref().map_or(0, |c| match c.rank {
             0 => run.record.candidates.len(),
             rank => rank - 1,
@@ -33,7 +33,7 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     Ok(Ended::Good)
 }
 
-/// A report shows figures as they were proved by the record: one that is not true gets none.
+/// Refuses a record with false figures: a report would show them.
 fn is_true(run: &Run) -> Result<(), Ended> {
     let mismatches = mismatches(Path::new(&run.named), &run.record)?;
     if mismatches.is_empty() {

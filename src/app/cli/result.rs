@@ -19,7 +19,7 @@ impl From<NoCandidate> for Ended {
     }
 }
 
-/// Reads what was given.
+/// Reads a RESULT.
 ///
 /// # Errors
 /// [`Ended::Refused`]; the fault has been reported.

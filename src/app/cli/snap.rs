@@ -28,10 +28,10 @@ use std::time::Instant;
 
 /// The longest text of a list of pitches.
 const MAX_PITCHES: u64 = 1 << 20;
-/// What is added to the name of what was snapped.
+/// The ending of the name of a snapped linkage.
 const SUFFIX: &str = "-snapped";
 
-/// What is to be snapped, with its problem.
+/// The linkage to snap, with its problem.
 struct Subject {
     label: String,
     name: String,
@@ -149,7 +149,7 @@ fn fixed(options: &Options, linkage: &FourBar) -> Fixed {
     fixed
 }
 
-/// The file for the best linkage alone, where one was named.
+/// Returns the file for the best linkage alone, if one was named.
 fn linkage_place(options: &Options) -> Option<&Path> {
     options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
 }

@@ -10,7 +10,7 @@ use crate::files::problem_file::load_any;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Where the studio is when no port is asked for: always the same, so that the page finds what it remembers.
+/// The usual port: always the same, so that the page finds its stored state again.
 const PORT: u16 = 8017;
 
 /// Runs the command.

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// The folder of the literature's problems in the repository.
 const PROBLEMS: &str = "problems/literature";
-/// Where the page goes.
+/// The folder of the page and its JSON.
 const RESULTS: &str = "results";
 const PAGE: &str = "literature.md";
 const DATA: &str = "literature.json";

@@ -281,7 +281,7 @@ fn summary(
     })
 }
 
-/// What is printed for one problem.
+/// Returns the text that is printed for one problem.
 fn page(Done { record, folder, timing, .. }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
