@@ -7,6 +7,7 @@ use crate::report::compare::SortKey;
 use crate::report::export::Format;
 use crate::synthesis::snap::Length;
 use crate::task::spec::{CertifySpec, MAX_CERTIFY_S};
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -336,7 +337,7 @@ pub struct Suite {
     #[arg(long, value_name = "DIR")]
     pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
-    #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, value_parser = RangedI64ValueParser::<u64>::new().range(1..=100_000))]
     pub seeds: u64,
     /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
     #[arg(long)]
