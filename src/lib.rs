@@ -112,28 +112,18 @@ pub mod analysis {
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// All rooms, for this repository's integration tests, benchmarks, fuzz targets and commands.
+/// All layers, for this repository's integration tests, benchmarks, fuzz targets and commands.
 #[doc(hidden)]
 pub mod internals {
-    macro_rules! storeys {
-        ($($name:ident: $doc:literal),*) => {
+    macro_rules! layers {
+        ($($name:ident),*) => {
             $(
-                #[doc = $doc]
+                #[doc = concat!("The layer `", stringify!($name), "`.")]
                 pub mod $name {
                     pub use crate::$name::*;
                 }
             )*
         };
     }
-    storeys! {
-        numbers: "Numerical mathematics.",
-        mechanism: "Mechanisms.",
-        task: "Tasks.",
-        record: "Records.",
-        judge: "The judge.",
-        synthesis: "Searches.",
-        files: "Text in.",
-        report: "Text and drawings out.",
-        app: "Doors."
-    }
+    layers!(numbers, mechanism, task, record, judge, synthesis, files, report, app);
 }

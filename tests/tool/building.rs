@@ -80,7 +80,7 @@ fn snap_refuses_what_is_no_stock_and_writes_nothing_then() {
         (vec![], "--grid"),
         (vec!["--grid", "-1"], "a number above 0"),
         (vec!["--pitches", "bars.txt"], "line 2: `long`"),
-        (vec!["--pitches", "none.txt"], "none.txt"),
+        (vec!["--pitches", "none.txt"], "none.txt: there is no such file\nhelp: check the spelling"),
         (vec!["--grid", "1", "--snap", "f"], "ground, a, b, c, d, e"),
         (vec!["--grid", "1", "--keep", "ground,a,b,c,d,e"], "nothing to snap"),
         (vec!["--grid", "1", "--set", "a=-3"], "a number above 0"),
@@ -92,4 +92,13 @@ fn snap_refuses_what_is_no_stock_and_writes_nothing_then() {
         assert!(run.stderr.contains(words), "{words} in {}", run.stderr);
     }
     assert!(!folder.path().join("results").exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn snap_does_not_read_a_list_of_lengths_without_end() {
+    let folder = TempDir::new().expect("a folder");
+    let run = linkwright(folder.path(), &["snap", &hoeken(), "--pitches", "/dev/zero"]);
+    assert_eq!(run.code, 2, "{}", run.stderr);
+    assert!(run.stderr.contains("/dev/zero: the file has more than 16 MB"), "{}", run.stderr);
 }

@@ -379,7 +379,7 @@ fn a_record_that_lies_is_found_out() {
 fn usage_errors_are_exit_code_two_and_name_the_remedy() {
     let folder = TempDir::new().expect("a folder");
     let k18 = shipped("literature/k18.toml");
-    let cases: [(&[&str], &str); 11] = [
+    let cases: [(&[&str], &str); 17] = [
         (&["synth"], "FILE"),
         (&["synth", "no-such-file.toml"], "no such file"),
         (&["synth", "."], "folder"),
@@ -389,6 +389,12 @@ fn usage_errors_are_exit_code_two_and_name_the_remedy() {
         (&["synth", &k18, "--method", "magic"], "differential-evolution"),
         (&["synth", &k18, "--seed", "18446744073709551615"], "9223372036854775807"),
         (&["synth", &k18, "--seed", "x"], "--seed"),
+        (&["synth", &k18, "--seed", "-1"], "invalid value '-1' for '--seed <N>'"),
+        (&["synth", &k18, "--threads", "-1"], "-1 is not in 1..=1024"),
+        (&["suite", "--seeds", "-1"], "-1 is not in 1..=100000"),
+        (&["synth", &k18, "--set", "solve"], "for example solve.candidates=9"),
+        (&["certify", "r", "--set", "time"], "for example certify.time_limit_s=60"),
+        (&["snap", &k18, "--grid", "1", "--set", "a"], "for example a=2.5"),
         (&["compare", "nowhere"], "nowhere"),
         (&["schema", "nothing"], "problem"),
     ];

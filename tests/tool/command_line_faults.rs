@@ -159,6 +159,61 @@ fn cognates_of_a_linkage_with_the_longest_name_are_linkage_files() {
 }
 
 #[test]
+fn cognates_that_are_refused_make_no_folder() {
+    let folder = TempDir::new().expect("a folder");
+    let hoeken = root().join("problems/linkages/hoeken.toml").display().to_string();
+    let arguments = ["cognates", &hoeken, "--out", "c", "--svg", "c/hoeken-cognate-1.toml"];
+    let output = linkwright(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("named twice"), "{}", said(&output));
+    assert!(!folder.path().join("c").exists());
+}
+
+#[test]
+fn a_folder_without_a_record_is_refused_for_that_by_certify() {
+    let folder = place();
+    for place in [".", "nowhere"] {
+        let output = linkwright(folder.path(), &["certify", place]);
+        assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+        assert!(said(&output).contains("there is no such record; name the folder"), "{}", said(&output));
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_refused_with_the_remedy() {
+    let folder = TempDir::new().expect("a folder");
+    fs::write(folder.path().join("results"), "mine").expect("there is room");
+    let output = linkwright(folder.path(), &["suite", "--write"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("; choose another name"), "{}", said(&output));
+}
+
+#[test]
+fn the_page_of_a_record_that_is_named_in_its_own_folder_is_report_html() {
+    let folder = place();
+    let output = linkwright(&folder.path().join("r"), &["report", "record.json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(printed(&output), "report.html\n");
+    fs::copy(folder.path().join("r/record.json"), folder.path().join("other.json")).expect("there is room");
+    let output = linkwright(folder.path(), &["report", "other.json"]);
+    assert_eq!(printed(&output), "other.html\n", "{}", said(&output));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn help_that_a_full_disk_takes_away_is_a_failure() {
+    let folder = TempDir::new().expect("a folder");
+    for arguments in [&["--help"][..], &["--version"], &["help", "synth"], &["synth", "--help"]] {
+        let full = fs::File::options().write(true).open("/dev/full").expect("the system has one");
+        let output = command(folder.path(), arguments).stdout(full).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", said(&output));
+        assert!(said(&output).contains("cannot be written to standard output"), "{}", said(&output));
+        let output = linkwright(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", said(&output));
+    }
+}
+
+#[test]
 fn names_that_a_system_or_a_shell_takes_for_something_else_are_refused() {
     let folder = TempDir::new().expect("a folder");
     for name in ["CON", "nul", "COM1", "lpt9.v2", "-rf", "--help", "end.", "end "] {

@@ -1,9 +1,8 @@
-//! `analyze` and `cognates`: what a given linkage does.
+//! `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve.
 
 use super::arguments::{Analyze, Cognates};
-use super::output::Output;
-use super::{Ended, refuse, result, terminal};
-use crate::files::diagnostic::escaped;
+use super::output::{Form, Output};
+use super::{Ended, refuse, refuse_io, refuse_path, result, terminal};
 use crate::files::generator::FileKind;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
@@ -18,6 +17,7 @@ use crate::report::analysis_text::{analysis_head, analysis_table};
 use crate::report::chain_sheet::chain_svg;
 use crate::report::chain_text::{chain_csv, chain_head, chain_table};
 use crate::report::cognates_sheet::cognates_svg;
+use crate::report::text::clean;
 use std::path::Path;
 
 /// The crank angles when none are asked for: every 30 degrees.
@@ -27,101 +27,68 @@ const LONG_TABLE: usize = 72;
 
 /// Runs `analyze`.
 pub fn run(options: &Analyze) -> Result<Ended, Ended> {
-    let file = result::read_linkage(&options.linkage)?;
-    let crank_deg = match (&options.angle, options.cycle) {
-        (Some(angles), _) => angles.clone(),
-        (None, Some(n)) => full_turn(n as usize),
-        (None, None) => full_turn(DEFAULT_POSITIONS),
-    };
+    let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
+    let evenly = || full_turn(options.cycle.map_or(DEFAULT_POSITIONS, |n| n as usize));
+    let crank_deg = options.angle.clone().unwrap_or_else(evenly);
     let speed = options.omega.or(options.rpm.map(|rpm| CrankMotion::steady_rpm(rpm).speed_rad_s));
     let input = CrankMotion { speed_rad_s: speed.unwrap_or(0.0), acceleration_rad_s2: options.alpha };
-    let linkage = match file.linkage {
-        Linkage::FourBar(linkage) => linkage,
-        Linkage::Chain(chain) => {
-            if options.all_configurations || !options.method.is_empty() {
-                return Err(refuse(
-                    "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
-                ));
-            }
-            let request = ChainRequest { name: file.name, unit: file.unit, chain: *chain, crank_deg, input };
-            return of_chain(options, &request);
+    let all_configurations = options.all_configurations;
+    match linkage {
+        Linkage::FourBar(linkage) => {
+            let methods = options.method.clone();
+            let request = Request { name, unit, linkage, crank_deg, input, methods, all_configurations };
+            let analysis = analyze(&request);
+            let forms = Forms {
+                positions: analysis.configurations.iter().map(|c| c.rows.len()).sum(),
+                csv: &|| analysis_csv(&analysis),
+                svg: &|| analysis_svg(&analysis),
+                table: &|| analysis_table(&analysis, terminal::colour()),
+                head: &|| analysis_head(&analysis, terminal::colour()),
+            };
+            deliver(options, &analysis, &forms)
         }
-    };
-    let request = Request {
-        name: file.name,
-        unit: file.unit,
-        linkage,
-        crank_deg,
-        input,
-        methods: options.method.clone(),
-        all_configurations: options.all_configurations,
-    };
-    let analysis = analyze(&request);
-    let positions: usize = analysis.configurations.iter().map(|c| c.rows.len()).sum();
-    deliver(
-        options,
-        positions,
-        &analysis,
-        &Forms {
-            csv: &|| analysis_csv(&analysis),
-            svg: &|| analysis_svg(&analysis),
-            table: &|| analysis_table(&analysis, terminal::colour()),
-            head: &|| analysis_head(&analysis, terminal::colour()),
-        },
-    )
-}
-
-fn of_chain(options: &Analyze, request: &ChainRequest) -> Result<Ended, Ended> {
-    let analysis = analyze_chain(request);
-    deliver(
-        options,
-        analysis.rows.len(),
-        &analysis,
-        &Forms {
-            csv: &|| chain_csv(&analysis),
-            svg: &|| chain_svg(&analysis, &request.chain),
-            table: &|| chain_table(&analysis, terminal::colour()),
-            head: &|| chain_head(&analysis, terminal::colour()),
-        },
-    )
+        Linkage::Chain(_) if all_configurations || !options.method.is_empty() => Err(refuse(
+            "--all-configurations and --method are for four-bars; this file is a chain, whose signs stand in it",
+        )),
+        Linkage::Chain(chain) => {
+            let request = ChainRequest { name, unit, chain: *chain, crank_deg, input };
+            let analysis = analyze_chain(&request);
+            let forms = Forms {
+                positions: analysis.rows.len(),
+                csv: &|| chain_csv(&analysis),
+                svg: &|| chain_svg(&analysis, &request.chain),
+                table: &|| chain_table(&analysis, terminal::colour()),
+                head: &|| chain_head(&analysis, terminal::colour()),
+            };
+            deliver(options, &analysis, &forms)
+        }
+    }
 }
 
 /// The forms in which an analysis can be given; each is made only when it is wanted.
 struct Forms<'a> {
+    positions: usize,
     csv: &'a dyn Fn() -> String,
     svg: &'a dyn Fn() -> String,
     table: &'a dyn Fn() -> String,
     head: &'a dyn Fn() -> String,
 }
 
-/// Writes the files that were asked for and prints JSON, the tables, or (long tables that stand in a file) the
-/// head alone.
-fn deliver(
-    options: &Analyze,
-    positions: usize,
-    analysis: &impl serde::Serialize,
-    forms: &Forms<'_>,
-) -> Result<Ended, Ended> {
-    let asked = [
-        options.csv.as_deref().map(|path| (path, FileKind::Csv, (forms.csv)())),
-        options.svg.as_deref().map(|path| (path, FileKind::Svg, (forms.svg)())),
-    ];
-    let written: Vec<_> =
-        asked.iter().flatten().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
-    Output::new([&options.linkage], options.force).write(&written)?;
+/// Writes the files that were asked for and prints JSON, the tables, or the head alone of a long table that was written
+/// to a file.
+fn deliver(options: &Analyze, analysis: &impl serde::Serialize, forms: &Forms<'_>) -> Result<Ended, Ended> {
+    let asked: [Form<'_>; 2] =
+        [(&options.csv, FileKind::Csv, forms.csv), (&options.svg, FileKind::Svg, forms.svg)];
+    let files = Output::new([&options.linkage], options.force).write_asked(&asked)?;
     if options.json {
         let text = serde_json::to_string_pretty(analysis)
             .map_err(|e| refuse(format!("the analysis cannot be written as JSON: {e}")))?;
         terminal::answer(&(text + "\n"));
         return Ok(Ended::Good);
     }
-    let files: Vec<String> = [&options.csv, &options.svg]
-        .into_iter()
-        .flatten()
-        .map(|p| escaped(&p.display().to_string()))
-        .collect();
-    let shown = if files.is_empty() || positions <= LONG_TABLE { (forms.table)() } else { (forms.head)() };
-    terminal::answer(&shown);
+    let positions = forms.positions;
+    let shown = if files.is_empty() || positions <= LONG_TABLE { forms.table } else { forms.head };
+    terminal::answer(&shown());
     if !files.is_empty() {
         terminal::answer(&format!("\n  {positions} positions. Written to {}\n", files.join(" and ")));
     }
@@ -132,9 +99,8 @@ fn deliver(
 pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
     let AnyLinkageFile { name, unit, linkage } = result::read_linkage(&options.linkage)?;
     let Linkage::FourBar(linkage) = linkage else {
-        let shown = escaped(&options.linkage.display().to_string());
         let why = "it is a chain, and cognates are of four-bars: give a file with [linkage] or [vector_loop]";
-        return Err(refuse(format!("{shown}: {why}")));
+        return Err(refuse_path(&options.linkage, why));
     };
     let mut found = Vec::new();
     let mut text = String::new();
@@ -154,10 +120,8 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
         let name = name::with_suffix(&name, &format!("-cognate-{}", i + 1));
         let path = options.out.as_deref().unwrap_or(Path::new("")).join(format!("{name}.toml"));
         if path.exists() && !options.force {
-            return Err(refuse(format!(
-                "{} exists already; give another folder with --out, or replace it with --force",
-                path.display()
-            )));
+            let why = "exists already; give another folder with --out, or replace it with --force";
+            return Err(refuse(format!("{} {why}", path.display())));
         }
         written.push((path, FileKind::Linkage, linkage_file::to_toml(&name, unit, linkage)));
     }
@@ -165,22 +129,18 @@ pub fn cognates(options: &Cognates) -> Result<Ended, Ended> {
         written.push((path.clone(), FileKind::Svg, cognates_svg(&name, unit, &linkage, &found)));
     }
     let output = Output::new([&options.linkage], options.force);
-    // Looked at before the folder is made.
-    for (path, kind, _) in &written {
-        output.check(path, *kind)?;
-    }
+    // Before the folder is made.
+    output.check(&written)?;
     if let Some(out) = &options.out {
-        std::fs::create_dir_all(out).map_err(|e| refuse(format!("{}: {e}", out.display())))?;
+        std::fs::create_dir_all(out).map_err(|e| refuse_io(out, e))?;
     }
-    let files: Vec<_> =
-        written.iter().map(|(path, kind, text)| (path.as_path(), *kind, text.as_bytes())).collect();
-    output.write(&files)?;
+    output.write(&written)?;
     for (path, ..) in &written {
-        text.push_str(&format!("  Wrote {}\n", escaped(&path.display().to_string())));
+        text.push_str(&format!("  Wrote {}\n", terminal::shown(path)));
     }
     terminal::answer(&format!(
         "The Roberts-Chebyshev cognates of {}: other linkages of the same coupler curve\n{text}",
-        crate::report::text::clean(&name)
+        clean(&name)
     ));
     Ok(if found.is_empty() { Ended::Bad } else { Ended::Good })
 }

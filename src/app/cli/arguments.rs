@@ -1,4 +1,4 @@
-//! What can be typed.
+//! Commands and options, with their help texts and the checks of their values.
 
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
@@ -7,6 +7,7 @@ use crate::report::compare::SortKey;
 use crate::report::export::Format;
 use crate::synthesis::snap::Length;
 use crate::task::spec::{CertifySpec, MAX_CERTIFY_S};
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -91,16 +92,16 @@ pub struct Synth {
     #[arg(long, value_name = "METHOD")]
     pub method: Option<String>,
     /// Where every draw comes from: as `--set solve.seed=..`
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
     pub seed: Option<u64>,
     /// Set any key of the problem file, e.g. --set solve.candidates=9
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = key_value)]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "solve.candidates=9"))]
     pub set: Vec<(String, String)>,
     /// The answers alone, not what conflicts, what can be built or what limits cost: as `--set solve.advice=false`
     #[arg(long)]
     pub no_advice: bool,
     /// Threads [default: all cores]; they change the time, never a digit
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Go on from the checkpoint that an interrupted run left, skip what is done
     #[arg(long)]
@@ -191,7 +192,6 @@ pub struct Verify {
 #[derive(Debug, Args)]
 pub struct Certify {
     /// A result's folder
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// How far below the best candidate the proved bound may be, relative
     #[arg(long, value_name = "G", default_value_t = CertifySpec::default().gap, allow_negative_numbers = true, value_parser = gap)]
@@ -214,7 +214,6 @@ pub struct Certify {
 #[derive(Debug, Args)]
 pub struct Report {
     /// A result's folder or record.json; `:2` shows its second candidate first
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// Where the page goes [default: report.html in the folder, or beside a record under another name]
     #[arg(long, value_name = "FILE")]
@@ -228,13 +227,12 @@ pub struct Report {
 #[derive(Debug, Args)]
 pub struct Analyze {
     /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
-    #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// Crank angles, degrees from the x axis, separated by commas [default: every 30 degrees]
     #[arg(long, value_name = "DEG,..", value_delimiter = ',', allow_hyphen_values = true, value_parser = finite)]
     pub angle: Option<Vec<f64>>,
     /// This many crank angles, evenly over a full turn
-    #[arg(long, value_name = "N", conflicts_with = "angle", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", conflicts_with = "angle", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub cycle: Option<u32>,
     /// Speed of the crank, rad/s
     #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = finite)]
@@ -269,7 +267,6 @@ pub struct Analyze {
 #[derive(Debug, Args)]
 pub struct Cognates {
     /// A linkage file (TOML), a result's folder or record.json (its first candidate), either with `:2` for another
-    #[arg(value_name = "LINKAGE")]
     pub linkage: PathBuf,
     /// The folder for the linkage files NAME-cognate-1.toml and NAME-cognate-2.toml [default: here]
     #[arg(long, value_name = "DIR")]
@@ -286,7 +283,6 @@ pub struct Cognates {
 #[derive(Debug, Args)]
 pub struct Build {
     /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The holes' diameter, in the file's unit [default: 4 mm, without a unit a fortieth of the longest link; less where holes are near each other]
     #[arg(long, value_name = "D", allow_negative_numbers = true, value_parser = positive)]
@@ -304,7 +300,6 @@ pub struct Build {
 #[command(group = clap::ArgGroup::new("stock").required(true).args(["grid", "lengths", "pitches"]))]
 pub struct Snap {
     /// A result's folder or record.json, either with `:2` for its second candidate, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// The stock: multiples of this, in the file's unit
     #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = positive)]
@@ -336,14 +331,13 @@ pub struct Snap {
 #[derive(Debug, Args)]
 pub struct Suite {
     /// Only problems whose name or file name holds this
-    #[arg(value_name = "FILTER")]
     pub filter: Option<String>,
     /// Run the problem files of this folder that have `best_known_sum_sq` in `[expect]` [default:
     /// problems/literature where it is here, else the same files, which linkwright holds]
     #[arg(long, value_name = "DIR")]
     pub problems: Option<PathBuf>,
     /// Seeds 1 to N for each problem
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, value_name = "N", default_value_t = 10, allow_negative_numbers = true, value_parser = RangedI64ValueParser::<u64>::new().range(1..=100_000))]
     pub seeds: u64,
     /// Prove the best answer of each problem that can be proved, within 0.01 % or 300 s each
     #[arg(long)]
@@ -364,10 +358,9 @@ pub struct Suite {
 #[derive(Debug, Args)]
 pub struct Studio {
     /// Begin with the target and the requirements of this problem file, points (CSV) or drawing (SVG)
-    #[arg(value_name = "PROBLEM")]
     pub problem: Option<PathBuf>,
     /// The port on 127.0.0.1, 0 for any free one [default: 8017, or a free one where that is taken]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
     /// Save jobs in folders inside of DIR, and list the results that are there [default: results]
     #[arg(long, value_name = "DIR")]
@@ -381,13 +374,12 @@ pub struct Studio {
 #[derive(Debug, Args)]
 pub struct Export {
     /// A result's folder or record.json (its first candidate), either with `:2` for another, or a linkage file
-    #[arg(value_name = "RESULT")]
     pub result: PathBuf,
     /// svg, svg-plates, dxf, dxf-plates, stl, scad, csv, toml, json, cut-list or cut-list-csv
     #[arg(long, value_name = "FORMAT")]
     pub format: Format,
     /// Set a size or the scale, e.g. --set hole_mm=4
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = setting)]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "hole_mm=4"))]
     pub set: Vec<(String, String)>,
     /// Write it to this file [default: to standard output]
     #[arg(long, value_name = "FILE")]
@@ -440,7 +432,7 @@ fn gap(text: &str) -> Result<f64, ValueError> {
 }
 
 fn certify_key(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = key_value(text)?;
+    let (key, value) = pair(text, "certify.time_limit_s=60")?;
     if key != "certify.time_limit_s" {
         return Err(ValueError::NotOfCertify);
     }
@@ -459,21 +451,13 @@ fn kept(text: &str) -> Result<String, ValueError> {
 }
 
 fn dimension(text: &str) -> Result<(String, f64), ValueError> {
-    let (key, value) = key_value(text)?;
+    let (key, value) = pair(text, "a=2.5")?;
     let number = match key.as_str() {
         key if Length::named(key).is_some() => positive(&value)?,
         "ground_angle_deg" => finite(&value)?,
         _ => return Err(ValueError::NotADimension),
     };
     Ok((key, number))
-}
-
-fn key_value(text: &str) -> Result<(String, String), ValueError> {
-    pair(text, "solve.candidates=9")
-}
-
-fn setting(text: &str) -> Result<(String, String), ValueError> {
-    pair(text, "hole_mm=4")
 }
 
 fn pair(text: &str, example: &'static str) -> Result<(String, String), ValueError> {

@@ -1,4 +1,4 @@
-//! `build`: what stands between a linkage and a workshop.
+//! `build`: layers, distances and sensitivities of a linkage that is to be built.
 
 use super::arguments::Build as Options;
 use super::result;

@@ -1,17 +1,17 @@
-//! `certify`: a bound below which no linkage that it covers can be.
+//! `certify`: lower bounds of the error, by branch and bound.
 
 use super::arguments::Certify;
 use super::progress::Shown;
 use super::result;
-use super::result::Which;
-use super::{Ended, interrupt, refuse, terminal};
+use super::{Ended, interrupt, refuse, refuse_io, refuse_path, terminal};
 use crate::app::job::files;
 use crate::app::job::files::Timing;
-use crate::app::job::folder::{CERTIFICATE_CHECKPOINT, LEAVES, ResultsFolder, read_at_most, replace_file};
+use crate::app::job::folder::{
+    CERTIFICATE_CHECKPOINT, LEAVES, RECORD, ResultsFolder, read_at_most, replace_file,
+};
 use crate::app::job::save::SaveError;
-use crate::files::diagnostic::escaped;
 use crate::judge::certificate::checkpoint::{MAX_BYTES, REMEDY};
-use crate::judge::certificate::{NoCertificate, Proof, Request, ResumeError};
+use crate::judge::certificate::{Proof, Request, ResumeError};
 use crate::record::{Certificate, Record};
 use crate::report::certificate::{certificate_text, parts_text, repeats_text};
 use crate::task::spec::CertifySpec;
@@ -19,7 +19,7 @@ use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What is proved is kept this often, so that a process that is killed loses no more.
+/// The time between two checkpoints, so that a process that is killed loses no more.
 const KEPT_EVERY: Duration = Duration::from_secs(60);
 /// The file with a run's times.
 const TIMING: &str = "timing.json";
@@ -27,36 +27,34 @@ const TIMING: &str = "timing.json";
 /// Runs the command.
 pub fn run(options: &Certify) -> Result<Ended, Ended> {
     let begun = Instant::now();
-    let shown = escaped(&options.result.display().to_string());
-    let not_whole = || refuse(format!("{shown}: certify writes into the result's folder; give the folder"));
     if !options.result.is_dir() {
         result::read_run_of(&options.result, "certify")?;
-        return Err(not_whole());
+        return Err(refuse_path(&options.result, "certify writes into the result's folder; give the folder"));
+    }
+    if !options.result.join(RECORD).is_file() {
+        // A folder that never held a result is refused for that, not for its contents.
+        result::read_run_of(&options.result, "certify")?;
     }
     // Taken before the record is read, so that no other run changes it, and before the work, so that a place that cannot
-    // be written to is told at once.
+    // be written to is reported at once.
     let mut folder = ResultsFolder::take(&options.result).map_err(refuse)?;
-    let run = result::read_run_of(&options.result, "certify")?;
-    if run.which != Which::All {
-        return Err(not_whole());
-    }
-    let mut record = run.record;
+    let mut record = result::read_run_of(&options.result, "certify")?.record;
     let former = record.certificate.take();
     let cancel = interrupt::watch("keeping what is proved by now");
-    let mut proof = begin(options, &shown, &record)?;
+    let mut proof = begin(options, &record)?;
     prove(options, &mut proof, &record.problem.name, begun, cancel);
     let leaves = proof.leaves();
     let certificate = proof.certificate_of(&leaves);
     let proved = |certificate: &Certificate| (certificate.lower_bound, certificate.boxes);
     if let Some(stronger) = former.filter(|former| proved(former) > proved(&certificate)) {
         record.certificate = Some(stronger);
-        terminal::tell(&format!("{shown}: its certificate proves more than this run: it stays as it is"));
+        tell_of(options, "its certificate proves more than this run: it stays as it is");
         if !proof.ended() {
             replace_file(&options.result, CERTIFICATE_CHECKPOINT, &proof.checkpoint()).map_err(refuse)?;
         }
     } else {
         record.certificate = Some(certificate);
-        let files = files(options, &shown, &record, begun, &proof, leaves.to_bytes())?;
+        let files = files(options, &record, begun, &proof, leaves.to_bytes())?;
         if folder.has_checkpoint() {
             folder.keep_checkpoint();
         }
@@ -73,29 +71,34 @@ pub fn run(options: &Certify) -> Result<Ended, Ended> {
     Ok(if cancel.load(Ordering::SeqCst) { Ended::Interrupted } else { Ended::Bad })
 }
 
+/// Tells the user something about the result.
+fn tell_of(options: &Certify, text: &str) {
+    terminal::tell(&format!("{}: {text}", terminal::shown(&options.result)));
+}
+
 /// Begins the proof, or takes it up where a run was stopped. If nothing can be proved, the forecast of the search itself
 /// is shown.
-fn begin(options: &Certify, shown: &str, record: &Record) -> Result<Proof, Ended> {
+fn begin(options: &Certify, record: &Record) -> Result<Proof, Ended> {
     let request = Request { gap: options.gap };
-    let none = |e: NoCertificate| {
-        if let Some(repeats) = &record.repeats {
-            terminal::answer(&repeats_text(repeats));
-        }
-        refuse(format!("{shown}: {e}"))
+    let proof = match kept(options)? {
+        Some(bytes) => Proof::resume(record, &request, &bytes),
+        None => Proof::new(record, &request).map_err(ResumeError::from),
     };
-    match kept(options, shown)? {
-        Some(bytes) => Proof::resume(record, &request, &bytes).map_err(|e| match e {
-            ResumeError::NoCertificate(e) => none(e),
-            e => refuse(format!("{shown}/{CERTIFICATE_CHECKPOINT}: {e}")),
-        }),
-        None => Proof::new(record, &request).map_err(none),
-    }
+    proof.map_err(|e| match e {
+        ResumeError::NoCertificate(e) => {
+            if let Some(repeats) = &record.repeats {
+                terminal::answer(&repeats_text(repeats));
+            }
+            refuse_path(&options.result, e)
+        }
+        e => refuse_path(&options.result.join(CERTIFICATE_CHECKPOINT), e),
+    })
 }
 
 /// Proves until the end, the time limit or Ctrl-C, with checkpoints on the way.
 fn prove(options: &Certify, proof: &mut Proof, name: &str, begun: Instant, cancel: &AtomicBool) {
-    let limit = options.set.iter().map(|(_, seconds)| *seconds).next_back();
-    let deadline = begun + Duration::from_secs_f64(limit.unwrap_or(CertifySpec::default().time_limit_s));
+    let limit = options.set.last().map_or(CertifySpec::default().time_limit_s, |(_, seconds)| *seconds);
+    let deadline = begun + Duration::from_secs_f64(limit);
     let shown = Shown::of_proof(name, options.quiet);
     let mut warned = false;
     loop {
@@ -113,22 +116,22 @@ fn prove(options: &Certify, proof: &mut Proof, name: &str, begun: Instant, cance
     }
 }
 
-/// What a run that was stopped has left, where it is to go on.
-fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
+/// Reads the checkpoint of a run that was stopped, if the proof is to go on from it.
+fn kept(options: &Certify) -> Result<Option<Vec<u8>>, Ended> {
     if !options.resume {
         return Ok(None);
     }
-    let place = format!("{shown}/{CERTIFICATE_CHECKPOINT}");
-    match read_at_most(&options.result.join(CERTIFICATE_CHECKPOINT), MAX_BYTES) {
+    let place = options.result.join(CERTIFICATE_CHECKPOINT);
+    match read_at_most(&place, MAX_BYTES) {
         Ok(Some(bytes)) => Ok(Some(bytes)),
-        Ok(None) => Err(refuse(format!("{place}: it has at most {MAX_BYTES} bytes; {REMEDY}"))),
+        Ok(None) => Err(refuse_path(&place, format!("it has at most {MAX_BYTES} bytes; {REMEDY}"))),
         Err(e) if e.kind() == io::ErrorKind::NotFound => {
             if !options.quiet {
-                terminal::tell(&format!("{shown}: no run of certify was stopped here: it begins anew"));
+                tell_of(options, "no run of certify was stopped here: it begins anew");
             }
             Ok(None)
         }
-        Err(e) => Err(refuse(format!("{place}: {e}"))),
+        Err(e) => Err(refuse_io(&place, e)),
     }
 }
 
@@ -136,7 +139,6 @@ fn kept(options: &Certify, shown: &str) -> Result<Option<Vec<u8>>, Ended> {
 /// times of its search stay.
 fn files(
     options: &Certify,
-    shown: &str,
     record: &Record,
     begun: Instant,
     proof: &Proof,
@@ -156,9 +158,8 @@ fn files(
     if options.leaves || had.as_ref() == Some(&leaves) {
         files.push((LEAVES.into(), leaves));
     } else if had.is_some() {
-        terminal::tell(&format!(
-            "{shown}: {LEAVES} was of another certificate and is gone; --leaves keeps the new ones"
-        ));
+        let gone = format!("{LEAVES} was of another certificate and is gone; --leaves keeps the new ones");
+        tell_of(options, &gone);
     }
     if !proof.ended() {
         files.push((CERTIFICATE_CHECKPOINT.into(), proof.checkpoint()));

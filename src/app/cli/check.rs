@@ -1,8 +1,9 @@
-//! `check`: is a file what it should be?
+//! `check`: reads files and reports their faults without running anything.
 
 use super::arguments::Check;
 use super::{Ended, refuse_at, terminal};
-use crate::files::diagnostic::{Diagnostic, escaped};
+use crate::files::diagnostic::Diagnostic;
+use crate::files::input_text;
 use crate::files::linkage_file;
 use crate::files::{points_file, problem_file};
 use crate::mechanism::Linkage;
@@ -18,7 +19,7 @@ pub fn run(options: &Check) -> Result<Ended, Ended> {
                 for warning in &warnings {
                     terminal::diagnose(ReportKind::Warning, warning);
                 }
-                terminal::answer(&format!("{}: {summary}\n", escaped(&path.display().to_string())));
+                terminal::answer(&format!("{}: {summary}\n", terminal::shown(path)));
             }
             Err(diagnostic) => ended = refuse_at(diagnostic),
         }
@@ -36,42 +37,36 @@ fn examine(path: &Path) -> Result<(String, Vec<Diagnostic>), Box<Diagnostic>> {
         let drawn = &file.spec.task.path;
         let shape = if drawn.closed { "a closed" } else { "an open" };
         let unit = file.unit.map_or("user units", |unit| unit.label());
-        let size = drawn.to_task().map_or(0.0, |task| task.size());
-        let summary =
-            format!("a drawing: {} points of {shape} curve, size {size:.6} {unit}", drawn.points.len());
-        return Ok((summary, file.warnings));
+        let (n, size) = (drawn.points.len(), drawn.to_task().map_or(0.0, |task| task.size()));
+        return Ok((format!("a drawing: {n} points of {shape} curve, size {size:.6} {unit}"), file.warnings));
     }
     if is_linkage_file(path) {
         let file = linkage_file::load_any(path)?;
-        let what = match &file.linkage {
+        let name = file.name;
+        let summary = match &file.linkage {
             Linkage::FourBar(linkage) => {
-                let of = linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
-                format!("linkage {}: {of}, {linkage}", file.name)
+                let kind = linkage.linkage_type().map_or("links that cannot be joined", |t| t.name());
+                format!("linkage {name}: {kind}, {linkage}")
             }
             Linkage::Chain(chain) => {
-                format!("chain {}: {} stages, points {}", file.name, chain.stages(), chain.names().join(", "))
+                format!("chain {name}: {} stages, points {}", chain.stages(), chain.names().join(", "))
             }
         };
-        return Ok((what, Vec::new()));
+        return Ok((summary, Vec::new()));
     }
     let file = problem_file::load(path, &[])?;
-    let path_spec = &file.spec.task.path;
-    let timing = match &path_spec.timing {
-        None => "free timing".to_string(),
-        Some(_) => "prescribed timing".to_string(),
-    };
-    Ok((
-        format!("problem {}: {} points, {timing}, runs as it is", file.name, path_spec.points.len()),
-        file.warnings,
-    ))
+    let target = &file.spec.task.path;
+    let timing = if target.timing.is_some() { "prescribed" } else { "free" };
+    let summary =
+        format!("problem {}: {} points, {timing} timing, runs as it is", file.name, target.points.len());
+    Ok((summary, file.warnings))
 }
 
-/// Whether a file has one of the tables that only a linkage file has; what cannot be read is left to the
-/// problem reader's diagnostics.
+/// Returns whether a file has one of the tables that only a linkage file has. An unreadable file is left to the problem
+/// reader's diagnostics.
 fn is_linkage_file(path: &Path) -> bool {
-    let small =
-        std::fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() <= crate::files::input_text::MAX_BYTES);
-    let text = if small { std::fs::read_to_string(path).unwrap_or_default() } else { String::new() };
+    // A pipe can be read only once.
+    let text = if path.is_file() { input_text::read(path).unwrap_or_default() } else { String::new() };
     text.lines().any(|line| {
         let line = line.trim_start();
         ["[linkage]", "[vector_loop]", "[chain"].iter().any(|table| line.starts_with(table))

@@ -1,11 +1,11 @@
 //! `compare`: results and linkages side by side.
 
 use super::arguments::Compare;
-use super::output::Output;
+use super::output::{Form, Output};
 use super::result;
 use super::result::{Given, Which};
 use super::{Ended, refuse, refuse_at, terminal};
-use crate::app::comparison::{NotCompared, Target, compared};
+use crate::app::comparison::{NotCompared, Target, compared, label_of_file};
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
@@ -15,10 +15,8 @@ use std::path::Path;
 /// Runs the command.
 pub fn run(options: &Compare) -> Result<Ended, Ended> {
     let target = options.target.as_deref().map(target_of).transpose()?;
-    let mut given = Vec::new();
-    for argument in &options.results {
-        given.push((argument.as_path(), result::read(argument)?));
-    }
+    let read = options.results.iter().map(|argument| Ok((argument.as_path(), result::read(argument)?)));
+    let mut given = read.collect::<Result<Vec<_>, Ended>>()?;
     let reference = options.reference.as_deref().map(|name| reference(name, &mut given)).transpose()?;
     let comparison = match compared(&given, target.as_ref(), &options.sort, reference.as_deref()) {
         Ok(comparison) => comparison,
@@ -40,27 +38,25 @@ fn target_of(path: &Path) -> Result<Target, Ended> {
     Target::new(file).map_err(refuse)
 }
 
-/// The label of what differences are from; read and put to the others where it is none of them.
+/// Returns the label in the tables of the result that the differences are from. It is read and put to the others if it is
+/// none of them.
 fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<String, Ended> {
     let typed = name.display().to_string();
     let labels = |given: &Given, path: &Path| match given {
         Given::Run(run) => run.chosen().into_iter().map(|chosen| chosen.label).collect(),
         Given::Linkage(file) => vec![path.display().to_string(), file.name.clone()],
     };
-    for (path, one) in given.iter() {
+    for (i, (path, one)) in given.iter().enumerate() {
         let labels = labels(one, path);
         if *path == name || labels.contains(&typed) {
-            let label = labels.iter().find(|label| **label == typed && matches!(one, Given::Run(_)));
-            let first = || match one {
-                Given::Run(run) => run.one().map(|chosen| chosen.label),
-                Given::Linkage(_) => Ok(path.display().to_string()),
-            };
-            let label = label.map_or_else(first, |label| Ok(label.clone()))?;
-            return Ok(shown_as(&label, given));
+            return Ok(match one {
+                Given::Linkage(_) => label_of_file(given, i),
+                Given::Run(_) if labels.contains(&typed) => typed,
+                Given::Run(run) => run.one()?.label,
+            });
         }
     }
-    let read = result::read(name)?;
-    let label = match read {
+    match result::read(name)? {
         Given::Run(mut run) => {
             let label = run.one()?.label;
             if run.which == Which::All {
@@ -69,37 +65,24 @@ fn reference<'a>(name: &'a Path, given: &mut Vec<(&'a Path, Given)>) -> Result<S
             if !given.iter().any(|(path, one)| labels(one, path).contains(&label)) {
                 given.push((name, Given::Run(run)));
             }
-            label
+            Ok(label)
         }
         linkage => {
             given.push((name, linkage));
-            typed
+            Ok(label_of_file(given, given.len() - 1))
         }
-    };
-    Ok(shown_as(&label, given))
-}
-
-/// What a linkage file or a candidate is called in the tables.
-fn shown_as(label: &str, given: &[(&Path, Given)]) -> String {
-    let file = given
-        .iter()
-        .position(|(path, one)| matches!(one, Given::Linkage(_)) && path.display().to_string() == label);
-    file.map_or_else(|| label.to_owned(), |i| crate::app::comparison::label_of_file(given, i))
+    }
 }
 
 /// Writes the files that were asked for and prints the tables or JSON.
 fn deliver(options: &Compare, comparison: &Comparison) -> Result<Ended, Ended> {
-    let forms: [(&Option<_>, _, &dyn Fn() -> String); 3] = [
+    let forms: [Form<'_>; 3] = [
         (&options.csv, FileKind::Csv, &|| comparison.csv()),
         (&options.svg, FileKind::Svg, &|| comparison.svg()),
         (&options.html, FileKind::Html, &|| comparison.html()),
     ];
-    let asked = forms.iter().filter_map(|(path, kind, text)| Some((path.as_deref()?, *kind, text())));
-    let asked: Vec<(&Path, FileKind, String)> = asked.collect();
-    let files: Vec<_> = asked.iter().map(|(path, kind, text)| (*path, *kind, text.as_bytes())).collect();
     let inputs = options.results.iter().chain(&options.target).chain(&options.reference);
-    Output::new(inputs, options.force).write(&files)?;
-    let written: Vec<String> = files.iter().map(|(path, ..)| escaped(&path.display().to_string())).collect();
+    let written = Output::new(inputs, options.force).write_asked(&forms)?;
     if options.json {
         comparison.notes().iter().for_each(|note| terminal::tell(&format!("note: {}", escaped(note))));
         terminal::answer(&comparison.json());

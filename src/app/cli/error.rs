@@ -1,19 +1,12 @@
-//! The reasons for which a command refuses its input, if no room below the command line names them.
+//! Errors of commands, apart from those that another layer names.
 
 use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
-use std::io;
 
 /// The reason why a command cannot be carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum CommandError {
-    /// The system refuses a path.
-    #[error("{path}: {source}")]
-    Io { path: String, source: io::Error },
-    /// A folder cannot be written to.
-    #[error("{path} cannot be written to: {source}")]
-    NotWritable { path: String, source: io::Error },
-    /// A file may not be replaced or cannot be written.
+    /// A file may not be replaced or cannot be written, or a folder cannot be read.
     #[error(transparent)]
     Folder(#[from] FolderError),
     /// The file in the place of a batch's summary is no summary; there is no `--force` for it.
@@ -32,5 +25,5 @@ pub enum CommandError {
     SamePlace { one: String, other: String, place: String },
     /// A problem file is invalid.
     #[error("{}", .0.message)]
-    Problem(Box<Diagnostic>),
+    Problem(#[from] Box<Diagnostic>),
 }

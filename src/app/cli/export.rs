@@ -27,14 +27,10 @@ pub fn run(options: &Export) -> Result<Ended, Ended> {
         terminal::answer(&String::from_utf8_lossy(&exported.bytes));
         return Ok(Ended::Good);
     };
-    let output = Output::new([&options.result], options.force);
-    output.write(&[(path, options.format.kind(), &exported.bytes)])?;
-    terminal::answer(&format!(
-        "Wrote {}: {}, {}\n",
-        escaped(&path.display().to_string()),
-        subject.title(),
-        subject.standing
-    ));
+    let file = (path, options.format.kind(), &exported.bytes);
+    Output::new([&options.result], options.force).write(&[file])?;
+    let (title, standing) = (subject.title(), &subject.standing);
+    terminal::answer(&format!("Wrote {}: {title}, {standing}\n", terminal::shown(path)));
     Ok(Ended::Good)
 }
 

@@ -1,20 +1,20 @@
-//! What `synth` is given: files, and folders of problem files; and where the result of each goes.
+//! Inputs of `synth`: files and folders of problem files, each with the folder of its result.
 
 use super::arguments::Synth;
 use super::error::CommandError;
 use super::terminal;
+use crate::app::job::folder::FolderError;
 use crate::app::job::run::Job;
-use crate::files::diagnostic::escaped;
 use crate::files::input_text;
 use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
 use ariadne::ReportKind;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
-/// Where results go when nothing is said.
+/// The usual folder of results.
 pub const RESULTS: &str = "results";
 /// The most files of a folder.
 const MOST_FILES: usize = 100_000;
@@ -23,13 +23,13 @@ const MOST_FILES: usize = 100_000;
 pub struct Input {
     /// The file as it was named, or the folder that names none.
     pub file: String,
-    /// The job and its folder, or why there is none; the reason has been told.
+    /// The job and its folder; an error has been reported.
     pub job: Result<(Job, PathBuf), CommandError>,
 }
 
-/// Reads everything that is to be run, in the order in which it was named, the files of a folder by name. What is
-/// wrong with a file is told at once.
-pub fn load(options: &Synth) -> Vec<Input> {
+/// Reads everything that is to be run, in the order in which it was named, the files of a folder by name. Faults of a
+/// file are reported at once. Also returns whether the inputs are a batch.
+pub fn load(options: &Synth) -> (Vec<Input>, bool) {
     let mut files = Vec::new();
     for path in &options.files {
         if !path.is_dir() {
@@ -48,14 +48,10 @@ pub fn load(options: &Synth) -> Vec<Input> {
     let several = files.len() > 1 || options.files.iter().any(|path| path.is_dir());
     // The file that writes to each folder.
     let mut taken = BTreeMap::new();
-    let mut input = |(path, why): (PathBuf, Option<CommandError>)| {
+    let input = |(path, why): (PathBuf, Option<CommandError>)| {
         let file = path.display().to_string();
-        let job = match why {
-            Some(why) => Err(why),
-            None => problem_file::load_any(&path, &overrides)
-                .map_err(CommandError::Problem)
-                .and_then(|problem| job(options, problem, several, &file, &mut taken)),
-        };
+        let problem = why.map_or_else(|| Ok(problem_file::load_any(&path, &overrides)?), Err);
+        let job = problem.and_then(|problem| job(options, problem, several, &file, &mut taken));
         match &job {
             Err(CommandError::Problem(diagnostic)) => terminal::diagnose(ReportKind::Error, diagnostic),
             Err(why) => terminal::complain(&why.to_string()),
@@ -63,10 +59,10 @@ pub fn load(options: &Synth) -> Vec<Input> {
         }
         Input { file, job }
     };
-    files.into_iter().map(&mut input).collect()
+    (files.into_iter().map(input).collect(), several)
 }
 
-/// The job of a problem and its folder, which no file before it has taken.
+/// Returns the job of a problem and its folder, which no file before it has taken.
 fn job(
     options: &Synth,
     problem: ProblemFile,
@@ -77,54 +73,38 @@ fn job(
     for warning in &problem.warnings {
         terminal::diagnose(ReportKind::Warning, warning);
     }
-    let place = place(options, &problem, several);
-    match taken.entry(place.clone()) {
-        Entry::Occupied(one) => Err(CommandError::SamePlace {
-            one: one.get().clone(),
-            other: file.to_owned(),
-            place: place.display().to_string(),
-        }),
-        Entry::Vacant(free) => {
-            free.insert(file.to_owned());
-            Ok((problem.into(), place))
-        }
+    let place = match &options.out {
+        Some(out) if !several => out.clone(),
+        _ => folder_of_all(options).join(&problem.name),
+    };
+    if let Some(one) = taken.get(&place) {
+        let (one, other) = (one.clone(), file.to_owned());
+        return Err(CommandError::SamePlace { one, other, place: place.display().to_string() });
     }
+    taken.insert(place.clone(), file.to_owned());
+    Ok((problem.into(), place))
 }
 
-/// Where the summary of a batch goes.
+/// Returns the folder for the summary of a batch.
 pub fn folder_of_all(options: &Synth) -> &Path {
     options.out.as_deref().unwrap_or(Path::new(RESULTS))
 }
 
-fn place(options: &Synth, problem: &ProblemFile, several: bool) -> PathBuf {
-    match &options.out {
-        Some(out) if !several => out.clone(),
-        _ => folder_of_all(options).join(&problem.name),
-    }
-}
-
-/// The problem files of a folder, by name: every `*.toml` in it, not below, but for those that say of themselves that
-/// they are something else. These are named in a warning.
+/// Lists the problem files of a folder, by name: every `*.toml` in it, not below, but for those that say of themselves
+/// that they are something else. These are named in a warning.
 fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
-    let shown = escaped(&folder.display().to_string());
-    let failed = |source| CommandError::Io { path: shown.clone(), source };
-    let entries = fs::read_dir(folder).map_err(failed)?;
-    let mut files = Vec::new();
-    for entry in entries {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) && !path.is_dir() {
-            files.push(path);
-        }
-        if files.len() > MOST_FILES {
-            return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });
-        }
+    let shown = terminal::shown(folder);
+    let unreadable = |source| FolderError::Io { path: folder.display().to_string(), source };
+    let mut files = toml_files(folder).map_err(unreadable)?;
+    files.retain(|path| !path.is_dir());
+    if files.len() > MOST_FILES {
+        return Err(CommandError::TooMany { folder: shown, most: MOST_FILES });
     }
-    files.sort();
-    let (problems, others): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| !is_something_else(path));
+    let (others, problems): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| is_something_else(path));
     for other in others {
         terminal::tell(&format!(
             "warning: {} is no problem file (it has no [task]): skipped",
-            escaped(&other.display().to_string())
+            terminal::shown(&other)
         ));
     }
     if problems.is_empty() {
@@ -133,7 +113,19 @@ fn problem_files(folder: &Path) -> Result<Vec<PathBuf>, CommandError> {
     Ok(problems)
 }
 
-/// Whether a file can be read as TOML and has no task. What cannot be read is not passed over in silence.
+/// Lists the TOML files of a folder, not below it, by name.
+///
+/// # Errors
+/// The error of the system.
+pub fn toml_files(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut files = paths.collect::<io::Result<Vec<_>>>()?;
+    files.retain(|path| path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")));
+    files.sort();
+    Ok(files)
+}
+
+/// Returns whether a file can be read as TOML and has no task. An unreadable file is not passed over in silence.
 fn is_something_else(path: &Path) -> bool {
     let Ok(text) = input_text::read(path) else { return false };
     text.trim_start_matches('\u{feff}').parse::<toml::Table>().is_ok_and(|table| !table.contains_key("task"))

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 static CANCELLED: AtomicBool = AtomicBool::new(false);
 
-/// Watches for Ctrl-C from now on; the flag that it sets. `doing` says what the first Ctrl-C brings about.
+/// Watches for Ctrl-C from now on, and returns the flag that it sets. `doing` names the effect of the first Ctrl-C.
 pub fn watch(doing: &'static str) -> &'static AtomicBool {
     let handler = move || {
         if CANCELLED.swap(true, Ordering::SeqCst) {
@@ -18,8 +18,8 @@ pub fn watch(doing: &'static str) -> &'static AtomicBool {
     &CANCELLED
 }
 
-/// Lets a write over the limit of a file's size fail with an error, as a full disk does, where the system would end the
-/// process by SIGXFSZ: from now on nothing half-written stays, and the error names the file.
+/// Lets a write over the limit of a file's size fail with an error, as a full disk does, instead of ending the process by
+/// SIGXFSZ: from now on nothing half-written stays, and the error names the file.
 #[cfg(unix)]
 pub fn outlive_large_files() {
     use signal_hook::{consts::SIGXFSZ, flag};

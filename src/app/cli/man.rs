@@ -3,23 +3,20 @@
 use super::arguments::Arguments;
 use super::{Ended, refuse, terminal};
 use crate::files::diagnostic::quoted;
-use clap::{Command, CommandFactory};
+use clap::CommandFactory;
 use clap_mangen::Man;
 
 /// Runs the command.
 pub fn run(command: Option<&str>) -> Result<Ended, Ended> {
     let mut program = Arguments::command();
+    let names: Vec<String> = program.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    // The page of `synth` is named linkwright-synth by this.
     program.build();
     let page = match command {
-        None => Some(program),
-        // `build` has named the page of `synth` linkwright-synth.
-        Some(name) => program.find_subcommand(name).cloned(),
-    };
-    let Some(page) = page else {
-        let program = Arguments::command();
-        let names: Vec<&str> = program.get_subcommands().map(Command::get_name).collect();
-        let name = quoted(command.unwrap_or_default());
-        return Err(refuse(format!("there is no command {name}: the commands are {}", names.join(", "))));
+        None => program,
+        Some(name) => program.find_subcommand(name).cloned().ok_or_else(|| {
+            refuse(format!("there is no command {}: the commands are {}", quoted(name), names.join(", ")))
+        })?,
     };
     let mut text = Vec::new();
     let rendered = Man::new(page).render(&mut text);

@@ -5,19 +5,19 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`analyze`] | `analyze` and `cognates`: what a given linkage does |
-//! | [`arguments`] | what can be typed |
-//! | [`build`] | `build`: what stands between a linkage and a workshop |
-//! | [`certify`] | `certify`: a bound below which no linkage that it covers can be |
-//! | [`check`] | `check`: is a file what it should be? |
+//! | [`analyze`] | `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve |
+//! | [`arguments`] | commands and options, with their help texts and the checks of their values |
+//! | [`build`] | `build`: layers, distances and sensitivities of a linkage that is to be built |
+//! | [`certify`] | `certify`: lower bounds of the error, by branch and bound |
+//! | [`check`] | `check`: reads files and reports their faults without running anything |
 //! | [`compare`] | `compare`: results and linkages side by side |
-//! | [`error`] | the reasons for which a command refuses its input, if no room below the command line names them |
+//! | [`error`] | errors of commands, apart from those that another layer names |
 //! | [`export`] | `export`: a linkage as a file to build from |
-//! | [`inputs`] | what `synth` is given: files, and folders of problem files; and where the result of each goes |
+//! | [`inputs`] | inputs of `synth`: files and folders of problem files, each with the folder of its result |
 //! | [`interrupt`] | signals |
 //! | [`man`] | `man`: the manual pages, made from the same definitions that `--help` is made from |
 //! | [`new`] | `new`: a problem file to start from |
-//! | [`output`] | files that a command writes where its user says: what is there and is not ours stays, unless `--force` |
+//! | [`output`] | output files at places that a user names: files of other origin are kept, unless `--force` |
 //! | [`progress`] | a bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it |
 //! | [`report`] | `report`: a result as a page, from its record alone |
 //! | [`result`] | RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate, or a linkage file |
@@ -52,40 +52,31 @@ mod synth;
 mod terminal;
 mod verify;
 
+use crate::app::job::folder::FolderError;
 use crate::files::diagnostic::Diagnostic;
 use crate::files::schema::{reference, schema};
 use arguments::{Arguments, Command};
 use ariadne::ReportKind;
 use clap::{CommandFactory, Parser};
 use std::fmt::Display;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::io;
+use std::panic::catch_unwind;
+use std::path::Path;
 use std::process::ExitCode;
 
-/// How a command ended, the gravest last: of several inputs the gravest is that of the command.
+/// The end of a command, as its exit code; the gravest is the last: of several inputs the gravest is that of the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Ended {
     /// Done, and something acceptable was found or the check passed.
-    Good,
+    Good = 0,
     /// It ran, but nothing is acceptable or the check failed.
-    Bad,
+    Bad = 1,
     /// Bad input or usage.
-    Refused,
-    /// A part of a batch met a bug of ours; the others ran.
-    Bug,
+    Refused = 2,
+    /// A bug of ours; the other parts of a batch ran.
+    Bug = 70,
     /// Interrupted; the best so far is saved.
-    Interrupted,
-}
-
-impl From<Ended> for ExitCode {
-    fn from(ended: Ended) -> ExitCode {
-        ExitCode::from(match ended {
-            Ended::Good => 0,
-            Ended::Bad => 1,
-            Ended::Refused => 2,
-            Ended::Bug => BUG,
-            Ended::Interrupted => 130,
-        })
-    }
+    Interrupted = 130,
 }
 
 /// Complains of the reason for which a command refuses its input.
@@ -94,27 +85,47 @@ fn refuse(why: impl Display) -> Ended {
     Ended::Refused
 }
 
+/// Complains of the reason for which a file or a folder is refused.
+fn refuse_path(path: &Path, why: impl Display) -> Ended {
+    refuse(format!("{}: {why}", path.display()))
+}
+
+/// Complains of a path that the system refuses, with the remedy.
+fn refuse_io(path: &Path, source: io::Error) -> Ended {
+    refuse(FolderError::Io { path: path.display().to_string(), source })
+}
+
 /// Shows the place at which an input is refused.
 fn refuse_at(diagnostic: Box<Diagnostic>) -> Ended {
     terminal::diagnose(ReportKind::Error, &diagnostic);
     Ended::Refused
 }
 
-/// The exit code of a panic: a bug of ours.
-const BUG: u8 = 70;
-
 /// Runs the command that the process was called with.
 pub fn main() -> ExitCode {
     interrupt::outlive_large_files();
-    let arguments = Arguments::parse();
-    match catch_unwind(AssertUnwindSafe(|| dispatch(arguments.command).unwrap_or_else(|ended| ended))) {
-        Ok(Ended::Good) if terminal::lost() => Ended::Refused.into(),
-        Ok(ended) => ended.into(),
+    let run = || arguments().and_then(|arguments| dispatch(arguments.command)).unwrap_or_else(|ended| ended);
+    let ended = match catch_unwind(run) {
+        Ok(Ended::Good) if terminal::lost() => Ended::Refused,
+        Ok(ended) => ended,
         Err(_) => {
             terminal::complain("this is a bug of linkwright: please report it with the input that shows it");
-            ExitCode::from(BUG)
+            Ended::Bug
         }
-    }
+    };
+    ExitCode::from(ended as u8)
+}
+
+/// Returns what was typed. Help that was asked for is printed as an answer.
+fn arguments() -> Result<Arguments, Ended> {
+    Arguments::try_parse().map_err(|e| {
+        let printed = e.print();
+        if e.use_stderr() {
+            return Ended::Refused;
+        }
+        terminal::note(printed);
+        Ended::Good
+    })
 }
 
 fn dispatch(command: Command) -> Result<Ended, Ended> {

@@ -7,7 +7,7 @@ use crate::report::text::{at_most, clean, grouped, percent_up};
 use crate::synthesis::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
@@ -25,8 +25,6 @@ pub struct Shown {
     last: Mutex<Instant>,
     bar: Option<ProgressBar>,
     silent: bool,
-    /// Whether the bar has been put on the terminal.
-    drawn: AtomicBool,
     /// Evaluations at the first word of a search: those of an earlier run whose checkpoint this one goes on from.
     before: OnceLock<u64>,
     /// The jobs of a batch that are done.
@@ -37,12 +35,8 @@ impl Shown {
     fn new(name: &str, silent: bool, style: Option<&str>) -> Self {
         let style = style.filter(|_| stderr().is_terminal() && !silent);
         let bar = style.map(|style| {
-            let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::hidden());
-            bar.set_style(
-                ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar()),
-            );
-            bar.set_prefix(clean(name));
-            bar
+            let style = ProgressStyle::with_template(style).unwrap_or_else(|_| ProgressStyle::default_bar());
+            ProgressBar::hidden().with_style(style).with_prefix(clean(name))
         });
         let now = Instant::now();
         Shown {
@@ -51,7 +45,6 @@ impl Shown {
             last: Mutex::new(now),
             bar,
             silent,
-            drawn: AtomicBool::new(false),
             before: OnceLock::new(),
             done: AtomicU64::new(0),
         }
@@ -59,11 +52,8 @@ impl Shown {
 
     /// Returns the progress of the search of the problem `name`.
     pub fn of_search(name: &str, silent: bool) -> Self {
-        Shown::new(
-            name,
-            silent,
-            Some("{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}"),
-        )
+        let style = "{prefix} [{bar:24}] {percent}% of {len} evaluations, {eta} left, {msg}";
+        Shown::new(name, silent, Some(style))
     }
 
     /// Returns the progress of a batch whose jobs run side by side.
@@ -81,13 +71,8 @@ impl Shown {
         Shown::new(name, silent, None)
     }
 
-    /// Whether nothing is to be shown.
-    pub fn is_silent(&self) -> bool {
-        self.silent
-    }
-
-    /// Moves the bar, or writes a line where there is none. Words come many times during work whose time is measured:
-    /// most are dropped at once.
+    /// Moves the bar, or writes a line without one. Reports come many times during work whose time is measured: most are
+    /// dropped at once.
     fn show(&self, [done, total]: [u64; 2], beside: impl FnOnce() -> String, line: impl FnOnce() -> String) {
         let every = if self.bar.is_some() { BAR_EVERY } else { LINE_EVERY };
         if self.silent || self.start.elapsed() < QUIET_FOR {
@@ -99,7 +84,7 @@ impl Shown {
         }
         *last = Instant::now();
         let Some(bar) = &self.bar else { return tell(&line()) };
-        if !self.drawn.swap(true, Ordering::Relaxed) {
+        if bar.is_hidden() {
             bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(10));
         }
         bar.set_length(total);
@@ -110,9 +95,9 @@ impl Shown {
     /// Takes a word from a search.
     pub fn search(&self, progress: &Progress) {
         let before = *self.before.get_or_init(|| progress.evaluations);
-        let words = || Words::of(progress, before, self.start.elapsed());
+        let rate = || rate(progress, before, self.start.elapsed());
         let at = [progress.evaluations.min(progress.budget), progress.budget];
-        self.show(at, || words().beside_the_bar(), || words().line(&self.name, progress));
+        self.show(at, || beside_the_bar(progress, rate()), || line(&self.name, progress, rate()));
     }
 
     /// Takes a word from a suite.
@@ -160,7 +145,7 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// What is proved by now.
+/// Describes the state of a proof in a line.
 fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> String {
     format!(
         "{name}: certificate, {:.0} s: {} boxes, {:.3} % of the linkages decided, no sum below {} (gap {} %)",
@@ -172,39 +157,34 @@ fn proved(name: &str, elapsed: Duration, progress: &certificate::Progress) -> St
     )
 }
 
-/// What is said of a search: its best answer, its rate, the time that its budget leaves it at most.
-struct Words {
-    best: String,
-    rate: String,
-    left: Option<String>,
+/// Returns the evaluations a second of a search that has run for `elapsed` here, and had made `before` evaluations when
+/// it began.
+fn rate(progress: &Progress, before: u64, elapsed: Duration) -> f64 {
+    progress.evaluations.saturating_sub(before) as f64 / elapsed.as_secs_f64()
 }
 
-impl Words {
-    /// Of a search that has run for `elapsed` here, and had made `before` evaluations when it began.
-    fn of(progress: &Progress, before: u64, elapsed: Duration) -> Self {
-        let best = match progress.best_sum_sq {
-            Some(sum) if progress.accepted => format!("best {sum:.4e}"),
-            Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
-            None => "nothing acceptable yet".into(),
-        };
-        let rate = progress.evaluations.saturating_sub(before) as f64 / elapsed.as_secs_f64();
-        let left_s = progress.budget.saturating_sub(progress.evaluations) as f64 / rate;
-        let left = left_s.is_finite().then(|| duration(left_s));
-        Words { best, rate: format!("{}/s", grouped(rate as u64)), left }
+/// Describes the best answer of a search.
+fn best(progress: &Progress) -> String {
+    match progress.best_sum_sq {
+        Some(sum) if progress.accepted => format!("best {sum:.4e}"),
+        Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
+        None => "nothing acceptable yet".into(),
     }
+}
 
-    /// The bar itself shows the share and the time left.
-    fn beside_the_bar(&self) -> String {
-        format!("{}, {}", self.rate, self.best)
-    }
+/// Describes a search beside its bar, which shows the share and the time left.
+fn beside_the_bar(progress: &Progress, rate: f64) -> String {
+    format!("{}/s, {}", grouped(rate as u64), best(progress))
+}
 
-    /// Where there is no bar.
-    fn line(&self, name: &str, progress: &Progress) -> String {
-        let left = self.left.as_ref().map_or(String::new(), |left| format!("at most {left} left, "));
-        let Progress { phase, evaluations, budget, .. } = progress;
-        let (name, Words { best, rate, .. }) = (clean(name), self);
-        format!("{name}: {phase} {evaluations} of {budget} evaluations, {rate}, {left}{best}")
-    }
+/// Describes a search in a line, with the longest time that its budget leaves it.
+fn line(name: &str, progress: &Progress, rate: f64) -> String {
+    let Progress { phase, evaluations, budget, .. } = progress;
+    let left_s = budget.saturating_sub(*evaluations) as f64 / rate;
+    let left =
+        if left_s.is_finite() { format!("at most {} left, ", duration(left_s)) } else { String::new() };
+    let (name, rate, best) = (clean(name), grouped(rate as u64), best(progress));
+    format!("{name}: {phase} {evaluations} of {budget} evaluations, {rate}/s, {left}{best}")
 }
 
 #[cfg(test)]
@@ -215,23 +195,24 @@ mod tests {
         Progress { phase: "least-squares", evaluations, budget: 1_000_000, best_sum_sq, accepted, hits: None }
     }
 
-    fn line(progress: &Progress, before: u64, seconds: u64) -> String {
-        Words::of(progress, before, Duration::from_secs(seconds)).line("leg", progress)
+    fn after(progress: &Progress, before: u64, seconds: u64) -> String {
+        line("leg", progress, rate(progress, before, Duration::from_secs(seconds)))
     }
 
     #[test]
     fn a_line_says_the_best_the_rate_and_the_time_left() {
         assert_eq!(
-            line(&at(200_000, Some(0.0123456), true), 0, 10),
+            after(&at(200_000, Some(0.0123456), true), 0, 10),
             "leg: least-squares 200000 of 1000000 evaluations, 20,000/s, at most 40 s left, best 1.2346e-2"
         );
-        let words = Words::of(&at(200_000, Some(0.5), true), 0, Duration::from_secs(10));
-        assert_eq!(words.beside_the_bar(), "20,000/s, best 5.0000e-1");
+        let progress = at(200_000, Some(0.5), true);
+        let rate = rate(&progress, 0, Duration::from_secs(10));
+        assert_eq!(beside_the_bar(&progress, rate), "20,000/s, best 5.0000e-1");
     }
 
     #[test]
     fn an_answer_that_is_not_acceptable_is_told_apart_from_one_that_is_and_from_none() {
-        let told = |best, accepted| Words::of(&at(10, best, accepted), 0, Duration::from_secs(1)).best;
+        let told = |sum, accepted| best(&at(10, sum, accepted));
         assert_eq!(told(Some(2.0), true), "best 2.0000e0");
         assert_eq!(told(Some(2.0), false), "best 2.0000e0 (not acceptable yet)");
         assert_eq!(told(None, false), "nothing acceptable yet");
@@ -239,15 +220,15 @@ mod tests {
 
     #[test]
     fn the_rate_counts_what_was_done_here_and_not_what_a_checkpoint_brought() {
-        let text = line(&at(600_000, None, false), 500_000, 100);
+        let text = after(&at(600_000, None, false), 500_000, 100);
         assert!(text.contains("600000 of 1000000 evaluations, 1,000/s, at most 7 min left"), "{text}");
     }
 
     #[test]
     fn nothing_is_foretold_before_anything_was_done_and_nothing_is_left_beyond_the_budget() {
-        let text = line(&at(500_000, None, false), 500_000, 3);
+        let text = after(&at(500_000, None, false), 500_000, 3);
         assert!(text.ends_with("evaluations, 0/s, nothing acceptable yet"), "{text}");
-        let text = line(&at(1_000_001, None, false), 0, 1);
+        let text = after(&at(1_000_001, None, false), 0, 1);
         assert!(text.contains("at most 0 s left"), "{text}");
     }
 
@@ -263,7 +244,7 @@ mod tests {
     #[test]
     fn a_name_cannot_move_the_cursor() {
         let progress = at(10, None, false);
-        let text = Words::of(&progress, 0, Duration::from_secs(1)).line("\u{1b}[2Jleg", &progress);
+        let text = line("\u{1b}[2Jleg", &progress, 10.0);
         assert!(!text.contains('\u{1b}'), "{text:?}");
     }
 

@@ -2,8 +2,9 @@
 
 use super::arguments::Report;
 use super::output::Output;
-use super::result::{Run, Which, read_run_of};
-use super::{Ended, refuse, terminal};
+use super::result::{Run, Which, mismatches, read_run_of};
+use super::{Ended, terminal};
+use crate::app::job::folder::RECORD;
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::report::html::report_html;
@@ -19,7 +20,7 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     let first = match run.which {
         Which::All => 0,
         Which::Rank(rank) => rank - 1,
-        // Where it is one of the candidates, that one; else it stands after them.
+        // It follows the candidates, unless it is one of them.
         Which::Buildable => run.record.buildable.as_ref().map_or(0, |c| match c.rank {
             0 => run.record.candidates.len(),
             rank => rank - 1,
@@ -27,35 +28,36 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     };
     let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
     let page = report_html(&run.record, first);
-    let output = Output::new([&options.result], options.force);
-    output.write(&[(&place, FileKind::Html, page.as_bytes())])?;
-    terminal::answer(&format!("{}\n", escaped(&place.display().to_string())));
+    Output::new([&options.result], options.force).write(&[(&place, FileKind::Html, page)])?;
+    terminal::answer(&format!("{}\n", terminal::shown(&place)));
     Ok(Ended::Good)
 }
 
-/// A report shows figures as they were proved by the record: one that is not true gets none.
+/// Refuses a record with false figures: a report would show them.
 fn is_true(run: &Run) -> Result<(), Ended> {
-    let shown = escaped(&run.named);
-    let mismatches = crate::judge::verify::verify(&run.record)
-        .map_err(|e| refuse(format!("{shown}: the recorded problem is none: {e}")))?;
+    let mismatches = mismatches(Path::new(&run.named), &run.record)?;
     if mismatches.is_empty() {
         return Ok(());
     }
-    terminal::complain(&format!(
-        "{shown}: this record is not true, so a report would show figures that are not so:"
-    ));
-    for mismatch in mismatches.iter().take(NAMED) {
+    let why = "this record is not true, so a report would show figures that are not so:";
+    terminal::complain(&format!("{}: {why}", run.named));
+    let (named, more) = mismatches.split_at(mismatches.len().min(NAMED));
+    for mismatch in named {
         terminal::tell(&format!("  {}", escaped(&mismatch.to_string())));
     }
-    if mismatches.len() > NAMED {
-        let more = mismatches.len() - NAMED;
-        terminal::tell(&format!("  and {more} more: linkwright verify names them all"));
+    if !more.is_empty() {
+        terminal::tell(&format!("  and {} more: linkwright verify names them all", more.len()));
     }
     terminal::tell("run the problem again to have a true record");
     Err(Ended::Bad)
 }
 
-/// `report.html` in the result's folder; beside a record that was named by its file, `NAME.html`.
+/// Returns the usual place of the page: `report.html` in the result's folder; for a record under another name, that name
+/// with the ending `.html`.
 fn beside(named: &Path) -> PathBuf {
-    if named.is_file() { named.with_extension("html") } else { named.join("report.html") }
+    match named.file_name() {
+        Some(name) if name == RECORD && named.is_file() => named.with_file_name("report.html"),
+        _ if named.is_file() => named.with_extension("html"),
+        _ => named.join("report.html"),
+    }
 }

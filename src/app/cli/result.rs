@@ -1,14 +1,15 @@
 //! RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate,
 //! or a linkage file. Every command that takes one reads it here.
 
-use super::{Ended, refuse, refuse_at, terminal};
+use super::{Ended, refuse, refuse_at, refuse_path, terminal};
 pub use crate::app::inputs::{Given, NoCandidate, Run, Which};
 use crate::app::job::files;
 use crate::app::job::folder::{BUILDABLE, RECORD, read_record};
-use crate::files::diagnostic::escaped;
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
+use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::Linkage;
+use crate::record::Record;
 use std::path::{Path, PathBuf};
 
 impl From<NoCandidate> for Ended {
@@ -18,10 +19,10 @@ impl From<NoCandidate> for Ended {
     }
 }
 
-/// Reads what was given.
+/// Reads a RESULT.
 ///
 /// # Errors
-/// [`Ended::Refused`]; what is wrong has been told.
+/// [`Ended::Refused`]; the fault has been reported.
 pub fn read(argument: &Path) -> Result<Given, Ended> {
     if is_linkage_file(argument) {
         let file = linkage_file::load(argument).map_err(refuse_at)?;
@@ -33,7 +34,7 @@ pub fn read(argument: &Path) -> Result<Given, Ended> {
 /// As [`read`], for a command that needs the record of a run: a linkage file is refused.
 ///
 /// # Errors
-/// [`Ended::Refused`]; what is wrong has been told.
+/// [`Ended::Refused`]; the fault has been reported.
 pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
     match read(argument)? {
         Given::Run(run) => Ok(*run),
@@ -48,7 +49,7 @@ pub fn read_run_of(argument: &Path, command: &str) -> Result<Run, Ended> {
 /// that is named, else the first.
 ///
 /// # Errors
-/// [`Ended::Refused`]; what is wrong has been told. [`Ended::Bad`] for a result without any candidate.
+/// [`Ended::Refused`]; the fault has been reported. [`Ended::Bad`] for a result without any candidate.
 pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
     if is_linkage_file(argument) {
         return linkage_file::load_any(argument).map_err(refuse_at);
@@ -64,13 +65,26 @@ pub fn read_linkage(argument: &Path) -> Result<AnyLinkageFile, Ended> {
     })
 }
 
-/// The file that a RESULT is read from: the record in a folder, whatever candidate is named.
+/// Recomputes a record, and returns the figures that are not so.
+///
+/// # Errors
+/// [`Ended::Refused`] if its problem is invalid; the fault has been reported.
+pub fn mismatches(path: &Path, record: &Record) -> Result<Vec<Mismatch>, Ended> {
+    verify(record).map_err(|e| refuse_path(path, format!("the recorded problem is none: {e}")))
+}
+
+/// Returns the file that a RESULT is read from: the record in a folder, whatever candidate is named.
 pub fn file_of(argument: &Path) -> PathBuf {
-    let named = match argument.to_str().and_then(|text| text.rsplit_once(':')) {
-        Some((folder, _)) if !argument.exists() => Path::new(folder),
-        _ => argument,
-    };
+    let (named, _) = split(argument);
     if named.is_dir() { named.join(RECORD) } else { named.to_path_buf() }
+}
+
+/// Splits off the name of a candidate, unless the whole is the path of something.
+fn split(argument: &Path) -> (&Path, Option<&str>) {
+    match argument.to_str().and_then(|text| text.rsplit_once(':')) {
+        Some((folder, name)) if !argument.exists() => (Path::new(folder), Some(name)),
+        _ => (argument, None),
+    }
 }
 
 /// Whether an argument is the file of a linkage without a run.
@@ -79,29 +93,27 @@ fn is_linkage_file(argument: &Path) -> bool {
 }
 
 fn read_run(argument: &Path) -> Result<Run, Ended> {
-    let shown = escaped(&argument.display().to_string());
-    let (folder, which) = match argument.to_str().and_then(|text| text.rsplit_once(':')) {
-        Some((folder, name)) if !argument.exists() => match name.parse::<usize>() {
-            Ok(rank) if rank >= 1 => (Path::new(folder), Which::Rank(rank)),
-            _ if name == BUILDABLE => (Path::new(folder), Which::Buildable),
-            _ => {
-                return Err(refuse(format!(
-                    "{shown}: after the colon stands a candidate's rank, from 1, or the word {BUILDABLE}"
-                )));
-            }
-        },
-        _ => (argument, Which::All),
+    let (folder, name) = split(argument);
+    let which = match (name, name.and_then(|name| name.parse().ok())) {
+        (None, _) => Which::All,
+        (_, Some(rank @ 1..)) => Which::Rank(rank),
+        (Some(BUILDABLE), _) => Which::Buildable,
+        _ => {
+            let why = format!("after the colon stands a candidate's rank, from 1, or the word {BUILDABLE}");
+            return Err(refuse_path(argument, why));
+        }
     };
     let record = read_record(folder).map_err(refuse)?;
     let n = record.candidates.len();
     match which {
         Which::Rank(rank) if rank > n => {
-            return Err(refuse(format!("{shown}: there is no candidate {rank}, the result has {n}")));
+            return Err(refuse_path(argument, format!("there is no candidate {rank}, the result has {n}")));
         }
         Which::Buildable if record.buildable.is_none() => {
-            return Err(refuse(format!(
-                "{shown}: the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
-            )));
+            let why = format!(
+                "the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
+            );
+            return Err(refuse_path(argument, why));
         }
         _ => {}
     }

@@ -1,20 +1,22 @@
 //! `snap`: lengths brought to stock sizes.
 
 use super::arguments::Snap as Options;
+use super::inputs::RESULTS;
 use super::output::Output;
 use super::result;
 use super::result::Given;
-use super::{Ended, build, interrupt, refuse, refuse_at, terminal};
+use super::{Ended, build, interrupt, refuse, refuse_at, refuse_path, terminal};
 use crate::app::job::files::{Timing, files};
 use crate::app::job::folder::ResultsFolder;
 use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::files::generator::FileKind;
+use crate::files::input_text;
 use crate::files::linkage_file;
 use crate::files::name;
 use crate::judge::practicality::{Build, Practicality};
 use crate::mechanism::Unit;
 use crate::mechanism::{FourBar, xy};
-use crate::record::{Candidate, Reason, Record};
+use crate::record::{Candidate, ProblemRecord, Reason, Record};
 use crate::report::practicality::practicality_text;
 use crate::report::snap::snap_text;
 use crate::report::text::clean;
@@ -26,10 +28,10 @@ use std::time::Instant;
 
 /// The longest text of a list of pitches.
 const MAX_PITCHES: u64 = 1 << 20;
-/// What is added to the name of what was snapped.
+/// The ending of the name of a snapped linkage.
 const SUFFIX: &str = "-snapped";
 
-/// What is to be snapped, with its problem.
+/// The linkage to snap, with its problem.
 struct Subject {
     label: String,
     name: String,
@@ -44,9 +46,9 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     let begun = Instant::now();
     let stock = stock(options)?;
     let subject = subject(&options.result)?;
-    // Told before the work, not after it.
+    // Before the work, not after it.
     if let Some(path) = linkage_place(options) {
-        output(options).check(path, FileKind::Linkage)?;
+        output(options).check(&[(path, FileKind::Linkage, "")])?;
     }
     let request = Request {
         stock,
@@ -56,18 +58,16 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
     };
     let cancel = interrupt::watch("saving the best so far");
     let budget = Budget::new(cancel, None);
-    let snapped = match snap(Context::new(&subject.problem, &budget), &subject.candidate, &request) {
-        Ok(snapped) => snapped,
-        Err(e @ SnapError::NoneFits) => {
-            terminal::complain(&e.to_string());
-            return Err(Ended::Bad);
-        }
-        Err(e @ SnapError::Interrupted) => {
-            terminal::complain(&format!("{e}: nothing was written"));
-            return Err(Ended::Interrupted);
-        }
-        Err(e) => return Err(refuse(e)),
-    };
+    let context = Context::new(&subject.problem, &budget);
+    let snapped = snap(context, &subject.candidate, &request).map_err(|e| {
+        let (ended, more) = match e {
+            SnapError::NoneFits => (Ended::Bad, ""),
+            SnapError::Interrupted => (Ended::Interrupted, ": nothing was written"),
+            SnapError::NothingToSnap | SnapError::NoStock { .. } => (Ended::Refused, ""),
+        };
+        terminal::complain(&format!("{e}{more}"));
+        ended
+    })?;
     let Some(best) = snapped.candidates.first() else { return Err(Ended::Bad) };
     let name = name::with_suffix(&name::legal(&subject.name, "linkage"), SUFFIX);
     let search_s = begun.elapsed().as_secs_f64();
@@ -82,7 +82,7 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
         terminal::answer("\n");
         terminal::answer(&practicality_text(&found, subject.unit, tolerance, terminal::colour()));
     }
-    terminal::answer(&format!("\n  Wrote {}\n", escaped(&written.display().to_string())));
+    terminal::answer(&format!("\n  Wrote {}\n", terminal::shown(&written)));
     Ok(match snapped.reason {
         Reason::Cancelled => Ended::Interrupted,
         _ if best.accepted => Ended::Good,
@@ -91,30 +91,26 @@ pub fn run(options: &Options) -> Result<Ended, Ended> {
 }
 
 fn stock(options: &Options) -> Result<Stock, Ended> {
-    if let Some(step) = options.grid {
-        return Stock::grid(step).map_err(refuse);
+    match (options.grid, &options.lengths, &options.pitches) {
+        (Some(step), ..) => Stock::grid(step).map_err(refuse),
+        (_, Some(lengths), _) => Stock::list(lengths).map_err(refuse),
+        (.., Some(path)) if std::fs::metadata(path).is_ok_and(|found| found.len() > MAX_PITCHES) => {
+            Err(refuse_path(path, "a list of lengths of more than 1 MB is refused"))
+        }
+        (.., Some(path)) => {
+            let text = input_text::read(path).map_err(refuse_at)?;
+            let file = path.display().to_string();
+            Stock::parse(&text).map_err(|e| refuse_at(Box::new(Diagnostic::new(file, "", e.to_string()))))
+        }
+        _ => Err(refuse("give --grid, --lengths or --pitches")),
     }
-    if let Some(lengths) = &options.lengths {
-        return Stock::list(lengths).map_err(refuse);
-    }
-    let Some(path) = &options.pitches else { return Err(refuse("give --grid, --lengths or --pitches")) };
-    let shown = path.display().to_string();
-    let unread = |e: &dyn std::fmt::Display| refuse(format!("{}: {e}", escaped(&shown)));
-    if std::fs::metadata(path).map_err(|e| unread(&e))?.len() > MAX_PITCHES {
-        return Err(unread(&"a list of lengths of more than 1 MB is refused"));
-    }
-    let text = std::fs::read_to_string(path).map_err(|e| unread(&e))?;
-    Stock::parse(&text).map_err(|e| refuse_at(Box::new(Diagnostic::new(shown.clone(), "", e.to_string()))))
 }
 
 fn subject(path: &Path) -> Result<Subject, Ended> {
     match result::read(path)? {
         Given::Linkage(file) => {
             let (problem, candidate) = own_curve(&file.linkage).ok_or_else(|| {
-                refuse(format!(
-                    "{} cannot be assembled, so it has no curve to keep",
-                    escaped(&path.display().to_string())
-                ))
+                refuse(format!("{} cannot be assembled, so it has no curve to keep", path.display()))
             })?;
             let label = format!("{}, measured on its own coupler curve", clean(&file.name));
             Ok(Subject { label, name: file.name, source: None, unit: file.unit, problem, candidate })
@@ -122,21 +118,13 @@ fn subject(path: &Path) -> Result<Subject, Ended> {
         Given::Run(run) => {
             let chosen = run.one()?;
             let (label, candidate) = (escaped(&chosen.label), chosen.candidate.clone());
-            let asked = run.record.problem;
-            let problem = Problem::new(asked.resolved).map_err(refuse)?;
-            if candidate.crank_deg.len() != problem.task().len()
-                || candidate.t1_at.len() != problem.task().len()
-            {
+            let ProblemRecord { name, source, unit, resolved, .. } = run.record.problem;
+            let problem = Problem::new(resolved).map_err(refuse)?;
+            let points = problem.task().len();
+            if candidate.crank_deg.len() != points || candidate.t1_at.len() != points {
                 return Err(refuse(format!("{label} has no position for each of the target's points")));
             }
-            Ok(Subject {
-                label,
-                name: asked.name,
-                source: asked.source,
-                unit: asked.unit,
-                problem,
-                candidate,
-            })
+            Ok(Subject { label, name, source, unit, problem, candidate })
         }
     }
 }
@@ -161,7 +149,7 @@ fn fixed(options: &Options, linkage: &FourBar) -> Fixed {
     fixed
 }
 
-/// The file for the best linkage alone, where one was named.
+/// Returns the file for the best linkage alone, if one was named.
 fn linkage_place(options: &Options) -> Option<&Path> {
     options.out.as_deref().filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")))
 }
@@ -170,24 +158,19 @@ fn output(options: &Options) -> Output {
     Output::new([&options.result].into_iter().chain(&options.pitches), options.force)
 }
 
-/// Writes the record with everything that stands beside it, or the best linkage alone; where it is now.
+/// Writes the record with all its files, or the best linkage alone; returns the place.
 fn write(options: &Options, record: &Record, begun: Instant, search_s: f64) -> Result<PathBuf, Ended> {
     if let Some(path) = linkage_place(options) {
         let Some(best) = record.candidates.first() else { return Err(Ended::Bad) };
         let text = linkage_file::to_toml(&record.problem.name, record.problem.unit, &best.linkage);
-        output(options).write(&[(path, FileKind::Linkage, text.as_bytes())])?;
+        output(options).write(&[(path, FileKind::Linkage, text)])?;
         return Ok(path.to_path_buf());
     }
-    let place = options.out.clone().unwrap_or_else(|| Path::new("results").join(&record.problem.name));
+    let place = options.out.clone().unwrap_or_else(|| Path::new(RESULTS).join(&record.problem.name));
     let mut folder = ResultsFolder::take(&place).map_err(refuse)?;
     let total_s = begun.elapsed().as_secs_f64();
-    let timing = Timing {
-        search_s,
-        beside_s: total_s - search_s,
-        advice_s: None,
-        total_s,
-        threads: rayon::current_num_threads(),
-    };
+    let (beside_s, threads) = (total_s - search_s, rayon::current_num_threads());
+    let timing = Timing { search_s, beside_s, advice_s: None, total_s, threads };
     let files = files(record, &timing).map_err(refuse)?;
     folder.replace(&files).map_err(refuse)?;
     Ok(place)

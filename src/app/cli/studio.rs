@@ -2,7 +2,7 @@
 
 use super::arguments::Studio;
 use super::inputs::RESULTS;
-use super::{Ended, interrupt, refuse, refuse_at, terminal};
+use super::{Ended, interrupt, refuse, refuse_at, refuse_path, terminal};
 use crate::app::studio;
 use crate::app::studio::StudioError;
 use crate::app::studio::messages::Ask;
@@ -10,7 +10,7 @@ use crate::files::problem_file::load_any;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Where the studio is when no port is asked for: always the same, so that the page finds what it remembers.
+/// The usual port: always the same, so that the page finds its stored state again.
 const PORT: u16 = 8017;
 
 /// Runs the command.
@@ -18,11 +18,12 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
     let beginning = options.problem.as_deref().map(beginning).transpose()?;
     let beginning = beginning.as_ref();
     let results = options.out.as_deref().unwrap_or(Path::new(RESULTS));
+    let bind = |port| studio::Studio::bind(port, beginning, results);
     let bound = match options.port {
-        Some(port) => studio::Studio::bind(port, beginning, results),
-        // The usual port may be another studio's.
-        None => match studio::Studio::bind(PORT, beginning, results) {
-            Err(StudioError::Port { .. }) => studio::Studio::bind(0, beginning, results),
+        Some(port) => bind(port),
+        None => match bind(PORT) {
+            // The usual port may be another studio's.
+            Err(StudioError::Port { .. }) => bind(0),
             bound => bound,
         },
     };
@@ -40,7 +41,7 @@ pub fn run(options: &Studio) -> Result<Ended, Ended> {
 /// Reads the problem that the page begins with.
 fn beginning(path: &Path) -> Result<Ask, Ended> {
     let problem = load_any(path, &[]).map_err(refuse_at)?;
-    Ask::of(&problem).map_err(|why| refuse(format!("{}: {why}", path.display())))
+    Ask::of(&problem).map_err(|why| refuse_path(path, why))
 }
 
 /// Opens the address in the usual browser. Where there is none, the address is on the terminal.

@@ -1,12 +1,11 @@
 //! `suite`: problems whose answer is known, from many seeds.
 
 use super::arguments::Suite as Asked;
-use super::error::CommandError;
+use super::inputs::toml_files;
+use super::output::Output;
 use super::progress::Shown;
-use super::{Ended, interrupt, refuse, refuse_at, terminal};
-use crate::app::job::folder::{OutputFile, Replace, check_files, write_files};
+use super::{Ended, interrupt, refuse, refuse_at, refuse_io, terminal};
 use crate::app::suite::{Options, Step, literature, suite};
-use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
 use crate::files::problem_file;
 use crate::files::problem_file::ProblemFile;
@@ -18,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 /// The folder of the literature's problems in the repository.
 const PROBLEMS: &str = "problems/literature";
-/// Where the page goes.
+/// The folder of the page and its JSON.
 const RESULTS: &str = "results";
 const PAGE: &str = "literature.md";
 const DATA: &str = "literature.json";
@@ -27,8 +26,7 @@ const DATA: &str = "literature.json";
 pub fn run(asked: &Asked) -> Result<Ended, Ended> {
     let problems = problems(asked)?;
     // The place is looked at before anything runs: one that cannot be written to costs no search.
-    let place = asked.write.then(|| Place::take(Path::new(RESULTS), asked.force)).transpose();
-    let place = place.map_err(refuse)?;
+    let place = asked.write.then(|| Place::take(asked.force)).transpose()?;
     let certify = asked.certify.then(CertifySpec::default);
     let options = Options { seeds: asked.seeds, command: command(asked), certify, ..Options::default() };
     let cancel = interrupt::watch("showing the runs that are over");
@@ -39,13 +37,9 @@ pub fn run(asked: &Asked) -> Result<Ended, Ended> {
     let json = serde_json::to_string_pretty(&suite)
         .map_err(|e| refuse(format!("the suite cannot be written as JSON: {e}")))?
         + "\n";
-    if asked.json {
-        terminal::answer(&json);
-    } else {
-        terminal::answer(&suite_text(&suite, terminal::colour()));
-    }
+    terminal::answer(&if asked.json { json.clone() } else { suite_text(&suite, terminal::colour()) });
     if let Some(place) = place.filter(|_| suite.complete) {
-        place.write(&suite, &json).map_err(refuse)?;
+        place.output.write(&place.files(&json, &suite_markdown(&suite)))?;
         if !asked.json {
             terminal::answer(&format!("\n  Written to {RESULTS}/{PAGE} and {RESULTS}/{DATA}\n"));
         }
@@ -58,18 +52,14 @@ pub fn run(asked: &Asked) -> Result<Ended, Ended> {
     Ok(if suite.is_accepted() { Ended::Good } else { Ended::Bad })
 }
 
-/// How far an interrupted suite came.
+/// Says how far an interrupted suite came.
 fn done(suite: &Suite, options: &Options, problems: usize) -> String {
-    let runs: usize = suite
-        .problems
-        .iter()
-        .flat_map(|p| std::iter::once(&p.search).chain(&p.populations))
-        .map(|method| method.runs.len())
-        .sum();
+    let methods = suite.problems.iter().flat_map(|p| p.populations.iter().chain([&p.search]));
+    let runs: usize = methods.map(|method| method.runs.len()).sum();
     format!("{runs} of {} runs are done", options.runs(problems))
 }
 
-/// The command that makes the same suite again.
+/// Returns the command that makes the same suite again.
 fn command(asked: &Asked) -> String {
     let quoted = |text: &str| {
         let plain = |c: char| c.is_alphanumeric() || "/._-".contains(c);
@@ -80,68 +70,54 @@ fn command(asked: &Asked) -> String {
         }
     };
     let here = asked.write || folder(asked).is_some();
-    let mut command = String::from(if here { "cargo run --release -- suite" } else { "linkwright suite" });
-    if let Some(filter) = &asked.filter {
-        command.push_str(&format!(" {}", quoted(filter)));
-    }
-    if let Some(folder) = &asked.problems {
-        command.push_str(&format!(" --problems {}", quoted(&folder.display().to_string())));
-    }
-    command.push_str(&format!(" --seeds {}", asked.seeds));
-    if asked.certify {
-        command.push_str(" --certify");
-    }
-    if asked.write {
-        command.push_str(" --write");
-    }
-    command
+    let program = if here { "cargo run --release -- suite" } else { "linkwright suite" };
+    let mut words = vec![program.to_owned()];
+    words.extend(asked.filter.as_deref().map(quoted));
+    let problems = asked.problems.as_ref().map(|folder| quoted(&folder.display().to_string()));
+    words.extend(problems.map(|folder| format!("--problems {folder}")));
+    words.push(format!("--seeds {}", asked.seeds));
+    words.extend(asked.certify.then(|| "--certify".into()));
+    words.extend(asked.write.then(|| "--write".into()));
+    words.join(" ")
 }
 
 /// Problems with the names of their files.
 type Named = Vec<(String, ProblemFile)>;
 
-/// The folder of the problems: the one that was named, or that of the literature where it is here; `None` where the
+/// Returns the folder of the problems: the one that was named, or that of the literature if it is here; `None` if the
 /// program's own are run.
 fn folder(asked: &Asked) -> Option<&Path> {
     let here = Path::new(PROBLEMS);
     asked.problems.as_deref().or_else(|| here.is_dir().then_some(here))
 }
 
-/// The problems of a folder, by file name.
+/// Reads the problems of a folder, by file name.
 fn of_folder(folder: &Path) -> Result<Named, Ended> {
-    let files = files(folder).map_err(|e| {
-        let shown = escaped(&folder.display().to_string());
+    let mut files = toml_files(folder).map_err(|e| {
         let remedy =
             "name another with --problems, or leave it out for the problems that linkwright has in it";
-        refuse(format!("the folder of problems {shown} cannot be read: {e}; {remedy}"))
+        refuse(format!("the folder of problems {} cannot be read: {e}; {remedy}", folder.display()))
     })?;
-    let mut found = Vec::new();
-    let mut refused = None;
-    for path in files {
-        match problem_file::load(&path, &[]) {
-            Ok(problem) => {
-                let stem = path.file_stem().map(|s| s.to_string_lossy().into_owned());
-                found.push((stem.unwrap_or_default(), problem));
-            }
-            Err(diagnostic) => refused = Some(refuse_at(diagnostic)),
-        }
-    }
-    refused.map_or(Ok(found), Err)
+    // By the name without its ending, so that a.toml comes before a-b.toml.
+    files.sort_by(|one, other| one.file_stem().cmp(&other.file_stem()));
+    // Every file is read, so that the faults of all are shown.
+    let read = files.iter().map(|path| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        Ok((stem.into_owned(), problem_file::load(path, &[]).map_err(refuse_at)?))
+    });
+    read.collect::<Vec<_>>().into_iter().collect()
 }
 
-/// The problems of the literature, which the program holds.
+/// Returns the problems of the literature, which the program holds.
 fn built_in() -> Result<Named, Ended> {
     let problems = literature::problems().map_err(refuse_at)?.into_iter();
     Ok(problems.map(|(name, problem)| (name.trim_end_matches(".toml").to_owned(), problem)).collect())
 }
 
-/// The problems that are asked for, by file name.
+/// Returns the problems that are asked for, by file name.
 fn problems(asked: &Asked) -> Result<Vec<ProblemFile>, Ended> {
     let folder = folder(asked);
-    let shown = match folder {
-        Some(folder) => escaped(&folder.display().to_string()),
-        None => "the literature".to_owned(),
-    };
+    let shown = folder.map_or("the literature".into(), |folder| folder.display().to_string());
     let mut known = folder.map_or_else(built_in, of_folder)?;
     known.retain(|(_, problem)| problem.expect.as_ref().is_some_and(|e| e.best_known_sum_sq.is_some()));
     if known.is_empty() {
@@ -154,65 +130,45 @@ fn problems(asked: &Asked) -> Result<Vec<ProblemFile>, Ended> {
         let names = names.join(", ");
         return Err(refuse(format!("no problem in {shown} has {filter:?} in its name; there are {names}")));
     }
-    for warning in known.iter().flat_map(|(_, problem)| &problem.warnings) {
+    let known: Vec<ProblemFile> = known.into_iter().map(|(_, problem)| problem).collect();
+    for warning in known.iter().flat_map(|problem| &problem.warnings) {
         terminal::diagnose(ReportKind::Warning, warning);
     }
-    Ok(known.into_iter().map(|(_, problem)| problem).collect())
+    Ok(known)
 }
 
-/// The TOML files of a folder, sorted.
-fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-            files.push(path);
-        }
-    }
-    // By the name without its ending, so that a.toml stands before a-b.toml.
-    files.sort_by(|one, other| one.file_stem().cmp(&other.file_stem()));
-    Ok(files)
-}
-
-/// Where the page and its JSON go: a folder that can be written to, taken away again if it was made for them
-/// and they were not written.
+/// The folder for the page and its JSON, which can be written to. It is removed again if it was made for them and they
+/// were not written.
 struct Place {
-    folder: PathBuf,
+    folder: &'static Path,
     made: bool,
-    replace: Replace<'static>,
+    output: Output,
 }
 
 impl Place {
-    fn take(folder: &Path, force: bool) -> Result<Self, CommandError> {
-        let made = !folder.exists();
-        let path = || folder.display().to_string();
-        std::fs::create_dir_all(folder).map_err(|source| CommandError::Io { path: path(), source })?;
-        let replace = if force { Replace::Anything } else { Replace::Ours(&[]) };
-        let place = Place { folder: folder.into(), made, replace };
-        let [data, page] = [DATA, PAGE].map(|name| folder.join(name));
-        check_files(&outputs((&data, ""), (&page, "")), replace)?;
-        tempfile::tempfile_in(folder).map_err(|source| CommandError::NotWritable { path: path(), source })?;
+    fn take(force: bool) -> Result<Self, Ended> {
+        let folder = Path::new(RESULTS);
+        let place = Place { folder, made: !folder.exists(), output: Output::new([], force) };
+        std::fs::create_dir_all(folder).map_err(|e| refuse_io(folder, e))?;
+        place.output.check(&place.files("", ""))?;
+        tempfile::tempfile_in(folder)
+            .map_err(|e| refuse(format!("{} cannot be written to: {e}", folder.display())))?;
         Ok(place)
     }
 
-    fn write(&self, suite: &Suite, json: &str) -> Result<(), CommandError> {
-        let page = suite_markdown(suite);
-        let [data_at, page_at] = [DATA, PAGE].map(|name| self.folder.join(name));
-        Ok(write_files(&outputs((&data_at, json), (&page_at, &page)), self.replace)?)
+    fn files<'a>(&self, json: &'a str, page: &'a str) -> [(PathBuf, FileKind, &'a str); 2] {
+        [
+            (self.folder.join(DATA), FileKind::SuiteJson, json),
+            (self.folder.join(PAGE), FileKind::SuiteMarkdown, page),
+        ]
     }
-}
-
-/// The suite's two files.
-fn outputs<'a>(data: (&'a Path, &'a str), page: (&'a Path, &'a str)) -> [OutputFile<'a>; 2] {
-    let file = |(path, text): (&'a Path, &'a str), kind| OutputFile { path, kind, bytes: text.as_bytes() };
-    [file(data, FileKind::SuiteJson), file(page, FileKind::SuiteMarkdown)]
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
         if self.made {
             // A folder that holds something is not removed.
-            let _ = std::fs::remove_dir(&self.folder);
+            let _ = std::fs::remove_dir(self.folder);
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::app::job::run::Job;
 use crate::app::job::save;
 use crate::app::job::save::{Done, Listener, Options, Ran, SaveError, Written};
 use crate::files::generator::FileKind;
-use crate::record::Reason;
+use crate::record::{Reason, Record};
 use crate::report::batch_csv::batch_csv;
 use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
@@ -19,11 +19,12 @@ use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchRow, batch_summary, candidates_table};
 use rayon::ThreadPool;
+use std::io::{IsTerminal, stdout};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{SendError, SyncSender, sync_channel};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 /// From this many jobs a thread on, jobs run side by side, each on one thread: then no thread waits for another.
@@ -33,30 +34,43 @@ const MOST_WAITING: usize = 64;
 /// The summary of a batch.
 const SUMMARY: &str = "summary.csv";
 
-/// What came of an input.
-enum Outcome {
-    Done(Box<Done>),
-    /// Why there is no result; it has been told.
-    Refused(String),
-    /// A panic: a bug of ours.
-    Bug,
-    /// The batch was interrupted before.
-    NotRun,
+/// The outcome of an input.
+type Outcome = Result<Box<Done>, NoResult>;
+
+/// The reason why an input has no result.
+struct NoResult {
+    ended: Ended,
+    why: String,
+}
+
+impl NoResult {
+    fn new(ended: Ended, why: impl ToString) -> Self {
+        NoResult { ended, why: why.to_string() }
+    }
+
+    /// A panic.
+    fn bug() -> Self {
+        NoResult::new(Ended::Bug, "a bug of linkwright: please report it with this input")
+    }
+}
+
+impl From<SaveError> for NoResult {
+    fn from(why: SaveError) -> Self {
+        NoResult::new(Ended::Refused, why)
+    }
 }
 
 /// Runs the command.
 pub fn run(options: &Synth) -> Result<Ended, Ended> {
     let start = Instant::now();
-    let inputs = inputs::load(options);
-    let several = inputs.len() > 1 || options.files.iter().any(|path| path.is_dir());
+    let (inputs, several) = inputs::load(options);
     let jobs = inputs.iter().filter(|input| input.job.is_ok()).count();
     if jobs == 0 {
         return Err(Ended::Refused);
     }
     if several {
-        // A place that is taken is told before the searches, not after them.
-        let check = |file: OutputFile<'_>| check_files(&[file], Replace::Ours(&[]));
-        summary(inputs::folder_of_all(options), &batch_csv(&[]), check).map_err(refuse)?;
+        // A place that is taken is reported before the searches, not after them.
+        summary(options, &[], check_files).map_err(refuse)?;
     }
     let threads = options.threads.map_or_else(rayon::current_num_threads, usize::from);
     let side_by_side = threads > 1 && jobs >= JOBS_A_THREAD * threads;
@@ -72,12 +86,14 @@ pub fn run(options: &Synth) -> Result<Ended, Ended> {
         start,
         cancel: interrupt::watch("saving the best so far"),
         next: AtomicUsize::new(0),
-        printed: Mutex::new(Printed::new(inputs.len())),
+        outcomes: inputs.iter().map(|_| OnceLock::new()).collect(),
+        printed: Mutex::new(0),
         shown: Shown::of_batch(options.quiet || !side_by_side),
     };
     batch.search(&pools);
-    let outcomes = batch.printed.into_inner().unwrap_or_else(PoisonError::into_inner).outcomes();
-    Ok(conclude(options, several, &inputs, &outcomes))
+    let outcomes = batch.outcomes.into_iter();
+    let outcomes = outcomes.map(|outcome| outcome.into_inner().unwrap_or_else(|| Err(NoResult::bug())));
+    Ok(conclude(options, several, &inputs, &outcomes.collect::<Vec<_>>()))
 }
 
 /// The inputs of one call with the state that all workers share.
@@ -92,7 +108,9 @@ struct Batch<'a> {
     cancel: &'a AtomicBool,
     /// The first input that no worker has taken yet.
     next: AtomicUsize,
-    printed: Mutex<Printed>,
+    outcomes: Vec<OnceLock<Outcome>>,
+    /// The number of the first outcomes that have been printed: pages come in the order of the inputs.
+    printed: Mutex<usize>,
     shown: Shown,
 }
 
@@ -121,8 +139,10 @@ impl Batch<'_> {
             let i = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(input) = self.inputs.get(i) else { return };
             let outcome = match &input.job {
-                Err(why) => Outcome::Refused(why.to_string()),
-                Ok(_) if self.cancel.load(Ordering::Relaxed) && i > 0 => Outcome::NotRun,
+                Err(why) => Err(NoResult::new(Ended::Refused, why)),
+                Ok(_) if self.cancel.load(Ordering::Relaxed) && i > 0 => {
+                    Err(NoResult::new(Ended::Interrupted, "not run: the batch was interrupted before"))
+                }
                 Ok((job, place)) => match catch_unwind(AssertUnwindSafe(|| self.one(job, place, pool))) {
                     Ok(Ok(Ran::Written(written))) => {
                         // While one thread waits for the disk the others search.
@@ -131,10 +151,10 @@ impl Batch<'_> {
                         }
                         continue;
                     }
-                    Ok(Ok(Ran::Before(done))) => Outcome::Done(Box::new(done)),
-                    Ok(Err(why)) => Outcome::Refused(why.to_string()),
+                    Ok(Ok(Ran::Before(done))) => Ok(Box::new(done)),
+                    Ok(Err(why)) => Err(why.into()),
                     Err(panic) if !self.several => resume_unwind(panic),
-                    Err(_) => Outcome::Bug,
+                    Err(_) => Err(NoResult::bug()),
                 },
             };
             self.take(i, outcome);
@@ -144,8 +164,8 @@ impl Batch<'_> {
     /// Runs one job and shows its progress.
     fn one(&self, job: &Job, place: &Path, pool: &ThreadPool) -> Result<Ran, SaveError> {
         let begun = if self.several { Instant::now() } else { self.start };
-        let shown = Shown::of_search(&job.name, self.options.quiet || self.side_by_side);
-        let proof = Shown::of_proof(&job.name, shown.is_silent());
+        let silent = self.options.quiet || self.side_by_side;
+        let (shown, proof) = (Shown::of_search(&job.name, silent), Shown::of_proof(&job.name, silent));
         let listener = Listener {
             observer: &|progress| shown.search(progress),
             proving: &|progress| {
@@ -170,27 +190,29 @@ impl Batch<'_> {
     fn put(&self, group: Vec<(usize, Written)>) {
         let (indices, written): (Vec<_>, Vec<_>) = group.into_iter().unzip();
         for (i, put) in indices.into_iter().zip(save::put_in_place(written)) {
-            let refused = |why: SaveError| Outcome::Refused(why.to_string());
-            self.take(i, put.map_or_else(refused, |done| Outcome::Done(Box::new(done))));
+            self.take(i, put.map(Box::new).map_err(NoResult::from));
         }
     }
 
     /// Takes the outcome of an input and prints the pages that are due.
     fn take(&self, i: usize, outcome: Outcome) {
-        if let Outcome::Refused(why) = &outcome
+        if let Err(NoResult { ended: Ended::Refused, why }) = &outcome
             && self.inputs[i].job.is_ok()
         {
             terminal::complain(why);
         }
         self.shown.one_more(self.inputs.len() as u64);
         let mut printed = self.printed.lock().unwrap_or_else(PoisonError::into_inner);
-        printed.take(i, outcome, |outcome| {
-            if let Outcome::Done(done) = outcome
+        // Every input has one outcome.
+        let _ = self.outcomes[i].set(outcome);
+        while let Some(outcome) = self.outcomes.get(*printed).and_then(OnceLock::get) {
+            if let Ok(done) = outcome
                 && !self.options.json
             {
                 terminal::answer(&page(done, self.several || self.options.quiet, self.options.all));
             }
-        });
+            *printed += 1;
+        }
     }
 }
 
@@ -198,11 +220,7 @@ impl Batch<'_> {
 fn conclude(options: &Synth, several: bool, inputs: &[Input], outcomes: &[Outcome]) -> Ended {
     let mut ended = outcomes.iter().map(ended_of).max().unwrap_or(Ended::Good);
     if options.json {
-        let records = outcomes.iter().filter_map(|outcome| match outcome {
-            Outcome::Done(done) => Some(&done.record),
-            _ => None,
-        });
-        let records: Vec<_> = records.collect();
+        let records: Vec<&Record> = outcomes.iter().flatten().map(|done| &done.record).collect();
         let text = match records.as_slice() {
             [record] if !several => serde_json::to_string_pretty(record),
             [] if !several => return ended,
@@ -211,94 +229,68 @@ fn conclude(options: &Synth, several: bool, inputs: &[Input], outcomes: &[Outcom
         terminal::answer(&format!("{}\n", text.unwrap_or_default()));
     }
     if several {
-        let rows: Vec<BatchRow<'_>> = inputs.iter().zip(outcomes).map(|(input, o)| row(input, o)).collect();
+        let rows = inputs.iter().zip(outcomes).map(|(input, outcome)| BatchRow {
+            name: input.job.as_ref().map_or(input.file.as_str(), |(job, _)| &job.name),
+            outcome: match outcome {
+                Ok(done) => Ok(&done.record),
+                Err(none) => Err(none.why.as_str()),
+            },
+        });
+        let rows: Vec<BatchRow<'_>> = rows.collect();
         if !options.json {
             terminal::answer(&batch_summary(&rows, terminal::colour()));
         }
-        if let Err(why) = write_summary(inputs::folder_of_all(options), &batch_csv(&rows)) {
+        if let Err(why) = write_summary(options, &rows) {
             ended = ended.max(refuse(why));
         }
     }
     ended
 }
 
-/// Outcomes as they come in, and how many of the first have been printed: pages come in the order of the inputs.
-struct Printed {
-    outcomes: Vec<Option<Outcome>>,
-    count: usize,
-}
-
-impl Printed {
-    fn new(inputs: usize) -> Self {
-        Printed { outcomes: (0..inputs).map(|_| None).collect(), count: 0 }
-    }
-
-    fn take(&mut self, i: usize, outcome: Outcome, print: impl Fn(&Outcome)) {
-        self.outcomes[i] = Some(outcome);
-        while let Some(Some(outcome)) = self.outcomes.get(self.count) {
-            print(outcome);
-            self.count += 1;
-        }
-    }
-
-    fn outcomes(self) -> Vec<Outcome> {
-        self.outcomes.into_iter().map(|outcome| outcome.unwrap_or(Outcome::Bug)).collect()
-    }
-}
-
 fn ended_of(outcome: &Outcome) -> Ended {
     match outcome {
-        Outcome::Done(done) if done.interrupted || done.record.termination.reason == Reason::Cancelled => {
+        Ok(done) if done.interrupted || done.record.termination.reason == Reason::Cancelled => {
             Ended::Interrupted
         }
-        Outcome::Done(done) if done.record.candidates.iter().any(|c| c.accepted) => Ended::Good,
-        Outcome::Done(_) => Ended::Bad,
-        Outcome::Refused(_) => Ended::Refused,
-        Outcome::Bug => Ended::Bug,
-        Outcome::NotRun => Ended::Interrupted,
+        Ok(done) if done.record.candidates.iter().any(|c| c.accepted) => Ended::Good,
+        Ok(_) => Ended::Bad,
+        Err(none) => none.ended,
     }
 }
 
-fn row<'a>(input: &'a Input, outcome: &'a Outcome) -> BatchRow<'a> {
-    let name = input.job.as_ref().map_or(input.file.as_str(), |(job, _)| &job.name);
-    let outcome = match outcome {
-        Outcome::Done(done) => Ok(&done.record),
-        Outcome::Refused(why) => Err(why.as_str()),
-        Outcome::Bug => Err("a bug of linkwright: please report it with this input"),
-        Outcome::NotRun => Err("not run: the batch was interrupted before"),
-    };
-    BatchRow { name, outcome }
-}
-
-fn write_summary(folder: &Path, csv: &str) -> Result<(), CommandError> {
-    let failed = |source| CommandError::Io { path: folder.display().to_string(), source };
+/// Writes the summary of a batch to its folder.
+fn write_summary(options: &Synth, rows: &[BatchRow<'_>]) -> Result<(), CommandError> {
+    let folder = inputs::folder_of_all(options);
+    let failed = |source| FolderError::Io { path: folder.display().to_string(), source };
     std::fs::create_dir_all(folder).map_err(failed)?;
-    summary(folder, csv, |file| write_files(&[file], Replace::Ours(&[])))
+    summary(options, rows, write_files)
 }
 
-/// Does something with the summary's file. One that is a user's stays, and there is no `--force` for it.
+/// Checks or writes the summary's file. A file that is a user's is kept, and there is no `--force` for it.
 fn summary(
-    folder: &Path,
-    csv: &str,
-    act: impl FnOnce(OutputFile<'_>) -> Result<(), FolderError>,
+    options: &Synth,
+    rows: &[BatchRow<'_>],
+    act: fn(&[OutputFile<'_>], Replace<'_>) -> Result<(), FolderError>,
 ) -> Result<(), CommandError> {
-    let path = folder.join(SUMMARY);
-    act(OutputFile { path: &path, kind: FileKind::Csv, bytes: csv.as_bytes() }).map_err(|e| match e {
+    let path = inputs::folder_of_all(options).join(SUMMARY);
+    let csv = batch_csv(rows);
+    let file = OutputFile { path: &path, kind: FileKind::Csv, bytes: csv.as_bytes() };
+    act(&[file], Replace::Ours(&[])).map_err(|e| match e {
         FolderError::NotOurs { path, .. } => CommandError::NotASummary { path },
         e => e.into(),
     })
 }
 
-/// What is printed for one problem.
+/// Returns the text that is printed for one problem.
 fn page(Done { record, folder, timing, .. }: &Done, brief: bool, all: bool) -> String {
     let mut text = candidates_table(record, terminal::colour());
     text.push_str(&exact_text(record, all, terminal::colour()));
     text.push_str(&certificate_text(record, terminal::colour()));
-    if !brief && terminal::stdout_is_terminal() && !record.candidates.is_empty() {
+    if !brief && stdout().is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));
     }
-    let shown = crate::files::diagnostic::escaped(&folder.display().to_string());
+    let shown = terminal::shown(folder);
     text.push_str(&match timing {
         Some(timing) => format!("\n  {}. Written to {shown}\n", timing.words()),
         None => format!("\n  Done before: nothing was run. It stands in {shown}\n"),

@@ -1,19 +1,23 @@
 //! Writing to the two streams, and how colourful the terminal is.
 
-use crate::files::diagnostic::Diagnostic;
+use crate::files::diagnostic::{Diagnostic, escaped};
 use crate::report::Colour;
 use ariadne::{Config, IndexType, Label, Report, ReportKind, Source};
-use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::io::{self, ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether an answer could not be written.
 static LOST: AtomicBool = AtomicBool::new(false);
 
-/// Writes the answer to stdout. A reader that went away (`| head`) is no failure of ours; a full disk is
-/// complained of, and [`lost`] remembers it.
+/// Writes the answer to stdout. A full disk is complained of, and [`lost`] remembers it.
 pub fn answer(text: &str) {
     let mut out = stdout().lock();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    note(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Takes note of how writing to stdout ended. A reader that went away (`| head`) is no failure of ours.
+pub fn note(written: io::Result<()>) {
     if let Err(e) = written
         && e.kind() != ErrorKind::BrokenPipe
         && !LOST.swap(true, Ordering::Relaxed)
@@ -34,16 +38,16 @@ pub fn tell(text: &str) {
 
 /// Writes an error line to stderr, control characters made visible.
 pub fn complain(text: &str) {
-    tell(&format!("error: {}", crate::files::diagnostic::escaped(text)));
+    tell(&format!("error: {}", escaped(text)));
+}
+
+/// Returns a path as it is shown: control characters made visible.
+pub fn shown(path: &Path) -> String {
+    escaped(&path.display().to_string())
 }
 
 fn colour_wanted(is_terminal: bool) -> bool {
     is_terminal && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
-}
-
-/// Whether stdout is a terminal.
-pub fn stdout_is_terminal() -> bool {
-    stdout().is_terminal()
 }
 
 /// The colour for stdout.
@@ -59,13 +63,14 @@ pub fn diagnose(kind: ReportKind<'_>, diagnostic: &Diagnostic) {
         tell(&format!("{word}: {diagnostic}"));
         return;
     };
-    let file = crate::files::diagnostic::escaped(&diagnostic.file);
-    let mut report = Report::build(kind, (file.clone(), span.clone()))
+    let file = escaped(&diagnostic.file);
+    let place = (file.clone(), span);
+    let mut report = Report::build(kind, place.clone())
         .with_config(Config::default().with_index_type(IndexType::Byte))
-        .with_message(crate::files::diagnostic::escaped(&diagnostic.message));
-    report.add_label(Label::new((file.clone(), span)).with_message("here"));
+        .with_message(escaped(&diagnostic.message))
+        .with_label(Label::new(place).with_message("here"));
     if let Some(help) = &diagnostic.help {
-        report.set_help(crate::files::diagnostic::escaped(help));
+        report.set_help(escaped(help));
     }
     let _ = report.finish().eprint((file, Source::from(&diagnostic.text)));
 }

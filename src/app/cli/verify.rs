@@ -4,16 +4,15 @@ use super::arguments::Verify;
 use super::progress::Shown;
 use super::result;
 use super::result::Which;
-use super::{Ended, interrupt, refuse, terminal};
+use super::{Ended, interrupt, refuse_io, refuse_path, terminal};
 use crate::app::job::folder::{LEAVES, read_at_most};
 use crate::files::diagnostic::escaped;
 use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
-use crate::judge::verify::{Checked, Mismatch, unchecked, verify, verify_certificate};
+use crate::judge::verify::{Checked, Mismatch, unchecked, verify_certificate};
 use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
 use crate::report::text::COLUMNS;
 use crate::report::text::wrapped;
-use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -32,44 +31,45 @@ pub fn run(options: &Verify) -> Result<Ended, Ended> {
 
 /// Recomputes one record and says how true it is.
 fn one(path: &Path, options: &Verify) -> Result<Ended, Ended> {
-    let shown = escaped(&path.display().to_string());
+    let shown = terminal::shown(path);
     let run = result::read_run_of(path, "verify")?;
     if run.which != Which::All {
-        return Err(refuse(format!("{shown}: a record is verified as a whole; give {} alone", run.named)));
+        return Err(refuse_path(path, format!("a record is verified as a whole; give {} alone", run.named)));
     }
     let record = run.record;
-    let mut mismatches =
-        verify(&record).map_err(|e| refuse(format!("{shown}: the recorded problem is none: {e}")))?;
+    let mut mismatches = result::mismatches(path, &record)?;
     if options.certificate {
-        mismatches.extend(certificate_of(&shown, &record)?);
+        mismatches.extend(certificate_of(path, &record)?);
     }
-    let leaves = if options.leaves { Some(check_leaves(path, &record)?) } else { None };
-    if mismatches.is_empty() && !matches!(leaves, Some(Err(_))) {
-        say_true(&shown, &record, options, leaves.and_then(Result::ok));
-        return Ok(Ended::Good);
-    }
-    let wrong = leaves.and_then(Result::err);
+    let leaves = options.leaves.then(|| check_leaves(path, &record)).transpose()?;
+    let wrong = match leaves.transpose() {
+        Ok(checked) if mismatches.is_empty() => {
+            say_true(&shown, &record, options, checked);
+            return Ok(Ended::Good);
+        }
+        wrong => wrong.err(),
+    };
     let untrue = !mismatches.is_empty() || wrong.as_ref().is_some_and(CheckError::is_refuted);
     terminal::answer(&format!("{shown}: {}.\n", if untrue { "NOT true" } else { "NOT shown" }));
     for mismatch in mismatches {
         terminal::answer(&format!("  {}\n", escaped(&mismatch.to_string())));
     }
     if let Some(why) = wrong {
-        let file = escaped(&leaves_of(path).display().to_string());
-        terminal::answer(&format!("  {file}: {}\n", escaped(&why.to_string())));
+        let leaves = terminal::shown(&leaves_of(path));
+        terminal::answer(&format!("  {leaves}: {}\n", escaped(&why.to_string())));
     }
     Ok(Ended::Bad)
 }
 
 /// Works out the certificate of a record again.
-fn certificate_of(shown: &str, record: &Record) -> Result<Vec<Mismatch>, Ended> {
+fn certificate_of(path: &Path, record: &Record) -> Result<Vec<Mismatch>, Ended> {
     if record.certificate.is_none() {
-        return Err(refuse(format!("{shown}: the record has no certificate; run certify first")));
+        return Err(refuse_path(path, "the record has no certificate; run certify first"));
     }
     let proving = Shown::of_proof(&record.problem.name, false);
     let cancel = interrupt::watch("ending the check");
     let found = verify_certificate(record, cancel, &mut |progress| proving.proof(progress));
-    found.map_err(|e| refuse(format!("{shown}: {e}")))?.ok_or(Ended::Interrupted)
+    found.map_err(|e| refuse_path(path, e))?.ok_or(Ended::Interrupted)
 }
 
 /// Says of a true record how much of it was recomputed.
@@ -94,16 +94,13 @@ fn say_true(shown: &str, record: &Record, options: &Verify, leaves: Option<Check
 /// The keys of a record that were not recomputed, in words.
 fn limits_of(record: &Record, options: &Verify) -> String {
     let proved = options.certificate || options.leaves;
-    let listed = |how: Checked| {
-        let keys = unchecked(record, how).into_iter();
-        // What the other answers speak of is told below.
-        keys.filter(|key| !(proved && key.starts_with("certificate."))).collect::<Vec<_>>().join(", ")
-    };
     let mut text = String::new();
     for (head, how) in [("Held to limits only: ", Checked::Bounded), ("Not checked: ", Checked::Not)] {
-        let keys = listed(how);
+        let mut keys = unchecked(record, how);
+        // The other answers speak of the certificate.
+        keys.retain(|key| !(proved && key.starts_with("certificate.")));
         if !keys.is_empty() {
-            text.push_str(&wrapped("  ", "    ", &format!("{head}{keys}."), COLUMNS));
+            text.push_str(&wrapped("  ", "    ", &format!("{head}{}.", keys.join(", ")), COLUMNS));
         }
     }
     if record.certificate.is_some() && !proved {
@@ -123,26 +120,24 @@ fn leaves_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join(LEAVES) } else { path.with_file_name(LEAVES) }
 }
 
-/// Checks the leaves of a record's certificate, which lie beside it; the inner error is that they do not prove it.
+/// Checks the leaves of a record's certificate, which are beside it; the inner error is that they do not prove it.
 fn check_leaves(path: &Path, record: &Record) -> Result<Result<CheckedLeaves, CheckError>, Ended> {
-    let refused =
-        |file: &Path, why: &dyn Display| refuse(format!("{}: {why}", escaped(&file.display().to_string())));
-    let recorded = record
-        .certificate
-        .as_ref()
-        .ok_or_else(|| refused(path, &"the record has no certificate; run certify with --leaves first"))?;
+    let no_certificate =
+        || refuse_path(path, "the record has no certificate; run certify with --leaves first");
+    let recorded = record.certificate.as_ref().ok_or_else(no_certificate)?;
     let file = leaves_of(path);
     let read = read_at_most(&file, MAX_BYTES).map_err(|e| match e.kind() {
-        io::ErrorKind::NotFound => refused(&file, &"there are no leaves; run certify with --leaves first"),
-        _ => refused(&file, &e),
+        io::ErrorKind::NotFound => refuse_path(&file, "there are no leaves; run certify with --leaves first"),
+        _ => refuse_io(&file, e),
     })?;
-    let bytes = read.ok_or_else(|| refused(&file, &format!("leaves have at most {MAX_BYTES} bytes")))?;
+    let too_large = || refuse_path(&file, format!("leaves have at most {MAX_BYTES} bytes"));
+    let bytes = read.ok_or_else(too_large)?;
     let cancel = interrupt::watch("ending the check");
-    let (shown, named) = (Shown::of_proof("", false), escaped(&file.display().to_string()));
-    match check(record, recorded, &bytes, cancel, &mut |checked| shown.leaves(&named, checked.leaves)) {
-        Err(CheckError::NoCertificate(e)) => Err(refused(path, &e)),
+    let (progress, named) = (Shown::of_proof("", false), terminal::shown(&file));
+    match check(record, recorded, &bytes, cancel, &mut |checked| progress.leaves(&named, checked.leaves)) {
+        Err(CheckError::NoCertificate(e)) => Err(refuse_path(path, e)),
         Err(CheckError::Leaves(e @ (LeavesError::Foreign | LeavesError::Version { .. }))) => {
-            Err(refused(&file, &e))
+            Err(refuse_path(&file, e))
         }
         Err(CheckError::Stopped) => Err(Ended::Interrupted),
         checked => Ok(checked),
