@@ -3,7 +3,7 @@
 
 use super::constants::population::{KEPT, LONG_TARGET};
 use super::multistart::{judged, settle_positions};
-use super::reduced::{ReducedFitness, forms};
+use super::reduced_fitness::{ReducedFitness, forms};
 use super::starts::Searched;
 use super::{Context, Found, Progress};
 use crate::numbers::optimise::argmin_bridge::{

@@ -17,7 +17,7 @@
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
 use super::belief::{Belief, HITS, SAME_OPTIMUM};
-use super::constants::timed::{
+use super::constants::variable_projection::{
     BINDING_WAVES, CONSTRAINED_LONG, CONSTRAINED_SHORT, DRAWS, KEPT, LEAST_WAVES, LONG, LONG_EVALUATIONS,
     POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
 };
