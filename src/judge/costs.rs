@@ -81,7 +81,7 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
         let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };
         let motion = fit.motion(&start.design, &shape);
         let at = At { problem, candidate, x: &start.design, shape: &shape, setting: start.setting };
-        at.costs(&fit, &(), fit.space(), fit.requirements(), &motion, false)
+        at.costs(&fit, &start.positions, fit.space(), fit.requirements(), &motion, false)
     } else {
         let fit = TorusFit::new(problem, start.setting);
         let Some(shape) = fit.space().shape(&start.design) else { return Vec::new() };

@@ -38,7 +38,7 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let mut rows: Vec<[f64; DESIGN]> = Vec::new();
     let space = if start.positions.is_empty() {
         let fit = TimedFit::new(problem, start.setting)?;
-        linearised(&fit, &start.design, &(), &mut rows)?;
+        linearised(&fit, &start.design, &start.positions, &mut rows)?;
         fit.space().clone()
     } else {
         let fit = TorusFit::new(problem, start.setting);
