@@ -133,7 +133,7 @@ pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u
 }
 
 /// Sorts ends by their merit, the least first, and keeps so many.
-pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+pub(super) fn by_merit<T>(ends: &mut Vec<(f64, T)>, keep: usize) {
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     ends.truncate(keep);
 }

@@ -9,7 +9,7 @@ use super::constants::polish::{
     BASINS, EVALUATIONS, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS, QUIET_HOPS, SAME_DEVIATION,
     SAME_START, SHARE, STEPS,
 };
-use super::multistart::{Fitted, fit_and_judge};
+use super::multistart::{Fitted, by_merit, fit_and_judge};
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
@@ -259,7 +259,7 @@ fn by_deviation<'c>(
         error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
     };
     let mut measured: Vec<(f64, &Candidate)> = candidates.map(|c| (deviation(c), c)).collect();
-    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    by_merit(&mut measured, usize::MAX);
     measured
 }
 

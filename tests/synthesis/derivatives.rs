@@ -168,7 +168,7 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
             let (x, cost, before, outcome, bounds) = if start.positions.is_empty() {
                 let fit = TimedFit::new(&problem, start.setting).expect("the timing is prescribed");
                 let before = fit.cost(&start.design, &start.positions);
-                let end = solve(&fit, start.design, (), &options, &|| false);
+                let end = solve(&fit, start.design, Vec::new(), &options, &|| false);
                 (end.x, end.cost, before, end.outcome, *fit.bounds())
             } else {
                 let fit = TorusFit::new(&problem, start.setting);
