@@ -229,12 +229,14 @@ impl Inquiry<'_> {
     fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
         // Bounds and policies are left out first: they often are defaults that nobody has asked for.
         let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
-        if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
-            return Ok(helping.to_vec());
-        }
-        if helping.is_empty() && self.without(&others)?.is_empty() {
-            // Nothing is acceptable even without all of them, so they are not in conflict.
-            return Ok(Vec::new());
+        if self.without(&others)?.is_empty() {
+            if helping.is_empty() {
+                // Nothing is acceptable even without all of them, so they are not in conflict.
+                return Ok(Vec::new());
+            }
+            if !self.exhausted() {
+                return Ok(helping.to_vec());
+            }
         }
         let mut left_out: Vec<Demand> = Vec::new();
         for &demand in &others {
