@@ -82,7 +82,7 @@ pub fn marginal(problem: &Problem, candidate: &Candidate) -> Vec<Cost> {
     let at = At { problem, candidate, start: &start, space: &space, shape: &shape };
     if start.positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, start.setting) else { return Vec::new() };
-        at.costs(&fit, &(), &fit.motion(&start.design, &shape))
+        at.costs(&fit, &start.positions, &fit.motion(&start.design, &shape))
     } else {
         let fit = TorusFit::new(problem, start.setting);
         at.costs(&fit, &start.positions, &fit.motion(&shape, &start.positions))

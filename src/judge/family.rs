@@ -37,7 +37,7 @@ pub fn dimension(problem: &Problem, candidate: &Candidate) -> Option<usize> {
     let start = start_at(problem, candidate)?;
     let mut rows: Vec<[f64; DESIGN]> = Vec::new();
     if start.positions.is_empty() {
-        linearised(&TimedFit::new(problem, start.setting)?, &start.design, &(), &mut rows)?;
+        linearised(&TimedFit::new(problem, start.setting)?, &start.design, &start.positions, &mut rows)?;
     } else {
         linearised(&TorusFit::new(problem, start.setting), &start.design, &start.positions, &mut rows)?;
     }

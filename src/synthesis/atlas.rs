@@ -19,6 +19,7 @@
 //!
 //! Both are drawn from a fixed stream, once in a process, when they are first needed, on all cores.
 
+use super::coarse::points_of;
 use super::starts::{Starts, draw_ratios};
 use crate::mechanism::four_bar::mobility::{Mobility, linkage_type};
 use crate::mechanism::{Circuit, Complex, InputArc, LinkageType};
@@ -385,7 +386,7 @@ pub(super) struct Matches {
 impl Matches {
     /// Finds the matches for the target of a problem; empty if no entry may be used.
     pub(super) fn of(starts: &Starts<'_>) -> Matches {
-        let task = starts.problem().task();
+        let task = starts.problem.task();
         let is_closed = task.closed() || task.repeats_first();
         let laid = if is_closed { Matches::closed(starts) } else { Matches::open(starts) };
         Matches { laid: laid.unwrap_or_default() }
@@ -393,8 +394,8 @@ impl Matches {
 
     /// Returns the matches of an open target; `None` if all of its points coincide.
     fn open(starts: &Starts<'_>) -> Option<Vec<Laid>> {
-        let problem = starts.problem();
-        let (points, along) = (problem.task().points(), starts.arc());
+        let problem = starts.problem;
+        let (points, along) = (problem.task().points(), &starts.arc);
         // ON_ARC points evenly along the target.
         let mut even = Vec::with_capacity(ON_ARC);
         for m in 0..ON_ARC {
@@ -428,8 +429,9 @@ impl Matches {
 
     /// Returns the matches of a closed target; `None` if all of its points coincide.
     fn closed(starts: &Starts<'_>) -> Option<Vec<Laid>> {
-        let problem = starts.problem();
-        let even = Traced::of(starts.loop_points().to_vec())?.even();
+        let problem = starts.problem;
+        let points = &problem.task().points()[..points_of(problem)];
+        let even = Traced::of(points.to_vec())?.even();
         let (wanted, target) = (descriptor(&even)?, Even::of(&even)?);
         let types = problem.types();
         let usable = |entry: &Entry| {
@@ -471,8 +473,8 @@ impl Matches {
     pub(super) fn start(&self, starts: &Starts<'_>, rank: usize) -> Option<Start> {
         let laid = self.laid.get(rank)?;
         let traced = laid.entry.trace()?;
-        let mut positions = Vec::with_capacity(starts.arc().len());
-        for s in starts.arc() {
+        let mut positions = Vec::with_capacity(starts.arc.len());
+        for s in &starts.arc {
             let place = (laid.begin + laid.direction * laid.span * s).rem_euclid(1.0);
             let parameter = traced.parameter(place);
             positions.push(laid.entry.at(parameter)?);

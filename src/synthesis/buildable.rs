@@ -115,11 +115,10 @@ fn tightened(spec: &ProblemSpec) -> ProblemSpec {
     spec
 }
 
-/// Returns the tightened problem with a limit of the transmission angle well above its own.
-fn stricter(tight: &Problem) -> Option<Problem> {
-    let mut spec = tight.spec().clone();
-    let asked = spec.require.transmission_deg_min?;
-    spec.require.transmission_deg_min = Some(asked.max(STRICT_DEG));
+/// Returns the problem with another limit of the transmission angle.
+fn with_transmission(problem: &Problem, least_deg: f64) -> Option<Problem> {
+    let mut spec = problem.spec().clone();
+    spec.require.transmission_deg_min = Some(least_deg);
     Problem::new(spec).ok()
 }
 
@@ -177,7 +176,8 @@ fn from_the_known(context: Context<'_>, known: &[Candidate], share: u64) -> (Vec
     if each <= 1 {
         return (found, spent);
     }
-    let strict = stricter(tight);
+    let asked = tight.spec().require.transmission_deg_min;
+    let strict = asked.and_then(|asked| with_transmission(tight, asked.max(STRICT_DEG)));
     let from: Vec<(usize, f64)> = warm.iter().flat_map(|&i| SHORTER.map(|part| (i, part))).collect();
     let fit = |(i, part): (usize, f64)| {
         let Some(mut start) = start_beside(tight, &known[i], part) else { return Fitted::NONE };
@@ -271,9 +271,7 @@ fn off_the_change_point(context: Context<'_>, from: &Candidate, allowance: u64) 
     let mut best: Option<Candidate> = None;
     let each = allowance / (RAISES.len() + HALVINGS) as u64;
     let mut at = |limit: f64, start: &Candidate| -> Option<Candidate> {
-        let mut spec = tight.spec().clone();
-        spec.require.transmission_deg_min = Some(limit);
-        let raised = Problem::new(spec).ok()?;
+        let raised = with_transmission(tight, limit)?;
         let start = start_at(&raised, start)?;
         let fit = polish(context.of(&raised), start, LONG_FIT, each);
         spent += fit.evaluations;

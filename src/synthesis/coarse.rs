@@ -20,7 +20,7 @@ pub struct Coarse {
 }
 
 /// Returns the number of points of a target, a repeated closing point not counted twice.
-fn points_of(problem: &Problem) -> usize {
+pub(super) fn points_of(problem: &Problem) -> usize {
     let task = problem.task();
     if task.repeats_first() { task.len() - 1 } else { task.len() }
 }

@@ -32,7 +32,7 @@ use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
 
 /// Distance from a bound, in parts of its scale, within which the bound is active.
-const STANDS_ON: f64 = 1e-6;
+const ACTIVE: f64 = 1e-6;
 /// The distance counted for a change that has no measure (another type, any order): one of the whole.
 const WHOLE: f64 = 1.0;
 
@@ -71,22 +71,21 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
     if let Some(reason) = context.stop_reason() {
         outcome.reason = reason;
     }
-    if met.is_empty() {
-        return Ok(if context.stopped() { Explained::default() } else { explained });
+    if met.is_empty() && !context.stopped() {
+        return Ok(explained);
     }
-    if problem.spec().solve.method != Method::Auto {
-        // The answers have to be those of the method that was asked for.
-        return Ok(Explained::default());
-    }
-    let mut found = std::mem::take(&mut outcome.candidates);
-    found.append(&mut outcome.others);
-    found.extend(met);
-    (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
-    offered_cognates::offer(context, &mut outcome.candidates);
-    // The repeated hits were counted for another best answer.
-    outcome.repeats = None;
-    if !outcome.used.iter().any(|used| used == RELAXED) {
-        outcome.used.push(RELAXED.into());
+    // The answers of another method have to be those of the method that was asked for.
+    if !met.is_empty() && problem.spec().solve.method == Method::Auto {
+        let mut found = std::mem::take(&mut outcome.candidates);
+        found.append(&mut outcome.others);
+        found.extend(met);
+        (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+        offered_cognates::offer(context, &mut outcome.candidates);
+        // The repeated hits were counted for another best answer.
+        outcome.repeats = None;
+        if !outcome.used.iter().any(|used| used == RELAXED) {
+            outcome.used.push(RELAXED.into());
+        }
     }
     Ok(Explained::default())
 }
@@ -112,7 +111,7 @@ impl Inquiry<'_> {
     }
 
     fn explain(&mut self) -> Result<Explained, PopulationError> {
-        let demands = self.demands(&self.refused);
+        let demands = self.demands();
         let mut helping = Vec::new();
         for &demand in &demands {
             if !self.without(&[demand])?.is_empty() {
@@ -145,19 +144,19 @@ impl Inquiry<'_> {
 
     /// Returns the demands of the problem; of the design's bounds only those that are active at a refused candidate or
     /// exceeded by it, since an inactive bound does not restrict.
-    fn demands(&self, refused: &[Candidate]) -> Vec<Demand> {
+    fn demands(&self) -> Vec<Demand> {
         let spec = self.problem.spec();
-        let stands_on = |demand: &Demand, candidate: &Candidate| {
+        let is_active = |demand: &Demand, candidate: &Candidate| {
             let (Some(limits), Some(values)) = (demand.limits(spec), demand.attained(candidate)) else {
                 return true;
             };
-            let scale = scale(*demand, spec).max(STANDS_ON * self.problem.task().size());
-            limits.iter().zip(values).any(|(l, v)| l.outward * (v - l.value) >= -STANDS_ON * scale)
+            let scale = scale(*demand, spec).max(ACTIVE * self.problem.task().size());
+            limits.iter().zip(values).any(|(l, v)| l.outward * (v - l.value) >= -ACTIVE * scale)
         };
         let keep = |demand: &Demand| {
             !matches!(demand, Demand::Design(_))
-                || refused.is_empty()
-                || refused.iter().any(|candidate| stands_on(demand, candidate))
+                || self.refused.is_empty()
+                || self.refused.iter().any(|candidate| is_active(demand, candidate))
         };
         Demand::of(self.problem).into_iter().filter(keep).collect()
     }
@@ -229,12 +228,14 @@ impl Inquiry<'_> {
     fn conflict(&mut self, demands: &[Demand], helping: &[Demand]) -> Result<Vec<Demand>, PopulationError> {
         // Bounds and policies are left out first: they often are defaults that nobody has asked for.
         let others: Vec<Demand> = demands.iter().copied().filter(|d| !helping.contains(d)).rev().collect();
-        if self.without(&others)?.is_empty() && !helping.is_empty() && !self.exhausted() {
-            return Ok(helping.to_vec());
-        }
-        if helping.is_empty() && self.without(&others)?.is_empty() {
-            // Nothing is acceptable even without all of them, so they are not in conflict.
-            return Ok(Vec::new());
+        if self.without(&others)?.is_empty() {
+            if helping.is_empty() {
+                // Nothing is acceptable even without all of them, so they are not in conflict.
+                return Ok(Vec::new());
+            }
+            if !self.exhausted() {
+                return Ok(helping.to_vec());
+            }
         }
         let mut left_out: Vec<Demand> = Vec::new();
         for &demand in &others {

@@ -69,8 +69,8 @@ pub mod rounds {
     pub const KEPT: usize = 400;
 }
 
-/// Prescribed timing in its reduced form; no benchmark chooses them.
-pub mod timed {
+/// Prescribed timing by variable projection, in its reduced form; no benchmark chooses them.
+pub mod variable_projection {
     /// Draws in a batch.
     pub const DRAWS: usize = 128;
     /// Draws fitted for a few steps.

@@ -2,7 +2,7 @@
 
 use super::constants::plan::REDUCED_SHARE;
 use super::driver::{Allowance, Found};
-use super::{Context, free, rounds, timed};
+use super::{Context, free, rounds, variable_projection};
 use crate::record::Reason;
 use crate::task::Timing;
 
@@ -14,7 +14,7 @@ type Search = fn(Context<'_>, Allowance) -> Option<Found>;
 pub(super) fn search(context: Context<'_>, Allowance { limit, patience }: Allowance) -> Found {
     // Each with its part of the patience that is left.
     let searches: &[(Search, f64)] = match context.problem.task().timing() {
-        Timing::Prescribed { .. } => &[(timed::search, REDUCED_SHARE), (rounds::search, 1.0)],
+        Timing::Prescribed { .. } => &[(variable_projection::search, REDUCED_SHARE), (rounds::search, 1.0)],
         Timing::Free => &[(free::search, 1.0)],
     };
     let mut found = Found::nothing();

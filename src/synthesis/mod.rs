@@ -26,14 +26,14 @@
 //! | [`polish`] | polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains the last digits of answers on which a limit is active |
 //! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
 //! | [`reassign`] | correspondence between target points and coupler curve: assigns the points to curve samples in their order, by dynamic programming |
-//! | [`reduced`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
+//! | [`reduced_fitness`] | fitness of a population search in reduced variables: ratios and at most two angles in, violation and cost out |
 //! | [`relaxed`] | search with one requirement left out, whose results are then fitted under all requirements |
 //! | [`repeats`] | repeated hits of the best answer, counted over independent rounds |
 //! | [`rounds`] | multistart search for prescribed timing in the physical parameters |
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
 //! | [`states`] | the states of the searches in a checkpoint: data alone |
-//! | [`timed`] | multistart search for prescribed timing by variable projection (the reduced form) |
+//! | [`variable_projection`] | multistart search for prescribed timing by variable projection (the reduced form) |
 
 pub mod answers;
 pub mod atlas;
@@ -58,7 +58,7 @@ pub mod plan;
 pub mod polish;
 pub mod population;
 mod reassign;
-pub mod reduced;
+pub mod reduced_fitness;
 mod relaxed;
 mod repeats;
 mod rounds;
@@ -66,7 +66,7 @@ pub mod snap;
 pub mod starts;
 mod states;
 mod stopping_tests;
-pub mod timed;
+pub mod variable_projection;
 
 pub use context::Context;
 pub use driver::Found;

@@ -15,9 +15,7 @@ use crate::judge::rank::exact_cost;
 use crate::judge::unwrapped::unwrapped;
 use crate::mechanism::four_bar::mobility::wrapped;
 use crate::numbers::arithmetic::streams::stream;
-use crate::numbers::optimise::levenberg_marquardt::{
-    BlockLeastSquares, LmOptions, LmOutcome, LmResult, solve,
-};
+use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, LmOptions, LmOutcome, solve};
 use crate::record::{Candidate, Evaluations};
 use crate::task::forms::design_space::Design;
 use crate::task::forms::rows::assembly_of;
@@ -135,7 +133,7 @@ pub fn round(context: Context<'_>, starts: &Starts<'_>, index: u64, allowance: u
 }
 
 /// Sorts ends by their merit, the least first, and keeps so many.
-pub(super) fn by_merit(ends: &mut Vec<(f64, Start)>, keep: usize) {
+pub(super) fn by_merit<T>(ends: &mut Vec<(f64, T)>, keep: usize) {
     ends.sort_by(|one, other| one.0.total_cmp(&other.0));
     ends.truncate(keep);
 }
@@ -175,7 +173,7 @@ pub(super) fn promise(problem: &Problem, start: &mut Start) -> Option<f64> {
     let scale = weight * task.size().powi(2);
     if start.positions.is_empty() {
         let fit = TimedFit::new(problem, start.setting)?;
-        let cost = fit.cost(&start.design, &())?;
+        let cost = fit.cost(&start.design, &start.positions)?;
         let shape = fit.space().shape(&start.design)?;
         let motion = fit.motion(&start.design, &shape);
         let lack = fit.requirements().lack(start.setting.aim, &shape, &motion);
@@ -213,28 +211,20 @@ pub fn polish(context: Context<'_>, start: Start, effort: Effort, evaluations: u
     let problem = context.problem;
     let options = options(problem, effort, evaluations);
     let stop = || context.stopped();
-    if start.positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, start.setting) else { return Fitted::NONE };
-        ended(problem, solve(&fit, start.design, (), &options, &stop), start.setting, |()| Vec::new())
+    let Start { design, setting, positions } = start;
+    let result = if positions.is_empty() {
+        let Some(fit) = TimedFit::new(problem, setting) else { return Fitted::NONE };
+        solve(&fit, design, positions, &options, &stop)
     } else {
-        let fit = TorusFit::new(problem, start.setting).in_order(&start.design, &start.positions);
-        let result = solve(&fit, start.design, start.positions, &options, &stop);
-        ended(problem, result, start.setting, |positions| positions)
-    }
-}
-
-fn ended<S>(
-    problem: &Problem,
-    result: LmResult<{ crate::task::forms::design_space::DESIGN }, S>,
-    setting: Setting,
-    positions: impl Fn(S) -> Positions,
-) -> Fitted {
+        let fit = TorusFit::new(problem, setting).in_order(&design, &positions);
+        solve(&fit, design, positions, &options, &stop)
+    };
     let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
     let weight: f64 = problem.task().weights().iter().sum();
     Fitted {
         merit: result.cost + weight * result.violation * result.violation,
         evaluations: result.evaluations,
-        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+        end: usable.then_some(Start { design: result.x, setting, positions: result.state }),
     }
 }
 

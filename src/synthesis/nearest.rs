@@ -55,33 +55,29 @@ fn prescribed(
         let radians: Vec<f64> = angles(direction, base_deg).iter().map(|d| d.to_radians()).collect();
         problem.task().errors(linkage, &radians, &assemblies).map_or(f64::INFINITY, |e| e.objective)
     };
-    let base = match offset {
-        AngleOffset::Fixed => return Some((angles(1.0, 0.0), assemblies)),
-        AngleOffset::Ground => {
-            return Some((angles(1.0, linkage.ground_angle().to_degrees()), assemblies));
-        }
-        AngleOffset::Free => 360.0 / DEFAULT_SAMPLES as f64,
+    let given = match offset {
+        AngleOffset::Fixed => Some(0.0),
+        AngleOffset::Ground => Some(linkage.ground_angle().to_degrees()),
+        AngleOffset::Free => None,
     };
-    let mut best = (f64::INFINITY, 1.0, 0.0);
-    for &direction in problem.directions() {
-        for i in 0..DEFAULT_SAMPLES {
-            let offset = base * i as f64;
-            let value = sum(direction, offset);
-            if value < best.0 {
-                best = (value, direction, offset);
-            }
-        }
+    if let Some(base) = given {
+        return Some((angles(1.0, base), assemblies));
     }
-    let (mut low, mut high) = (best.2 - base, best.2 + base);
+    let step = 360.0 / DEFAULT_SAMPLES as f64;
+    let samples = |&direction: &f64| (0..DEFAULT_SAMPLES).map(move |i| (direction, step * i as f64));
+    let all = problem.directions().iter().flat_map(samples);
+    let measured = all.map(|(direction, offset)| (sum(direction, offset), direction, offset));
+    let (least, direction, offset) = measured.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let (mut low, mut high) = (offset - step, offset + step);
     for _ in 0..100 {
         let third = (high - low) / 3.0;
-        if sum(best.1, low + third) <= sum(best.1, high - third) {
+        if sum(direction, low + third) <= sum(direction, high - third) {
             high -= third;
         } else {
             low += third;
         }
     }
     let refined = 0.5 * (low + high);
-    let offset = if sum(best.1, refined) <= best.0 { refined } else { best.2 };
-    best.0.is_finite().then(|| (angles(best.1, offset), assemblies))
+    let offset = if sum(direction, refined) <= least { refined } else { offset };
+    least.is_finite().then(|| (angles(direction, offset), assemblies))
 }

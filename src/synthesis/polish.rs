@@ -9,18 +9,17 @@ use super::constants::polish::{
     BASINS, EVALUATIONS, HOP, HOPPED, HOPS, INSIDE, LEAST_BASINS, MAX_HOPS, QUIET_HOPS, SAME_DEVIATION,
     SAME_START, SHARE, STEPS,
 };
-use super::multistart::{Fitted, fit_and_judge};
+use super::multistart::{Fitted, by_merit, fit_and_judge};
 use crate::judge::rank::{compare, distinct, exact_cost, exact_objective};
 use crate::judge::warm::start_at;
 use crate::numbers::arithmetic::streams::{Stream, stream, uniform};
-use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, ConvexResult, Goal, solve};
+use crate::numbers::optimise::convex::{ConvexOptions, ConvexOutcome, Goal, solve};
 use crate::record::{Candidate, Evaluations, Figure};
-use crate::task::forms::design_space::DESIGN;
+use crate::task::Problem;
 use crate::task::forms::start::Start;
 use crate::task::forms::timed::TimedFit;
-use crate::task::forms::torus::{Positions, TorusFit};
+use crate::task::forms::torus::TorusFit;
 use crate::task::spec::Objective;
-use crate::task::{Problem, Setting};
 
 /// The random stream of the first round of hops; those of a multistart count up from 0.
 const FIRST_HOP: u64 = 1 << 62;
@@ -123,32 +122,22 @@ fn convex(
         good_enough,
     };
     let stop = || context.stopped();
-    if start.positions.is_empty() {
-        let Some(fit) = TimedFit::new(problem, start.setting) else { return (Fitted::NONE, f64::INFINITY) };
-        let result = solve(&fit, goal, start.design, (), &options, &stop);
-        ended(size, start.setting, result, |()| Vec::new())
+    let (setting, mut positions) = (start.setting, start.positions.clone());
+    let result = if positions.is_empty() {
+        let Some(fit) = TimedFit::new(problem, setting) else { return (Fitted::NONE, f64::INFINITY) };
+        solve(&fit, goal, start.design, positions, &options, &stop)
     } else {
-        let fit = TorusFit::new(problem, start.setting);
-        let mut positions = start.positions.clone();
+        let fit = TorusFit::new(problem, setting);
         if !fit.settle(&start.design, &mut positions) {
             return (Fitted::NONE, f64::INFINITY);
         }
-        let result = solve(&fit, goal, start.design, positions, &options, &stop);
-        ended(size, start.setting, result, |positions| positions)
-    }
-}
-
-fn ended<S>(
-    size: f64,
-    setting: Setting,
-    result: ConvexResult<DESIGN, S>,
-    positions: impl Fn(S) -> Positions,
-) -> (Fitted, f64) {
+        solve(&fit, goal, start.design, positions, &options, &stop)
+    };
     let usable = !matches!(result.outcome, ConvexOutcome::NoStart | ConvexOutcome::Stopped);
     let fitted = Fitted {
         merit: result.objective + result.violation / size,
         evaluations: result.evaluations,
-        end: usable.then(|| Start { design: result.x, setting, positions: positions(result.state) }),
+        end: usable.then_some(Start { design: result.x, setting, positions: result.state }),
     };
     (fitted, result.deviation)
 }
@@ -270,7 +259,7 @@ fn by_deviation<'c>(
         error.map_or(f64::INFINITY, |error| error.deviation(task.tolerances()))
     };
     let mut measured: Vec<(f64, &Candidate)> = candidates.map(|c| (deviation(c), c)).collect();
-    measured.sort_by(|one, other| one.0.total_cmp(&other.0));
+    by_merit(&mut measured, usize::MAX);
     measured
 }
 

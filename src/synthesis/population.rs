@@ -3,9 +3,10 @@
 
 use super::constants::population::{KEPT, LONG_TARGET};
 use super::multistart::{judged, settle_positions};
-use super::reduced::{ReducedFitness, forms};
+use super::reduced_fitness::{ReducedFitness, forms};
 use super::starts::Searched;
 use super::{Context, Found, Progress};
+use crate::judge::rank::{exact_objective, holds_an_exact};
 use crate::numbers::optimise::argmin_bridge::{
     Limits, PopulationProgress, RestartsState, SearchArguments, StopReason, run_restarts,
 };
@@ -14,7 +15,7 @@ use crate::numbers::optimise::genetic::Genetic;
 use crate::numbers::optimise::population::{Fitness, PopulationError, PopulationProblem};
 use crate::numbers::optimise::random_search::{UniformSampling, UniformSamplingParameters};
 use crate::numbers::optimise::saved::Resumable;
-use crate::record::{Evaluations, Reason};
+use crate::record::{Candidate, Evaluations, Reason};
 use crate::task::Timing;
 use crate::task::forms::fitness::PathFitness;
 use crate::task::forms::reduced::refusal;
@@ -115,18 +116,16 @@ fn search_in<F: Searched>(
         }
         Population::UniformSampling => Box::new(UniformSampling::new(UniformSamplingParameters::default())?),
     };
+    let found = |candidates: Vec<Candidate>, objective: u64, reason: Reason| {
+        let evaluations = Evaluations { objective, positions: objective * fitness.positions() };
+        Found { candidates, evaluations, reason, used: vec![which.name().into()], repeats: None }
+    };
     if fitness.bounds().is_empty() {
         let starts: Vec<Start> = fitness.start(&[], context).into_iter().collect();
-        let found = Found {
-            candidates: starts.iter().filter_map(|start| judged(problem, start)).collect(),
-            evaluations: Evaluations { objective: 1, positions: fitness.positions() },
-            reason: Reason::Converged,
-            used: vec![which.name().into()],
-            repeats: None,
-        };
-        return Ok((found, starts));
+        let candidates = starts.iter().filter_map(|start| judged(problem, start)).collect();
+        return Ok((found(candidates, 1, Reason::Converged), starts));
     }
-    let limits = Limits { evaluations, target: Some(crate::judge::rank::exact_objective(problem)) };
+    let limits = Limits { evaluations, target: Some(exact_objective(problem)) };
     let sums = spec.objective == Objective::SumOfSquares;
     let stop = AtomicBool::new(context.stopped());
     let stoppable = Stoppable {
@@ -167,7 +166,7 @@ fn search_in<F: Searched>(
     };
     let outcome = run_restarts(arguments, earlier)?;
     let mut starts = Vec::new();
-    let mut found = Vec::new();
+    let mut candidates = Vec::new();
     let kept =
         [&outcome.best].into_iter().chain(&outcome.restart_bests).chain(outcome.population.iter().take(KEPT));
     let (skipped, judging) = (skipped(), context.judging());
@@ -179,25 +178,17 @@ fn search_in<F: Searched>(
             break;
         }
         let Some(start) = fitness.start(&individual.x, context) else { continue };
-        found.extend(judged(problem, &start));
+        candidates.extend(judged(problem, &start));
         starts.push(start);
     }
-    let reached = crate::judge::rank::holds_an_exact(problem, &found);
-    let objective = outcome.evaluations - skipped;
-    let found = Found {
-        candidates: found,
-        evaluations: Evaluations { objective, positions: objective * fitness.positions() },
-        reason: match outcome.reason {
-            StopReason::Cancelled => context.stop_reason().unwrap_or(Reason::Cancelled),
-            // The fitness does not judge: an exact answer has to pass the referee too.
-            StopReason::TargetReached if reached => Reason::TargetReached,
-            StopReason::TargetReached | StopReason::Converged => Reason::Stalled,
-            StopReason::EvaluationLimit => Reason::EvaluationLimit,
-        },
-        used: vec![which.name().into()],
-        repeats: None,
+    let reason = match outcome.reason {
+        StopReason::Cancelled => context.stop_reason().unwrap_or(Reason::Cancelled),
+        // The fitness does not judge: an exact answer has to pass the referee too.
+        StopReason::TargetReached if holds_an_exact(problem, &candidates) => Reason::TargetReached,
+        StopReason::TargetReached | StopReason::Converged => Reason::Stalled,
+        StopReason::EvaluationLimit => Reason::EvaluationLimit,
     };
-    Ok((found, starts))
+    Ok((found(candidates, outcome.evaluations - skipped, reason), starts))
 }
 
 impl Searched for PathFitness<'_> {

@@ -13,6 +13,7 @@
 //! On a closed circuit the first point is pinned, in turn, to its present place and to the places where it would be
 //! nearest. The present places are among the samples, so that the result is never worse than the start.
 
+use super::coarse::points_of;
 use crate::mechanism::four_bar::mobility::ways_round;
 use crate::mechanism::{AssemblyMode, Complex, FourBar, InputArc, Mobility};
 use crate::numbers::optimise::levenberg_marquardt::BlockLeastSquares;
@@ -98,7 +99,7 @@ pub fn reassigned(problem: &Problem, start: &Start) -> Reassigned {
         start.positions.iter().zip(&assemblies).map(|([e, _], t)| track.parameter(*e, *t)).collect();
 
     // The closing point has the place of the first one.
-    let n = if task.repeats_first() { task.len() - 1 } else { task.len() };
+    let n = points_of(problem);
     let [forward, backward] = ways_round(own[..n].windows(2).map(|w| w[1] - w[0]), 0.0);
     let direction = if backward < forward { -1.0 } else { 1.0 };
     let one_branch = arc.is_some() && !problem.branch_any();

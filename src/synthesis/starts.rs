@@ -29,10 +29,10 @@ pub(super) trait Searched: PopulationProblem {
 /// A generator of starts for a problem.
 #[derive(Clone, Debug)]
 pub struct Starts<'a> {
-    problem: &'a Problem,
+    pub(super) problem: &'a Problem,
     pub(super) types: Vec<LinkageType>,
     /// The arc length up to each point, in parts of the whole (closed: of the closed curve).
-    arc: Vec<f64>,
+    pub(super) arc: Vec<f64>,
     /// One design space per side of the coupler point.
     pub(super) spaces: Vec<(CouplerSide, DesignSpace)>,
 }
@@ -56,22 +56,6 @@ impl<'a> Starts<'a> {
             arc: along.iter().map(|s| s / whole).collect(),
             spaces: problem.sides().iter().map(|&side| (side, problem.space(side))).collect(),
         }
-    }
-
-    /// Returns the problem.
-    pub fn problem(&self) -> &Problem {
-        self.problem
-    }
-
-    /// Returns the arc length up to each point, in parts of the whole target (closed: of the closed curve).
-    pub fn arc(&self) -> &[f64] {
-        &self.arc
-    }
-
-    /// Returns the points of a closed target, each once.
-    pub fn loop_points(&self) -> &[Complex] {
-        let task = self.problem.task();
-        &task.points()[..if task.repeats_first() { task.len() - 1 } else { task.len() }]
     }
 
     /// Returns the side that a shape's coupler point lies on, or the only one allowed, and its design space.

@@ -129,10 +129,10 @@ fn residuals_tangents_and_constraints_agree_with_central_differences() {
             let Some(Start { design, setting, mut positions }) = starts.draw(&mut draws) else { continue };
             let error = if positions.is_empty() {
                 let fit = TimedFit::new(&problem, setting).expect("the timing is prescribed");
-                if fit.cost(&design, &()).is_none() {
+                if fit.cost(&design, &Vec::new()).is_none() {
                     continue;
                 }
-                derivative_error(&fit, &design, &(), &steps(&fit, &design), STEP)
+                derivative_error(&fit, &design, &Vec::new(), &steps(&fit, &design), STEP)
             } else {
                 let fit = TorusFit::new(&problem, setting);
                 if !fit.settle(&design, &mut positions) {
@@ -167,8 +167,8 @@ fn a_step_never_leaves_the_bounds_and_the_best_point_is_returned() {
         for start in std::iter::repeat_with(|| starts.draw(&mut draws)).take(400).flatten().take(20) {
             let (x, cost, before, outcome, bounds) = if start.positions.is_empty() {
                 let fit = TimedFit::new(&problem, start.setting).expect("the timing is prescribed");
-                let before = fit.cost(&start.design, &());
-                let end = solve(&fit, start.design, (), &options, &|| false);
+                let before = fit.cost(&start.design, &start.positions);
+                let end = solve(&fit, start.design, Vec::new(), &options, &|| false);
                 (end.x, end.cost, before, end.outcome, *fit.bounds())
             } else {
                 let fit = TorusFit::new(&problem, start.setting);

@@ -10,7 +10,7 @@ use linkwright::internals::numbers::arithmetic::streams::stream;
 use linkwright::internals::numbers::optimise::population::{PopulationProblem, draw_uniform};
 use linkwright::internals::record::Record;
 use linkwright::internals::record::digest::digest;
-use linkwright::internals::synthesis::reduced::{ReducedFitness, forms};
+use linkwright::internals::synthesis::reduced_fitness::{ReducedFitness, forms};
 use linkwright::internals::task::Problem;
 use linkwright::internals::task::forms::design_space::{DESIGN, Design, DesignSpace, Shape};
 use linkwright::internals::task::forms::fitness::PathFitness;

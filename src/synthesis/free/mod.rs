@@ -122,7 +122,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
 
 impl<'a> Free<'a> {
     fn begin_stage(&mut self, coarse: Option<&'a Coarse>, starts: &'a Starts<'a>) {
-        let matches = (starts.arc().len() >= LEAST_MATCHED).then(|| Matches::of(starts));
+        let matches = (starts.arc.len() >= LEAST_MATCHED).then(|| Matches::of(starts));
         let (problem, single, exact) = (self.problem, self.wanted == 1, self.exact);
         self.setups.push(Setup { problem, coarse, starts, matches, single, exact });
         self.at.stages.push(StageState::BEGUN);

@@ -142,7 +142,7 @@ impl Spender<'_> {
                 tried.extend(self.fit(problem, start, SHORT_FIT, most));
             }
             tried.retain(|(again, _)| *again <= WORTH_LEADING_BACK * merit);
-            tried.sort_by(|one, other| one.0.total_cmp(&other.0));
+            by_merit(&mut tried, usize::MAX);
             back = tried.into_iter().map(|(_, start)| start).collect();
         }
         for start in back {
@@ -329,7 +329,7 @@ pub(super) fn unfinished<'a>(
             out.push((*merit, start));
         }
     }
-    out.sort_by(|one, other| one.0.total_cmp(&other.0));
+    by_merit(&mut out, usize::MAX);
     out
 }
 

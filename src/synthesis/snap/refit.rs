@@ -176,9 +176,8 @@ fn fit(
     let Ok(narrowed) = Problem::new(spec) else { return (None, 0) };
     // If A moves on a circle around a fixed B, the fit has to begin at the right distance: that is a condition, not a
     // coordinate of the design.
-    let moved = (!polar)
-        .then(|| on_its_circle(&candidate.linkage, fixed))
-        .flatten()
+    let moved = on_its_circle(&candidate.linkage, fixed)
+        .filter(|_| !polar)
         .and_then(|linkage| assess(problem, &linkage, &candidate.crank_deg, &candidate.t1_at));
     let Some(start) = start_at(&narrowed, moved.as_ref().unwrap_or(candidate)) else { return (None, 0) };
     let fitted = finish(context.of(&narrowed), &start, evaluations);

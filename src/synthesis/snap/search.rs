@@ -165,8 +165,8 @@ pub fn snap(context: Context<'_>, candidate: &Candidate, request: &Request) -> R
     let again = leaders.iter().map(|choice| (choice.fixed.clone(), &choice.candidate)).collect();
     all.extend(search.fitted(again, THOROUGH));
     search.sort(&mut all);
-    let mut told: BTreeSet<Vec<u64>> = BTreeSet::new();
-    all.retain(|choice| told.insert(bits(&choice.fixed)));
+    let mut seen: BTreeSet<Vec<u64>> = BTreeSet::new();
+    all.retain(|choice| seen.insert(bits(&choice.fixed)));
     let accepted = all.first().is_some_and(|c| c.candidate.accepted);
     let candidates: Vec<Candidate> = all
         .into_iter()

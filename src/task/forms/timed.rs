@@ -6,6 +6,7 @@
 
 use super::design_space::{DESIGN, Design, DesignSpace, SHAPE, Shape, unit};
 use super::rows::{Motion, Requirements};
+use super::torus::Positions;
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
 use crate::mechanism::{Complex, turned, xy};
@@ -110,7 +111,8 @@ impl<'a> TimedFit<'a> {
 }
 
 impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
-    type State = ();
+    /// The points have no unknowns of their own: no positions.
+    type State = Positions;
 
     fn points(&self) -> usize {
         self.angles.len()
@@ -120,7 +122,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         self.space.bounds()
     }
 
-    fn cost(&self, x: &Design, _: &()) -> Option<f64> {
+    fn cost(&self, x: &Design, _: &Positions) -> Option<f64> {
         let shape = self.space.shape(x)?;
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
@@ -140,7 +142,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         cost.is_finite().then_some(cost)
     }
 
-    fn linearise(&self, x: &Design, _: &(), each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
+    fn linearise(&self, x: &Design, _: &Positions, each: &mut dyn FnMut(&PointBlock<DESIGN>)) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
         let kernel = shape.kernel(self.setting.assembly);
         let turn = Complex::from_polar(1.0, self.offset(x, &shape));
@@ -170,11 +172,11 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         true
     }
 
-    fn retract(&self, _: &Design, _: &(), _: &[f64], _: &Design, _: &mut ()) -> bool {
+    fn retract(&self, _: &Design, _: &Positions, _: &[f64], _: &Design, _: &mut Positions) -> bool {
         true
     }
 
-    fn constraints(&self, x: &Design, _: &(), each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
+    fn constraints(&self, x: &Design, _: &Positions, each: &mut dyn FnMut(&ConstraintRow<DESIGN>)) {
         let Some(shape) = self.space.shape(x) else { return };
         let by_ground_angle = Self::by_ground_angle(&shape);
         self.requirements.rows(self.setting.aim, &shape, &self.motion(x, &shape), &mut |row| {

@@ -17,7 +17,7 @@
 //! search goes on until as many distinct ones are known or `QUIET_WAVES` waves brought no further one.
 
 use super::belief::{Belief, HITS, SAME_OPTIMUM};
-use super::constants::timed::{
+use super::constants::variable_projection::{
     BINDING_WAVES, CONSTRAINED_LONG, CONSTRAINED_SHORT, DRAWS, KEPT, LEAST_WAVES, LONG, LONG_EVALUATIONS,
     POLISHES, PROMISING, QUIET_WAVES, SHORT, SHORT_EVALUATIONS, WAVE,
 };
@@ -343,8 +343,8 @@ impl<'a> Timed<'a> {
 
 /// A screened draw: its cost, its index, the form and the assembly.
 type Screened = (f64, usize, usize, AssemblyMode);
-/// The end of a fit in the reduced form: its cost, its unknowns, the form and the assembly.
-type ReducedEnd = (f64, Reduced, usize, AssemblyMode);
+/// A point of the reduced form: its unknowns, the form and the assembly.
+type Point = (Reduced, usize, AssemblyMode);
 
 /// The fits of one batch within its allowance.
 struct Fitting<'a> {
@@ -364,7 +364,7 @@ impl Fitting<'_> {
     }
 
     /// Fits in the reduced form with at most `most` evaluations.
-    fn fit(&mut self, (x, form, assembly): (Reduced, usize, AssemblyMode), most: u32) -> Option<ReducedEnd> {
+    fn fit(&mut self, (x, form, assembly): Point, most: u32) -> Option<(f64, Point)> {
         let left = u32::try_from(self.spender.left()).unwrap_or(u32::MAX);
         if left == 0 {
             return None;
@@ -382,11 +382,11 @@ impl Fitting<'_> {
         let stop = || search.context.stopped();
         let end = solve(fit, x, search.forms[form].1.bounds(), &options, &stop);
         self.spender.spend(search.problem, u64::from(end.evaluations));
-        end.cost.is_finite().then_some((end.cost, end.x, form, assembly))
+        end.cost.is_finite().then_some((end.cost, (end.x, form, assembly)))
     }
 
     /// Fits the most promising draws for a few steps and the best of them to convergence, in the reduced form.
-    fn reduced(&mut self, screened: &[Screened], batch: &Batch) -> Vec<ReducedEnd> {
+    fn reduced(&mut self, screened: &[Screened], batch: &Batch) -> Vec<(f64, Point)> {
         let search = self.search;
         let promising =
             screened.iter().filter(|(_, i, form, _)| search.stays_closed(*form, &batch.draws()[*i]));
@@ -394,41 +394,41 @@ impl Fitting<'_> {
         for &(_, i, form, assembly) in promising.take(SHORT) {
             short.extend(self.fit((batch.draws()[i], form, assembly), SHORT_EVALUATIONS));
         }
-        short.sort_by(|x, y| x.0.total_cmp(&y.0));
-        let mut long: Vec<ReducedEnd> = Vec::with_capacity(LONG);
-        for (cost, x, form, assembly) in short.into_iter().take(LONG) {
+        by_merit(&mut short, LONG);
+        let mut long = Vec::with_capacity(LONG);
+        for (cost, point) in short {
             if search.context.stopped() {
                 // Taken as it is: the best so far.
-                long.push((cost, x, form, assembly));
+                long.push((cost, point));
                 break;
             }
-            long.extend(self.fit((x, form, assembly), LONG_EVALUATIONS));
+            long.extend(self.fit(point, LONG_EVALUATIONS));
         }
-        long.sort_by(|x, y| x.0.total_cmp(&y.0));
+        by_merit(&mut long, LONG);
         long
     }
 
     /// Takes the ends that meet every bound and requirement, and polishes those that do not and are better than all that
     /// do.
-    fn divide(&mut self, ends: Vec<ReducedEnd>, bar: f64) {
+    fn divide(&mut self, ends: Vec<(f64, Point)>, bar: f64) {
         let search = self.search;
         let task = search.problem.task();
         let scale = task.weights().iter().sum::<f64>() * task.size().powi(2);
-        let mut broken: Vec<(f64, f64, Start)> = Vec::new();
-        for (cost, x, form, assembly) in ends {
+        let mut broken: Vec<(f64, End)> = Vec::new();
+        for (cost, (x, form, assembly)) in ends {
             let Some((start, lack)) = self.physical(&x, form, assembly) else { continue };
             if lack != 0.0 {
-                broken.push((cost + scale * lack * lack, cost, start));
+                broken.push((cost + scale * lack * lack, (cost, start)));
             } else if search.stays_closed(form, &x) {
                 self.out.ends.push((cost, start));
             }
         }
-        broken.sort_by(|x, y| x.0.total_cmp(&y.0));
+        by_merit(&mut broken, usize::MAX);
         if search.context.stopped() && self.out.ends.is_empty() {
-            self.out.ends.extend(broken.drain(..).take(1).map(|(_, cost, start)| (cost, start)));
+            self.out.ends.extend(broken.drain(..).take(1).map(|(_, end)| end));
         }
         let mut polishes = 0;
-        for (_, cost, start) in broken {
+        for (_, (cost, start)) in broken {
             let bar = self.out.ends.iter().map(|end| end.0).fold(bar, f64::min);
             if polishes >= POLISHES || self.spender.is_at_its_end() {
                 break;
