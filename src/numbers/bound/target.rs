@@ -151,13 +151,8 @@ impl Target {
     }
 
     /// Returns the number of points.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.turn.len()
-    }
-
-    /// Returns whether there are no points; always false.
-    pub fn is_empty(&self) -> bool {
-        self.turn.is_empty()
     }
 
     /// Returns a lower bound of S.
