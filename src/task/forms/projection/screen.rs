@@ -94,12 +94,8 @@ struct Drawn<L> {
 
 impl Projection {
     /// Returns the costs of a batch on both assemblies, t1 = +1 first: infinite if the loop does not close at a point,
-    /// the linear system is singular or the ground comes out reversed. Two evaluations per draw.
-    pub fn screen(&self, batch: &Batch) -> [Vec<f64>; 2] {
-        self.screen_unless(batch, &|| false).unwrap_or_default()
-    }
-
-    /// As [`Projection::screen`]; `None` if `stop` returns true; it is called before every `LANES` draws.
+    /// the linear system is singular or the ground comes out reversed. Two evaluations per draw. `None` if `stop`
+    /// returns true; it is called before every `LANES` draws.
     pub fn screen_unless(&self, batch: &Batch, stop: &dyn Fn() -> bool) -> Option<[Vec<f64>; 2]> {
         let padded = batch.ratio[0].len();
         let mut costs = [vec![0.0; padded], vec![0.0; padded]];
@@ -130,7 +126,7 @@ impl Projection {
         Some(costs)
     }
 
-    /// Returns the cost of [`Projection::screen`] for a single draw, in scalar arithmetic: the same bits.
+    /// Returns the cost of [`Projection::screen_unless`] for a single draw, in scalar arithmetic: the same bits.
     pub fn screen_one(&self, x: &Reduced, assembly: AssemblyMode) -> f64 {
         let ratio = [0, 1, 2].map(|k: usize| x[k].exp());
         let angle = ComplexLanes { re: x[3].cos(), im: x[3].sin() };
