@@ -165,7 +165,7 @@ pub fn column(of: &[Complex]) -> Column {
 
 /// Returns the larger of two real numbers, lane by lane.
 #[inline(always)]
-pub fn larger(one: F64x8, other: F64x8) -> F64x8 {
+pub fn larger<L: Lane>(one: L, other: L) -> L {
     one.at_least(other, one, other)
 }
 

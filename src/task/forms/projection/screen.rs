@@ -15,7 +15,7 @@
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex};
-use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
+use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes, larger};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 
@@ -69,12 +69,6 @@ struct Sums<L> {
 }
 
 impl<L: Lane> Sums<L> {
-    #[inline(always)]
-    fn zero() -> Self {
-        let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
-        Sums { u: zero, phase_u: zero, u_target: zero }
-    }
-
     #[inline(always)]
     fn add(&mut self, u: ComplexLanes<L>, weight: L, phase: ComplexLanes<L>, target: ComplexLanes<L>) {
         self.u = self.u + u.scale(weight);
@@ -155,7 +149,8 @@ impl Projection {
         let q_sq = q * q;
         let half = s(0.5) * (q_sq - r * r);
         let mut gap = s(f64::INFINITY);
-        let mut sums = [Sums::zero(), Sums::zero()];
+        let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
+        let mut sums = [Sums { u: zero, phase_u: zero, u_target: zero }; 2];
         let c = &self.columns;
         for j in 0..self.points {
             let phase = Complex::new(c.phase[0][j], c.phase[1][j]);
@@ -236,7 +231,6 @@ impl Projection {
         let s = L::splat;
         let [a, g, b, c] = self.limits;
         let (by_q, by_r) = (p * q.recip(), p * r.recip());
-        let larger = |x: L, y: L| x.at_least(y, x, y);
         let low = larger(larger(s(a.0), p * s(g.0)), larger(by_q * s(b.0), by_r * s(c.0)));
         let high = s(a.1).min(p * s(g.1)).min((by_q * s(b.1)).min(by_r * s(c.1)));
         let inside = larger(length, low).min(high);
