@@ -106,7 +106,7 @@ fn reduced(c: &mut Criterion) {
         let batch = Batch::new(
             (0..512).map(|_| [number(0.5) - 0.9, number(0.5), number(0.5), number(3.0)]).collect(),
         );
-        let once = form.screen(&batch);
+        let once = form.screen_unless(&batch, &|| false).expect("nothing stops it");
         let both = [AssemblyMode::Plus, AssemblyMode::Minus];
         for (assembly, costs) in both.into_iter().zip(&once) {
             let mut fit = ProjectedFit::new(&form, assembly);
@@ -119,7 +119,7 @@ fn reduced(c: &mut Criterion) {
         let mut group = c.benchmark_group("reduced form, one core");
         group.throughput(Throughput::Elements(1024));
         group.bench_function(format!("{n} points, screened costs"), |b| {
-            b.iter(|| form.screen(black_box(&batch)))
+            b.iter(|| form.screen_unless(black_box(&batch), &|| false))
         });
         let mut fit = ProjectedFit::new(&form, AssemblyMode::Plus);
         let start =

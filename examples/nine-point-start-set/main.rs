@@ -11,11 +11,32 @@
 
 mod monodromy;
 
+use linkwright::internals::numbers::arithmetic::complex_lanes::ORDER;
 use linkwright::internals::numbers::arithmetic::streams::{stream, unit};
 use linkwright::internals::numbers::nine_point::classes::first_of_class;
+use linkwright::internals::numbers::nine_point::equations::unknowns;
 use linkwright::internals::numbers::nine_point::start::{CLASSES, StartSet};
 use monodromy::{Limits, orbit};
 use std::sync::atomic::AtomicBool;
+
+/// Returns the bytes of a set's file, as `src/numbers/nine_point/start.rs` describes them.
+fn bytes_of(set: &StartSet) -> Vec<u8> {
+    let mut bytes = b"LWNP".to_vec();
+    for word in [1, set.solutions.len() as u32, 0] {
+        bytes.extend(word.to_le_bytes());
+    }
+    for z in set.displacements.delta.iter().chain(&set.displacements.starred) {
+        bytes.extend(z.re.to_le_bytes());
+        bytes.extend(z.im.to_le_bytes());
+    }
+    for solution in &set.solutions {
+        for z in &unknowns(solution)[..ORDER] {
+            bytes.extend((z.re as f32).to_le_bytes());
+            bytes.extend((z.im as f32).to_le_bytes());
+        }
+    }
+    bytes
+}
 
 /// The embedded set's.
 const SEED: u64 = 1;
@@ -32,7 +53,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Err(format!("{found} classes, not {CLASSES}: try another seed").into());
     }
     let set = StartSet { displacements: orbit.displacements, solutions: orbit.solutions };
-    let bytes = set.to_bytes();
+    let bytes = bytes_of(&set);
     let back = StartSet::parse(&bytes)?;
     let firsts = first_of_class(&[set.solutions, back.solutions].concat(), 1e-7);
     if (0..CLASSES).any(|at| firsts[at] != at || firsts[CLASSES + at] != at) {

@@ -72,7 +72,7 @@ fn task(random: &mut Stream, i: usize, noise: f64) -> (Task, Point, f64) {
     let known = Lengths { crank: [0.8 * kappa, 1.3 * kappa], ground: [0.0, 2.0 * ground] };
     let (pivot, line, lengths) = match i / 2 % 8 {
         0 => (Some(a), Some(Line::Angle(theta)), Lengths { crank: [0.0, 50.0], ground: [0.0, 50.0] }),
-        1 => (None, None, Lengths::ANY),
+        1 => (None, None, Lengths { crank: [0.0, f64::INFINITY], ground: [0.0, f64::INFINITY] }),
         2 => (Some(a), None, known),
         3 => (None, Some(Line::Angle(theta)), known),
         4 => (Some(a), Some(Line::Angle(theta)), Lengths { ground: [ground; 2], ..known }),

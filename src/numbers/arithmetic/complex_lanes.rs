@@ -6,7 +6,6 @@
 
 use crate::Complex;
 use crate::lane::{F64x8, LANES, Lane};
-use std::ops::{Add, Mul, Neg, Sub};
 
 /// One complex number a lane: real parts together, imaginary parts together.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,39 +114,11 @@ impl ComplexLanes {
     }
 }
 
-impl<L: Lane> Add for ComplexLanes<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        ComplexLanes { re: self.re + other.re, im: self.im + other.im }
-    }
-}
-
-impl<L: Lane> Sub for ComplexLanes<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        ComplexLanes { re: self.re - other.re, im: self.im - other.im }
-    }
-}
-
-impl<L: Lane> Neg for ComplexLanes<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        ComplexLanes { re: -self.re, im: -self.im }
-    }
-}
-
-impl<L: Lane> Mul for ComplexLanes<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        ComplexLanes {
-            re: self.re * other.re - self.im * other.im,
-            im: self.re * other.im + self.im * other.re,
-        }
-    }
+crate::operators! { impl<L: Lane> ComplexLanes<L>:
+    Add add(z, w) { ComplexLanes { re: z.re + w.re, im: z.im + w.im } }
+    Sub sub(z, w) { ComplexLanes { re: z.re - w.re, im: z.im - w.im } }
+    Neg neg(z) { ComplexLanes { re: -z.re, im: -z.im } }
+    Mul mul(z, w) { ComplexLanes { re: z.re * w.re - z.im * w.im, im: z.re * w.im + z.im * w.re } }
 }
 
 /// A column of complex numbers: real parts and imaginary parts.
@@ -165,7 +136,7 @@ pub fn column(of: &[Complex]) -> Column {
 
 /// Returns the larger of two real numbers, lane by lane.
 #[inline(always)]
-pub fn larger(one: F64x8, other: F64x8) -> F64x8 {
+pub fn larger<L: Lane>(one: L, other: L) -> L {
     one.at_least(other, one, other)
 }
 

@@ -90,10 +90,10 @@ impl Parts {
         let of =
             |w: &[[f64; 2]], error: f64| functional(w, &u[..n], &moved[..n], h, error * root_n + turning);
         let [beta, _] = of(&y[..n], along * WIDER);
-        let error = target.basis_error();
+        let error = target.basis_error;
         let [v, alpha] = [1, 2].map(|k| of(&target.basis[k], error));
         let mut length_sq = Affine::exact(n as f64);
-        if !target.pivot_known() {
+        if !target.pivot_known {
             let m = of(&target.basis[0], error);
             length_sq = length_sq - m[0].square() - m[1].square();
         }
@@ -139,8 +139,8 @@ impl Condition {
 pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap: f64, wanted: f64) -> Bound {
     let parts = Parts::new(target, class, cell);
     let Parts { beta, v, alpha, length_sq, off_crank, own } = &parts;
-    let [r, t] = target.along();
-    let s = target.rest_sq().root();
+    let [r, t] = target.along;
+    let s = target.size_sq.root();
     let [r, t, s] = [r, t, s].map(Affine::constant);
     let (h, p) = ((cell.high[0] - cell.low[0]) * 0.5 * LARGER, 0.5 * (cell.low[0] + cell.high[0]));
     let p = Affine::variable(p, h, 0);
@@ -160,7 +160,7 @@ pub fn bound(target: &Target, class: Class, cell: &Cell, lengths: &Lengths, cap:
         let x = s * *beta * length_sq.root();
         Condition { x, y: q, w_sq: *off_crank * *length_sq }.certified(wanted, &mut sum_sq, &mut weight);
     }
-    let crank = Affine::constant(target.crank());
+    let crank = Affine::constant(target.crank);
     let at_length = |kappa: Affine, side: f64, sum_sq: &mut f64, weight: &mut [f64; 4]| {
         let w = r - kappa * crank;
         // With a side, the best length kappa* has to be beyond this one on the whole box; with side 0, this is the

@@ -5,7 +5,7 @@
 //! numbers: [`UP`].
 
 use super::ball::{Ball, not_negative};
-use linkwright_arithmetic::operators;
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Twice the unit roundoff.
 const EPS: f64 = f64::EPSILON;
@@ -111,21 +111,42 @@ impl Affine {
     }
 }
 
-operators! { Affine:
-    Add add(x, y) {
-        let by = std::array::from_fn(|k| x.by[k] + y.by[k]);
-        let size = x.mid.abs() + x.spread() + y.mid.abs() + y.spread();
-        Affine::rounded(x.mid + y.mid, by, x.rest + y.rest, size)
+impl Add for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn add(self, y: Affine) -> Affine {
+        let by = std::array::from_fn(|k| self.by[k] + y.by[k]);
+        let size = self.mid.abs() + self.spread() + y.mid.abs() + y.spread();
+        Affine::rounded(self.mid + y.mid, by, self.rest + y.rest, size)
     }
-    Sub sub(x, y) { x + -y }
-    Mul mul(x, y) {
-        let by = std::array::from_fn(|k| x.mid * y.by[k] + y.mid * x.by[k]);
-        let (a, b) = (x.spread(), y.spread());
-        let (size_a, size_b) = (x.mid.abs() + a, y.mid.abs() + b);
-        let rest = a * b + x.rest * (size_b + y.rest) + size_a * y.rest;
-        Affine::rounded(x.mid * y.mid, by, rest, size_a * size_b)
+}
+
+impl Neg for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn neg(self) -> Affine {
+        Affine { mid: -self.mid, by: self.by.map(|by| -by), rest: self.rest }
     }
-    Neg neg(x) { Affine { mid: -x.mid, by: x.by.map(|by| -by), rest: x.rest } }
+}
+
+impl Sub for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn sub(self, y: Affine) -> Affine {
+        self + -y
+    }
+}
+
+impl Mul for Affine {
+    type Output = Affine;
+    #[inline(always)]
+    fn mul(self, y: Affine) -> Affine {
+        let by = std::array::from_fn(|k| self.mid * y.by[k] + y.mid * self.by[k]);
+        let (a, b) = (self.spread(), y.spread());
+        let (size_a, size_b) = (self.mid.abs() + a, y.mid.abs() + b);
+        let rest = a * b + self.rest * (size_b + y.rest) + size_a * y.rest;
+        Affine::rounded(self.mid * y.mid, by, rest, size_a * size_b)
+    }
 }
 
 #[cfg(test)]

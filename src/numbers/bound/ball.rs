@@ -5,7 +5,7 @@
 //! nearest can do, plus `TINY` against underflow; and it is enlarged by `UP` for its own few roundings. No rounding
 //! mode is set. A result that cannot be enclosed has an infinite radius or is NaN, and certifies nothing.
 
-use linkwright_arithmetic::operators;
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Twice the unit roundoff.
 const EPS: f64 = f64::EPSILON;
@@ -105,12 +105,35 @@ impl Ball {
     }
 }
 
-operators! { Ball:
-    Add add(x, y) { Ball::rounded(x.mid + y.mid, x.rad + y.rad) }
-    Sub sub(x, y) { Ball::rounded(x.mid - y.mid, x.rad + y.rad) }
-    Mul mul(x, y) {
-        let rad = x.mid.abs() * y.rad + x.rad * (y.mid.abs() + y.rad);
-        Ball::rounded(x.mid * y.mid, rad)
+impl Add for Ball {
+    type Output = Ball;
+    #[inline(always)]
+    fn add(self, y: Ball) -> Ball {
+        Ball::rounded(self.mid + y.mid, self.rad + y.rad)
     }
-    Neg neg(x) { Ball { mid: -x.mid, rad: x.rad } }
+}
+
+impl Sub for Ball {
+    type Output = Ball;
+    #[inline(always)]
+    fn sub(self, y: Ball) -> Ball {
+        Ball::rounded(self.mid - y.mid, self.rad + y.rad)
+    }
+}
+
+impl Mul for Ball {
+    type Output = Ball;
+    #[inline(always)]
+    fn mul(self, y: Ball) -> Ball {
+        let rad = self.mid.abs() * y.rad + self.rad * (y.mid.abs() + y.rad);
+        Ball::rounded(self.mid * y.mid, rad)
+    }
+}
+
+impl Neg for Ball {
+    type Output = Ball;
+    #[inline(always)]
+    fn neg(self) -> Ball {
+        Ball { mid: -self.mid, rad: self.rad }
+    }
 }

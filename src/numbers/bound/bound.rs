@@ -57,7 +57,7 @@ impl Witness {
         let mut along = 0.0;
         for b in &target.basis {
             let (re, im) = product(b, &y[..n]);
-            along += re.abs() + im.abs() + rounding + WIDER * target.basis_error();
+            along += re.abs() + im.abs() + rounding + WIDER * target.basis_error;
         }
         let mut size = [0.0; MAX_POINTS];
         for (size, y) in size.iter_mut().zip(&y[..n]) {

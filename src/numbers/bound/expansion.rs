@@ -111,7 +111,6 @@ fn second_derivatives(r: &Ranges, m: &Motion, p: f64, h: &[f64; 4], f: f64, s: f
 
 /// The expansion of the directions u_j over a box.
 pub(super) struct Expansion {
-    n: usize,
     /// Half the box's widths.
     pub h: [f64; 4],
     p_high: f64,
@@ -120,13 +119,38 @@ pub(super) struct Expansion {
     own_turn: f64,
     /// The directions u_j at the centre.
     pub u: [[f64; 2]; MAX_POINTS],
-    u_error: [f64; MAX_POINTS],
-    gradient: [[f64; 4]; MAX_POINTS],
-    gradient_error: [f64; MAX_POINTS],
-    second: [[f64; 4]; MAX_POINTS],
-    chord: [f64; MAX_POINTS],
-    smooth: [bool; MAX_POINTS],
-    near_f: [f64; MAX_POINTS],
+    around: [Around; MAX_POINTS],
+}
+
+/// The behaviour of one direction around the centre.
+#[derive(Clone, Copy)]
+struct Around {
+    /// A bound of the error of u_j at the centre.
+    error: f64,
+    /// The gradient of theta_j, with a bound of what its error makes of it over the box.
+    gradient: [f64; 4],
+    gradient_error: f64,
+    /// Bounds of the parts of the remainder of theta_j, by axes.
+    second: [f64; 4],
+    /// A bound of the distance of u_j from its value at the centre.
+    chord: f64,
+    /// Whether gradient and second derivatives are known.
+    smooth: bool,
+    /// f at the centre.
+    near_f: f64,
+}
+
+impl Around {
+    /// Of a unit vector nothing else is known.
+    const UNKNOWN: Around = Around {
+        error: 0.0,
+        gradient: [0.0; 4],
+        gradient_error: 0.0,
+        second: [0.0; 4],
+        chord: 2.0,
+        smooth: false,
+        near_f: 0.0,
+    };
 }
 
 /// A turn common to all u_j, which a bound leaves out, with its extent over the box beyond the crank's own turn.
@@ -155,7 +179,6 @@ impl Expansion {
     /// Expands the directions at the crank's turns over a box.
     #[inline(always)]
     pub fn new(turn: &[[Ball; 2]], class: Class, cell: &Cell) -> Self {
-        let n = turn.len();
         let (middle, h) = centre(cell);
         let c = Centre::new(middle[0], middle[1], middle[2], middle[3]);
         let p_high = cell.high[0].min(1.0);
@@ -163,61 +186,41 @@ impl Expansion {
         // The crank's own turn, which a double-crank's coupler makes with it.
         let own_turn = if class == Class::DoubleCrank { 1.0 } else { 0.0 };
         let mut u = [[0.0; 2]; MAX_POINTS];
-        let mut u_error = [0.0; MAX_POINTS];
-        let mut gradient = [[0.0; 4]; MAX_POINTS];
-        let mut gradient_error = [0.0; MAX_POINTS];
-        let mut second = [[0.0; 4]; MAX_POINTS];
-        let mut chord = [2.0; MAX_POINTS];
-        let mut smooth = [false; MAX_POINTS];
-        let mut near_f = [0.0; MAX_POINTS];
-        for j in 0..n {
-            let m = Motion::at(class, &c, turn[j]);
+        let mut around = [Around::UNKNOWN; MAX_POINTS];
+        for ((turn, u), around) in turn.iter().zip(&mut u).zip(&mut around) {
+            let m = Motion::at(class, &c, *turn);
             let f = less(m.f.mid - m.f.rad - h[0] - h[1]);
-            near_f[j] = m.f.mid;
-            u[j] = [m.u[0].mid, m.u[1].mid];
-            u_error[j] = m.u[0].rad + m.u[1].rad;
-            let known = u_error[j] < 1e-3;
+            around.near_f = m.f.mid;
+            let error = m.u[0].rad + m.u[1].rad;
+            let known = error < 1e-3;
             if !known {
                 // Nothing is known but that it is a unit vector.
-                u[j] = [1.0, 0.0];
-                u_error[j] = 0.0;
+                *u = [1.0, 0.0];
                 continue;
             }
+            (*u, around.error) = ([m.u[0].mid, m.u[1].mid], error);
             if f >= NEAR {
                 // theta (less the crank's turn, for double-cranks) moves by gamma and psi.
                 let gamma = ranges.gamma(f, &h);
-                chord[j] = (gamma + (h[0] + p_high * h[1]) / f) * LARGER;
+                around.chord = (gamma + (h[0] + p_high * h[1]) / f) * LARGER;
                 let s = less(m.sin.mid - m.sin.rad - gamma);
                 if s >= NEAR {
                     let all = second_derivatives(&ranges, &m, p_high, &h, f, s);
                     let mut total = 0.0;
                     for k in 0..4 {
-                        second[j][k] = 0.5 * h[k] * (0..4).map(|l| all[k][l] * h[l]).sum::<f64>() * LARGER;
-                        total += second[j][k];
-                        gradient[j][k] = m.gradient[k].mid;
-                        gradient_error[j] += h[k] * m.gradient[k].rad;
+                        let bent: f64 = (0..4).map(|l| all[k][l] * h[l]).sum();
+                        around.second[k] = 0.5 * h[k] * bent * LARGER;
+                        total += around.second[k];
+                        around.gradient[k] = m.gradient[k].mid;
+                        around.gradient_error += h[k] * m.gradient[k].rad;
                     }
-                    let steep =
-                        gradient[j].iter().any(|slope| slope.is_nan() || slope.abs() > 0.49 * STEEPEST);
-                    smooth[j] = total < 2.0 && gradient_error[j] < 1.0 && !steep;
+                    let steep = |slope: &f64| slope.is_nan() || slope.abs() > 0.49 * STEEPEST;
+                    around.smooth =
+                        total < 2.0 && around.gradient_error < 1.0 && !around.gradient.iter().any(steep);
                 }
             }
         }
-        Expansion {
-            n,
-            h,
-            p_high,
-            ranges,
-            own_turn,
-            u,
-            u_error,
-            gradient,
-            gradient_error,
-            second,
-            chord,
-            smooth,
-            near_f,
-        }
+        Expansion { h, p_high, ranges, own_turn, u, around }
     }
 
     /// Returns the common turn that is the mean of the gradients by these weights.
@@ -225,12 +228,10 @@ impl Expansion {
     pub fn common_turn(&self, size_y: &[f64; MAX_POINTS]) -> CommonTurn {
         let mut common = [0.0; 4];
         let mut total = 0.0;
-        for (j, size) in size_y.iter().enumerate().take(self.n) {
-            if self.smooth[j] {
-                total += size;
-                for (common, slope) in common.iter_mut().zip(self.gradient[j]) {
-                    *common += size * slope;
-                }
+        for (size, around) in size_y.iter().zip(&self.around).filter(|(_, around)| around.smooth) {
+            total += size;
+            for (common, slope) in common.iter_mut().zip(around.gradient) {
+                *common += size * slope;
             }
         }
         let by = if total > 0.0 { common.map(|sum| sum / total) } else { [0.0, self.own_turn, 0.0, 0.0] };
@@ -257,37 +258,37 @@ impl Expansion {
     /// Returns the movement of u_j over the box, less the common turn.
     #[inline(always)]
     pub fn moved(&self, j: usize, common: &CommonTurn) -> Moved {
-        let (h, ranges, p_high) = (&self.h, &self.ranges, self.p_high);
-        let flat = (self.chord[j] + common.beyond).min(2.0);
+        let (h, ranges, p_high, around) = (&self.h, &self.ranges, self.p_high, &self.around[j]);
+        let flat = (around.chord + common.beyond).min(2.0);
         let mut own = [0.0; 4];
         let mut rest = flat;
         let mut slopes = [0.0; 4];
-        if self.smooth[j] {
+        if around.smooth {
             let mut linear = 0.0;
             let mut quadratic = 0.0;
             let mut t = [0.0; 4];
             for k in 0..4 {
-                t[k] = self.gradient[j][k] - common.by[k];
+                t[k] = around.gradient[k] - common.by[k];
                 linear += t[k].abs() * h[k];
-                quadratic += self.second[j][k];
+                quadratic += around.second[k];
             }
-            let far = linear + quadratic + self.gradient_error[j];
-            let expanded = quadratic + 0.5 * far * far + self.gradient_error[j];
+            let far = linear + quadratic + around.gradient_error;
+            let expanded = quadratic + 0.5 * far * far + around.gradient_error;
             if expanded < flat {
                 rest = expanded;
                 slopes = t;
                 for k in 0..4 {
-                    own[k] = self.second[j][k] + 0.5 * far * t[k].abs() * h[k];
+                    own[k] = around.second[k] + 0.5 * far * t[k].abs() * h[k];
                 }
             }
         }
         if rest == flat {
             // The contributions of the axes to the chord.
-            let steep = 1.0 / self.near_f[j].max(NEAR);
-            let by_phi = ranges.gamma_phi(p_high, self.near_f[j].max(NEAR)) + p_high * steep;
+            let steep = 1.0 / around.near_f.max(NEAR);
+            let by_phi = ranges.gamma_phi(p_high, around.near_f.max(NEAR)) + p_high * steep;
             own = [2.0 * steep * h[0], by_phi * h[1], h[2], h[3]];
         }
-        rest += self.u_error[j] * (2.0 + rest);
+        rest += around.error * (2.0 + rest);
         Moved { t: slopes, rest, own }
     }
 }

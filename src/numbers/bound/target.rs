@@ -31,15 +31,15 @@ pub struct Target {
     /// The unit vectors 1/sqrt n, e' and tau, rounded.
     pub(super) basis: [Vec<[f64; 2]>; 3],
     /// The squared length |T'|^2.
-    size_sq: Ball,
+    pub(super) size_sq: Ball,
     /// An upper bound of the distance of each rounded basis vector from the exact one.
-    basis_error: f64,
+    pub(super) basis_error: f64,
     /// <e'/|e'|, T>: the part of T that e' takes away.
-    along: [Ball; 2],
+    pub(super) along: [Ball; 2],
     /// The length |e'|.
-    crank: Ball,
+    pub(super) crank: Ball,
     /// Whether A is known: then ' takes away nothing, and the first basis vector is 0.
-    pivot_known: bool,
+    pub(super) pivot_known: bool,
 }
 
 type BallVector = Vec<[Ball; 2]>;
@@ -151,37 +151,12 @@ impl Target {
     }
 
     /// Returns the number of points.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.turn.len()
-    }
-
-    /// Returns whether there are no points; always false.
-    pub fn is_empty(&self) -> bool {
-        self.turn.is_empty()
     }
 
     /// Returns a lower bound of S.
     pub fn size_sq(&self) -> f64 {
         self.size_sq.low()
-    }
-
-    pub(super) fn basis_error(&self) -> f64 {
-        self.basis_error
-    }
-
-    pub(super) fn rest_sq(&self) -> Ball {
-        self.size_sq
-    }
-
-    pub(super) fn along(&self) -> [Ball; 2] {
-        self.along
-    }
-
-    pub(super) fn crank(&self) -> Ball {
-        self.crank
-    }
-
-    pub(super) fn pivot_known(&self) -> bool {
-        self.pivot_known
     }
 }

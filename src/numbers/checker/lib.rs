@@ -100,7 +100,7 @@ pub fn check(
         Angles::Axis(axis) => Claim::on_axis(part.class, points, turns, cap, part.lower_bound, axis),
     }
     .ok_or(Unproved::Degenerate)?;
-    let mut replay = Replay::new(part, chart);
+    let mut replay = leaves(part, chart);
     let mut before = 0;
     loop {
         let block: Vec<Leaf> = replay.by_ref().take(BLOCK).collect();
@@ -153,31 +153,19 @@ fn shows(claim: &Claim, (region, rule): &Leaf) -> Option<u64> {
     Some(boxes)
 }
 
-/// An iterator over the leaves of a part in order, with their boxes.
-struct Replay<'a> {
-    codes: Box<dyn Iterator<Item = u8> + 'a>,
-    waiting: Vec<Region>,
-}
-
-impl<'a> Replay<'a> {
-    fn new(part: &'a LeavesPart, whole: Cell) -> Self {
-        let whole = Region { low: whole.low, high: whole.high };
-        Replay { codes: Box::new(part.nodes.codes()), waiting: vec![whole] }
-    }
-}
-
-impl Iterator for Replay<'_> {
-    type Item = Leaf;
-
-    fn next(&mut self) -> Option<Leaf> {
+/// Iterates over the leaves of a part in order, with their boxes.
+fn leaves(part: &LeavesPart, whole: Cell) -> impl Iterator<Item = Leaf> {
+    let mut codes = part.nodes.codes();
+    let mut waiting = vec![Region { low: whole.low, high: whole.high }];
+    std::iter::from_fn(move || {
         loop {
-            let region = self.waiting.pop()?;
-            let code = self.codes.next()?;
+            let region = waiting.pop()?;
+            let code = codes.next()?;
             let Some(axis @ 0..4) = code.checked_sub(4).map(usize::from) else { return Some((region, code)) };
             // The middle in single precision, as the file's format says.
             let middle = f64::from((0.5 * (region.low[axis] + region.high[axis])) as f32);
             let [lower, upper] = region.parts(axis, middle);
-            self.waiting.extend([upper, lower]);
+            waiting.extend([upper, lower]);
         }
-    }
+    })
 }

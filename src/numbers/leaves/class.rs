@@ -40,11 +40,6 @@ pub struct Lengths {
     pub ground: [f64; 2],
 }
 
-impl Lengths {
-    /// No limits.
-    pub const ANY: Lengths = Lengths { crank: [0.0, f64::INFINITY], ground: [0.0, f64::INFINITY] };
-}
-
 /// The known pivots, directions and limits if crank angles are from the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {

@@ -4,6 +4,8 @@
 //! solution with links of a million times the points' extent loses twelve digits of sixteen in doubles, and with them
 //! its direction; of the thirty-two here twenty are left.
 
+use super::classes::Class;
+use super::conjugation::Reality;
 use super::equations::{LEG, UNKNOWNS, rounded, unknowns};
 use super::target::{Displacements, STEPS, Solution};
 use super::tracker::{Ending, NODES, Parameters, Segment, add, continuation};
@@ -19,12 +21,8 @@ type Unknowns = [DoubleComplex; UNKNOWNS];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Followed {
     pub(super) ending: Ending,
-    /// The solution at the end, rounded to doubles.
-    pub(super) solution: Solution,
-    /// The relative size of the last Newton step.
-    pub(super) newton_step: f64,
-    /// The relative size of dz/dt.
-    pub(super) speed: f64,
+    /// The solution at the end, rounded to doubles, with its last Newton step and dz/dt.
+    pub(super) end: Class,
 }
 
 /// The size below which the change of an unknown is not measured relative to it.
@@ -43,9 +41,12 @@ pub(super) fn follow(start: &Solution, along: &Segment, with: &Parameters, cance
     let (mut t, mut h) = (0.0, with.first_step);
     let ended = |ending: Ending, z: &Unknowns, newton_step: f64, tangent: &Unknowns| Followed {
         ending,
-        solution: rounded(z, DoubleComplex::to_complex),
-        newton_step,
-        speed: change(tangent, z),
+        end: Class {
+            solution: rounded(z, DoubleComplex::to_complex),
+            reality: Reality::Complex,
+            newton_step,
+            speed: change(tangent, z),
+        },
     };
     for _ in 0..with.most_steps {
         if cancel.load(Ordering::Relaxed) {
@@ -234,8 +235,8 @@ mod tests {
         for (start, end) in starts.iter().zip(&ends) {
             let followed = follow(start, &along, &with, &cancel);
             assert_eq!((followed.ending, end.ending), (Ending::Arrived, Ending::Arrived));
-            assert!(followed.newton_step < 1e-20, "{:e}", followed.newton_step);
-            assert!(followed.solution.is_in_class_of(&end.solution, 1e-8));
+            assert!(followed.end.newton_step < 1e-20, "{:e}", followed.end.newton_step);
+            assert!(followed.end.solution.is_in_class_of(&end.solution, 1e-8));
         }
     }
 }

@@ -156,10 +156,7 @@ operators! { Disc:
         let mid = z.mid + w.mid;
         Disc { mid, radius: z.radius + w.radius + Upper(UNIT) * Upper::magnitude(mid) }
     }
-    Sub sub(z, w) {
-        let mid = z.mid - w.mid;
-        Disc { mid, radius: z.radius + w.radius + Upper(UNIT) * Upper::magnitude(mid) }
-    }
+    Sub sub(z, w) { z + Disc { mid: -w.mid, radius: w.radius } }
     Mul mul(z, w) {
         let [one, two] = [z, w].map(|d| Upper::magnitude(d.mid));
         let rounding = Upper(4.0 * UNIT) * one * two + Upper(f64::MIN_POSITIVE);

@@ -44,19 +44,12 @@ fn invariants(certificate: &Certificate) -> Invariants {
 /// the cost is O(n log n) plus these pairs. A solution whose third focus cannot be bounded is paired with all others.
 pub fn not_proved_distinct(certificates: &[Certificate]) -> Vec<[usize; 2]> {
     let invariants: Vec<Invariants> = certificates.iter().map(invariants).collect();
-    let mut intervals: Vec<(f64, f64, usize)> = invariants
-        .iter()
-        .enumerate()
-        .map(|(i, of)| {
-            let (low, high) = interval(of);
-            (low, high, i)
-        })
-        .collect();
-    intervals.sort_by(|one, two| one.0.total_cmp(&two.0).then(one.2.cmp(&two.2)));
+    let mut intervals: Vec<_> = invariants.iter().map(interval).zip(0..).collect();
+    intervals.sort_by(|(one, i), (two, k)| one.0.total_cmp(&two.0).then(i.cmp(k)));
     let mut pairs = Vec::new();
-    for (place, &(_, high, first)) in intervals.iter().enumerate() {
-        let overlapping = intervals[place + 1..].iter().take_while(|(low, ..)| *low <= high);
-        for &(_, _, second) in overlapping {
+    for (place, &((_, high), first)) in intervals.iter().enumerate() {
+        let overlapping = intervals[place + 1..].iter().take_while(|((low, _), _)| *low <= high);
+        for &(_, second) in overlapping {
             if !apart(&invariants[first], &invariants[second]) {
                 pairs.push([first.min(second), first.max(second)]);
             }

@@ -19,8 +19,7 @@
 use super::target::{Displacements, STEPS, Solution};
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::{ComplexLanes, ORDER, larger, solve};
-use linkwright_arithmetic::lane::F64x8;
-use linkwright_arithmetic::lane::Lane;
+use linkwright_arithmetic::lane::{F64x8, Lane};
 use std::ops::{Add, Sub};
 
 /// The number of unknowns.

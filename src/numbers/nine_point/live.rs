@@ -11,8 +11,7 @@
 //! r the largest |delta' - delta|, c_j and c*_j fixed numbers of modulus about one in general position.
 
 use super::certificate::certify;
-use super::settle::Options;
-use super::settle::{Fate, Fates, firsts, isolated, settle};
+use super::settle::{Fate, Fates, Options, firsts, isolated, settle};
 use super::solve::{Solved, judged, solve};
 use super::target::{Displacements, STEPS, Solution, Target};
 use super::tracker::{Parameters, Segment};

@@ -93,12 +93,6 @@ const CAREFUL_FEW: usize = 32;
 /// As [`SINGULAR_SPEED`], in double-double.
 const CAREFUL_SINGULAR_SPEED: f64 = 1e13;
 
-/// Classifies the end of a path in double-double.
-fn careful_fate(end: &Followed) -> Fate {
-    let Followed { ending, solution, newton_step, speed } = *end;
-    fate(ending, Class { solution, reality: Reality::Complex, newton_step, speed }, CAREFUL_SINGULAR_SPEED)
-}
-
 /// Tracks `starts` along the segment; lost and coinciding paths are tracked again, more carefully, from other images,
 /// and from the third round on those that met an obstacle take a detour ([`track_around`]).
 pub(super) fn settle(
@@ -122,10 +116,11 @@ pub(super) fn settle(
         };
         if CAREFUL_ROUNDS.contains(&round) && open.len() <= CAREFUL_FEW {
             let with = options.parameters.tightened(1);
-            let ends: Vec<Fate> = open
-                .par_iter()
-                .map(|path| careful_fate(&follow(&image(path), along, &with, cancel)))
-                .collect();
+            let end_of = |path: &usize| {
+                let Followed { ending, end } = follow(&image(path), along, &with, cancel);
+                fate(ending, end, CAREFUL_SINGULAR_SPEED)
+            };
+            let ends: Vec<Fate> = open.par_iter().map(end_of).collect();
             for (&path, fate) in open.iter().zip(ends) {
                 fates[path] = fate;
                 rough[path] = false;

@@ -14,7 +14,7 @@
 //! | 272.. | n times x, x - a, x*, x* - a*, y, y - b, y*, y* - b*: real and imaginary part, f32 |
 
 use super::correction::correct;
-use super::equations::{UNKNOWNS, solution, unknowns};
+use super::equations::{UNKNOWNS, solution};
 use super::target::{Displacements, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
@@ -118,25 +118,6 @@ impl StartSet {
             Some(entry) => Err(StartSetError::Entry(entry)),
             None => Ok(StartSet { displacements, solutions: exact.iter().map(|c| c.solution).collect() }),
         }
-    }
-
-    /// Returns the bytes of the file.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = MAGIC.to_vec();
-        for word in [VERSION, self.solutions.len() as u32, 0] {
-            bytes.extend(word.to_le_bytes());
-        }
-        for z in self.displacements.delta.iter().chain(&self.displacements.starred) {
-            bytes.extend(z.re.to_le_bytes());
-            bytes.extend(z.im.to_le_bytes());
-        }
-        for solution in &self.solutions {
-            for z in &unknowns(solution)[..ORDER] {
-                bytes.extend((z.re as f32).to_le_bytes());
-                bytes.extend((z.im as f32).to_le_bytes());
-            }
-        }
-        bytes
     }
 }
 

@@ -25,13 +25,17 @@ pub struct LinearForm {
     pub constant: f64,
 }
 
-/// A convex program under construction.
-#[derive(Clone, Debug)]
+/// A convex program.
+#[derive(Clone, Debug, Default)]
 pub struct ConicProgram {
-    linear: Vec<f64>,
-    quadratic: Vec<(usize, usize, f64)>,
-    rows: Vec<LinearForm>,
-    cones: Vec<[LinearForm; 3]>,
+    /// The linear objective q, one number for each variable.
+    pub linear: Vec<f64>,
+    /// The upper triangle of P as (i, k, value) with i <= k; values of one place add up.
+    pub quadratic: Vec<(usize, usize, f64)>,
+    /// The constraints form >= 0.
+    pub rows: Vec<LinearForm>,
+    /// The constraints |(second, third)| <= first.
+    pub cones: Vec<[LinearForm; 3]>,
 }
 
 /// The minimum of a program with its dual variables.
@@ -54,26 +58,6 @@ const REDUCED_ACCURACY: f64 = 1e-6;
 const ITERATIONS: u32 = 100;
 
 impl ConicProgram {
-    /// Creates a program with the linear objective `linear` (q), with one variable for each of its numbers.
-    pub fn new(linear: Vec<f64>) -> Self {
-        ConicProgram { linear, quadratic: Vec::new(), rows: Vec::new(), cones: Vec::new() }
-    }
-
-    /// Adds `value` to P at (i, k) and (k, i).
-    pub fn add_quadratic(&mut self, i: usize, k: usize, value: f64) {
-        self.quadratic.push((i.min(k), i.max(k), value));
-    }
-
-    /// Adds the constraint form >= 0.
-    pub fn add_row(&mut self, form: LinearForm) {
-        self.rows.push(form);
-    }
-
-    /// Adds the cone constraint |(second, third)| <= first.
-    pub fn add_cone(&mut self, forms: [LinearForm; 3]) {
-        self.cones.push(forms);
-    }
-
     /// Solves the program; `None` if it has no minimum, if its numbers are unusable or if the solver does not
     /// converge.
     pub fn solve(&self) -> Option<ConicSolution> {
@@ -159,10 +143,10 @@ mod tests {
     #[test]
     fn a_quadratic_program_stops_at_its_row_and_tells_what_the_row_costs() {
         // (x - 3)^2 + (y - 1)^2 with x + y <= 2: the foot of the perpendicular, (2, 0), multiplier 2.
-        let mut program = ConicProgram::new(vec![-6.0, -2.0]);
-        program.add_quadratic(0, 0, 2.0);
-        program.add_quadratic(1, 1, 2.0);
-        program.add_row(form(&[(0, -1.0), (1, -1.0)], 2.0));
+        let mut program = ConicProgram { linear: vec![-6.0, -2.0], ..ConicProgram::default() };
+        program.quadratic.push((0, 0, 2.0));
+        program.quadratic.push((1, 1, 2.0));
+        program.rows.push(form(&[(0, -1.0), (1, -1.0)], 2.0));
         let solution = program.solve().expect("it is convex");
         assert!((solution.v[0] - 2.0).abs() < 1e-9 && solution.v[1].abs() < 1e-9, "{solution:?}");
         assert!((solution.rows[0] - 2.0).abs() < 1e-8, "{solution:?}");
@@ -173,10 +157,10 @@ mod tests {
         // A right triangle: the middle of its hypotenuse. Across it the radius grows with the square, so the
         // middle is known to the root of the accuracy.
         let points: [[f64; 2]; 3] = [[0.0, 0.0], [6.0, 0.0], [0.0, 8.0]];
-        let mut program = ConicProgram::new(vec![0.0, 0.0, 1.0]);
+        let mut program = ConicProgram { linear: vec![0.0, 0.0, 1.0], ..ConicProgram::default() };
         for p in points {
             let at = |axis: usize| form(&[(axis, 1.0)], -p[axis]);
-            program.add_cone([form(&[(2, 1.0)], 0.0), at(0), at(1)]);
+            program.cones.push([form(&[(2, 1.0)], 0.0), at(0), at(1)]);
         }
         let solution = program.solve().expect("it is convex");
         for (has, wants, within) in [(0, 3.0, 1e-5), (1, 4.0, 1e-5), (2, 5.0, 1e-10)] {
@@ -186,12 +170,12 @@ mod tests {
 
     #[test]
     fn a_program_without_a_solution_or_with_broken_numbers_has_none() {
-        let mut empty = ConicProgram::new(vec![1.0]);
-        empty.add_row(form(&[(0, 1.0)], -1.0));
-        empty.add_row(form(&[(0, -1.0)], 0.0));
+        let mut empty = ConicProgram { linear: vec![1.0], ..ConicProgram::default() };
+        empty.rows.push(form(&[(0, 1.0)], -1.0));
+        empty.rows.push(form(&[(0, -1.0)], 0.0));
         assert_eq!(empty.solve(), None);
-        let mut broken = ConicProgram::new(vec![1.0]);
-        broken.add_row(form(&[(0, f64::NAN)], 0.0));
+        let mut broken = ConicProgram { linear: vec![1.0], ..ConicProgram::default() };
+        broken.rows.push(form(&[(0, f64::NAN)], 0.0));
         assert_eq!(broken.solve(), None);
     }
 }

@@ -148,6 +148,22 @@ pub struct EvolutionState {
     collapsed: bool,
 }
 
+impl EvolutionState {
+    fn begun(stream: Stream, population: Vec<Individual>, history: Vec<Strategy>) -> Self {
+        let best = best_of(&population).map_or(Fitness::UNKNOWN, |best| best.fitness);
+        let watch = StallWatch::new(best);
+        EvolutionState {
+            stream,
+            population,
+            archive: Vec::new(),
+            history,
+            cursor: 0,
+            watch,
+            collapsed: false,
+        }
+    }
+}
+
 impl DifferentialEvolution {
     /// Creates a search that has not begun.
     ///
@@ -157,15 +173,7 @@ impl DifferentialEvolution {
         parameters.check()?;
         Ok(Self {
             parameters,
-            state: EvolutionState {
-                stream: stream(0, 0),
-                population: Vec::new(),
-                archive: Vec::new(),
-                history: Vec::new(),
-                cursor: 0,
-                watch: StallWatch::new(Fitness::UNKNOWN),
-                collapsed: false,
-            },
+            state: EvolutionState::begun(stream(0, 0), Vec::new(), Vec::new()),
             trials: Vec::new(),
             strategies: Vec::new(),
             ranking: Vec::new(),
@@ -327,15 +335,7 @@ impl Generations for DifferentialEvolution {
     }
 
     fn begin(&mut self, stream: Stream, population: Vec<Individual>) {
-        self.state = EvolutionState {
-            stream,
-            archive: Vec::new(),
-            history: vec![FIRST_GUESS; self.parameters.history],
-            cursor: 0,
-            watch: StallWatch::new(best_of(&population).map_or(Fitness::UNKNOWN, |best| best.fitness)),
-            collapsed: false,
-            population,
-        };
+        self.state = EvolutionState::begun(stream, population, vec![FIRST_GUESS; self.parameters.history]);
     }
 
     fn propose(&mut self, count: usize, bounds: &[(f64, f64)]) -> &mut [Individual] {

@@ -376,16 +376,12 @@ pub fn draw_uniform(stream: &mut Stream, bounds: &[(f64, f64)], x: &mut [f64]) {
 /// Computes the largest extent of a population along any gene, as a share of the box's width there: 0 when all
 /// individuals are one point, 1 when they span the box.
 pub fn spread(population: &[Individual], bounds: &[(f64, f64)]) -> f64 {
-    let mut widest = 0.0_f64;
-    for (gene, &(lower, upper)) in bounds.iter().enumerate() {
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for individual in population {
-            least = least.min(individual.x[gene]);
-            most = most.max(individual.x[gene]);
-        }
-        widest = widest.max((most - least) / (upper - lower));
-    }
-    widest
+    let share = |(gene, (lower, upper)): (usize, &(f64, f64))| {
+        let ends = population.iter().map(|individual| individual.x[gene]);
+        let (least, most) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(x), m.max(x)));
+        (most - least) / (upper - lower)
+    };
+    bounds.iter().enumerate().map(share).fold(0.0, f64::max)
 }
 
 /// The least share by which the best must improve to count as progress: an answer that changes in the seventh digit

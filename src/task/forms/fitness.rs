@@ -22,8 +22,7 @@ use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 use crate::numbers::optimise::population::{Fitness, PopulationProblem};
 use crate::task::spec::Objective;
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

@@ -5,8 +5,7 @@
 //! no exact answer in general, and with prescribed timing only five points can be met.
 
 use crate::mechanism::Complex;
-use crate::task::Problem;
-use crate::task::Timing;
+use crate::task::{Problem, Timing};
 
 /// The largest number of points that a coupler curve can be made to pass through.
 pub const PRECISION_POINTS: usize = 9;

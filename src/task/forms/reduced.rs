@@ -7,9 +7,8 @@
 
 use super::linear_fit::KnownPivots;
 use super::projection::Projection;
-use crate::task::Problem;
-use crate::task::Timing;
 use crate::task::spec::Limits;
+use crate::task::{Problem, Timing};
 
 /// The reason why a problem has no reduced form.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

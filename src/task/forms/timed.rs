@@ -9,10 +9,9 @@ use super::rows::{Motion, Requirements};
 use super::torus::Positions;
 use crate::mechanism::effort::computed;
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
-use crate::mechanism::{Complex, turned, xy};
+use crate::mechanism::{Complex, point, turned, xy};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MOST_OWN, PointBlock};
-use crate::task::{AngleOffset, Timing};
-use crate::task::{Problem, Setting};
+use crate::task::{AngleOffset, Problem, Setting, Timing};
 use std::f64::consts::TAU;
 
 /// Least squares over the design vector for prescribed timing.
@@ -152,8 +151,7 @@ impl BlockLeastSquares<DESIGN> for TimedFit<'_> {
         for ((phase, target), weight) in self.phases.iter().zip(task.points()).zip(task.weights()) {
             let crank = phase * turn;
             let at = kernel.at(crank.re, crank.im);
-            let [c, d, p] =
-                [at.crank_pin, at.follower_pin, at.coupler_point].map(|q| Complex::new(q[0], q[1]));
+            let [c, d, p] = [at.crank_pin, at.follower_pin, at.coupler_point].map(point);
             let frame = Frame {
                 crank,
                 coupler: (d - c) / shape.coupler,

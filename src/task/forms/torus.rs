@@ -132,7 +132,15 @@ impl<'a> TorusFit<'a> {
     /// Brings positions to the curves of a design; `false` if one cannot get there.
     pub fn settle(&self, x: &Design, positions: &mut Positions) -> bool {
         let Some(shape) = self.space.shape(x) else { return false };
-        settle_all(&shape, positions)
+        let on = Loop::of(&shape);
+        computed(RETURN_STEPS * positions.len());
+        let mut columns = Columns::gather(positions);
+        let settled = vectorised(
+            #[inline(always)]
+            || columns.settle(&on),
+        );
+        columns.scatter(positions);
+        settled
     }
 }
 
@@ -340,19 +348,6 @@ impl Columns {
         }
         false
     }
-}
-
-/// Brings positions back to the curves of a shape.
-fn settle_all(shape: &Shape, positions: &mut [[Complex; 2]]) -> bool {
-    let on = Loop::of(shape);
-    computed(RETURN_STEPS * positions.len());
-    let mut columns = Columns::gather(positions);
-    let settled = vectorised(
-        #[inline(always)]
-        || columns.settle(&on),
-    );
-    columns.scatter(positions);
-    settled
 }
 
 impl TorusFit<'_> {

@@ -21,7 +21,7 @@
 mod model;
 
 use super::damping::{clamped, moved};
-use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, PointBlock};
+use super::levenberg_marquardt::{BlockLeastSquares, ConstraintRow, MAX_TAU, PointBlock};
 use model::{Curvature, Model, Step};
 
 /// The objective of a solve. Tolerances: one per point, positive.
@@ -121,8 +121,6 @@ pub struct ConvexResult<const N: usize, S> {
     pub multipliers: Option<Multipliers<N>>,
 }
 
-/// The longest step of a point's own unknown, in radians: beyond it the tangent is no approximation.
-const MAX_TAU: f64 = 0.6;
 /// The least ratio of actual to predicted reduction with which a step is accepted.
 const KEEP: f64 = 1e-3;
 /// The size of the trust box relative to the good step before it.

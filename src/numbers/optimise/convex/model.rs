@@ -286,11 +286,7 @@ impl<'a, const N: usize> Model<'a, N> {
                 None => (0..2).for_each(|axis| add(&|i| j[axis][i], r[axis])),
             }
         }
-        for i in 0..N {
-            for k in 0..i {
-                matrix[(k, i)] = matrix[(i, k)];
-            }
-        }
+        matrix.fill_upper_triangle_with_lower_triangle();
         (matrix, gradient)
     }
 
@@ -320,10 +316,10 @@ impl<'a, const N: usize> Model<'a, N> {
             let widths = SVector::<f64, N>::from_fn(|i, _| self.widths[i]);
             positive_part(matrix.component_mul(&(widths * widths.transpose())) / self.unit + learnt)
         };
-        let mut program = ConicProgram::new(linear);
+        let mut program = ConicProgram { linear, ..ConicProgram::default() };
         for (row, &i) in self.free.iter().enumerate() {
             for (column, &k) in self.free.iter().enumerate().take(row + 1) {
-                program.add_quadratic(column, row, quadratic[(i, k)]);
+                program.quadratic.push((column, row, quadratic[(i, k)]));
             }
         }
         let near = self.near_rows();
@@ -355,15 +351,15 @@ impl<'a, const N: usize> Model<'a, N> {
     fn add_rows(&self, program: &mut ConicProgram, near: &[usize], sigma: usize) {
         for (at, &i) in self.free.iter().enumerate() {
             let (down, up) = (self.sides[i].0 / self.widths[i], self.sides[i].1 / self.widths[i]);
-            program.add_row(LinearForm { terms: vec![(at, 1.0)], constant: -down });
-            program.add_row(LinearForm { terms: vec![(at, -1.0)], constant: up });
+            program.rows.push(LinearForm { terms: vec![(at, 1.0)], constant: -down });
+            program.rows.push(LinearForm { terms: vec![(at, -1.0)], constant: up });
         }
-        program.add_row(LinearForm { terms: vec![(sigma, 1.0)], constant: 0.0 });
+        program.rows.push(LinearForm { terms: vec![(sigma, 1.0)], constant: 0.0 });
         for &i in near {
             let row = &self.rows[i];
             let mut terms = self.terms(&|k| row.gradient[k], 1.0 / self.length);
             terms.push((sigma, 1.0));
-            program.add_row(LinearForm { terms, constant: row.value / self.length });
+            program.rows.push(LinearForm { terms, constant: row.value / self.length });
         }
     }
 
@@ -386,14 +382,14 @@ impl<'a, const N: usize> Model<'a, N> {
                 LinearForm { terms: self.terms(&row, factor), constant }
             };
             match point.across() {
-                None => program.add_cone([ceiling.clone(), component([1.0, 0.0]), component([0.0, 1.0])]),
+                None => program.cones.push([ceiling.clone(), component([1.0, 0.0]), component([0.0, 1.0])]),
                 Some(n) => {
                     for n in [n, [-n[0], -n[1]]] {
                         let across = component(n);
                         let mut form = ceiling.clone();
                         form.terms.extend(across.terms.iter().map(|(at, v)| (*at, -v)));
                         form.constant -= across.constant;
-                        program.add_row(form);
+                        program.rows.push(form);
                     }
                 }
             }

@@ -204,7 +204,7 @@ pub struct LmResult<const N: usize, S> {
 }
 
 /// The longest step of a point's own unknown, in radians: beyond it the tangent is no approximation.
-const MAX_TAU: f64 = 0.6;
+pub(super) const MAX_TAU: f64 = 0.6;
 /// The part of a step at which its geodesic acceleration is measured.
 const AHEAD: f64 = 0.1;
 /// The largest bend (half the acceleration) relative to the step, in the norm of the normal matrix' diagonal; a

@@ -36,7 +36,7 @@ impl<const N: usize> Workspace<N> {
             tau: vec![0.0; points],
             gaps: Vec::with_capacity(points),
             order: Ordered::new(points),
-            rows: Rows::new(),
+            rows: Rows::default(),
         }
     }
 
@@ -138,6 +138,7 @@ const LANES: usize = 8;
 
 /// Rows of a Jacobian with their residuals, in blocks of [`LANES`] rows, column by column within a block; the last
 /// block is padded with zeros.
+#[derive(Default)]
 pub(super) struct Rows<const N: usize> {
     jacobian: Vec<[[f64; LANES]; N]>,
     residual: Vec<[f64; LANES]>,
@@ -145,10 +146,6 @@ pub(super) struct Rows<const N: usize> {
 }
 
 impl<const N: usize> Rows<N> {
-    fn new() -> Self {
-        Rows { jacobian: Vec::new(), residual: Vec::new(), count: 0 }
-    }
-
     fn clear(&mut self) {
         self.jacobian.clear();
         self.residual.clear();

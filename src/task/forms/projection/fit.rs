@@ -264,11 +264,12 @@ impl<'a> ProjectedFit<'a> {
         let (k, i_k) = (at.k, turned(at.k));
         let from_b = form.measured_from_b();
         let nothing = Complex::new(0.0, 0.0);
-        // d(K a)/dln x = slope K a, plus K/p for x = p if the column is e - 1/p.
-        let by_ratio = at.slope.map(|slope| k * slope);
+        // d(K a)/dln x = slope K a, plus K/p for x = p if the column is e - 1/p: the factor of e and a constant.
         let to_b = if from_b { k / p } else { nothing };
-        let ratio_constant =
-            [0, 1, 2].map(|x| if x == 0 { to_b - to_b * at.slope[0] } else { -to_b * at.slope[x] });
+        let by_ratio = |x: usize| {
+            let slope = at.slope[x];
+            [k * slope, if x == 0 { to_b - to_b * slope } else { -to_b * slope }]
+        };
         // d(K a)/dangle: i K e with the crank's turn, i K a with the ground's.
         let (sense, on_e, on_a) = match form.role {
             AngleRole::None => (0.0, 0.0, 0.0),
@@ -278,9 +279,8 @@ impl<'a> ProjectedFit<'a> {
         };
         let angle_by_e = i_k * (on_e + on_a);
         let angle_constant = if from_b { -i_k * (on_a / p) } else { nothing };
-        let ratios: [_; 3] = from_fn(|x| [by_ratio[x], ratio_constant[x]]);
-        let terms = [ratios[0], ratios[1], ratios[2], [angle_by_e, angle_constant]];
-        let terms = terms.map(|pair| pair.map(ComplexLanes::splat));
+        let terms = [by_ratio(0), by_ratio(1), by_ratio(2), [angle_by_e, angle_constant]]
+            .map(|pair| pair.map(ComplexLanes::splat));
         let (p_, q_, r_sq, sense) = (s(p), s(q), s(r * r), s(sense));
         let unknowns = if form.has_angle() { UNKNOWNS } else { UNKNOWNS - 1 };
         let mut mean = [zero; UNKNOWNS];
@@ -321,11 +321,7 @@ impl<'a> ProjectedFit<'a> {
                 KColumn::Known => nothing,
             };
             let centre = if form.centred() { mean[x].sum() } else { nothing };
-            off[x] = [
-                ComplexLanes::splat(centre),
-                ComplexLanes::splat(on_u[x].sum() / at.u_sq),
-                ComplexLanes::splat(along_a),
-            ];
+            off[x] = [centre, on_u[x].sum() / at.u_sq, along_a].map(ComplexLanes::splat);
         }
         let mut matrix = [[s(0.0); UNKNOWNS]; UNKNOWNS];
         let mut gradient = [s(0.0); UNKNOWNS];

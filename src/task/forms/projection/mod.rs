@@ -42,9 +42,8 @@ use super::linear_fit::KnownPivots;
 use crate::mechanism::{Complex, CouplerSide};
 use crate::numbers::arithmetic::complex_lanes::{Column, column};
 use crate::numbers::arithmetic::lane::LANES;
-use crate::task::Problem;
 use crate::task::spec::Limits;
-use crate::task::{AngleOffset, Timing};
+use crate::task::{AngleOffset, Problem, Timing};
 
 /// Number of unknowns: ln p, ln q, ln r and the angle.
 pub const UNKNOWNS: usize = 4;

@@ -15,7 +15,7 @@
 use super::{GroundKnown, Origin, Projection, Reduced, SINGULAR};
 use crate::mechanism::effort::computed;
 use crate::mechanism::{AssemblyMode, Complex};
-use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes};
+use crate::numbers::arithmetic::complex_lanes::{Column, ComplexLanes, larger};
 use crate::numbers::arithmetic::dispatch::vectorised;
 use crate::numbers::arithmetic::lane::{F64x8, LANES, Lane};
 
@@ -70,12 +70,6 @@ struct Sums<L> {
 
 impl<L: Lane> Sums<L> {
     #[inline(always)]
-    fn zero() -> Self {
-        let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
-        Sums { u: zero, phase_u: zero, u_target: zero }
-    }
-
-    #[inline(always)]
     fn add(&mut self, u: ComplexLanes<L>, weight: L, phase: ComplexLanes<L>, target: ComplexLanes<L>) {
         self.u = self.u + u.scale(weight);
         self.phase_u = self.phase_u + phase.dot(u);
@@ -94,12 +88,8 @@ struct Drawn<L> {
 
 impl Projection {
     /// Returns the costs of a batch on both assemblies, t1 = +1 first: infinite if the loop does not close at a point,
-    /// the linear system is singular or the ground comes out reversed. Two evaluations per draw.
-    pub fn screen(&self, batch: &Batch) -> [Vec<f64>; 2] {
-        self.screen_unless(batch, &|| false).unwrap_or_default()
-    }
-
-    /// As [`Projection::screen`]; `None` if `stop` returns true; it is called before every `LANES` draws.
+    /// the linear system is singular or the ground comes out reversed. Two evaluations per draw. `None` if `stop`
+    /// returns true; it is called before every `LANES` draws.
     pub fn screen_unless(&self, batch: &Batch, stop: &dyn Fn() -> bool) -> Option<[Vec<f64>; 2]> {
         let padded = batch.ratio[0].len();
         let mut costs = [vec![0.0; padded], vec![0.0; padded]];
@@ -130,7 +120,7 @@ impl Projection {
         Some(costs)
     }
 
-    /// Returns the cost of [`Projection::screen`] for a single draw, in scalar arithmetic: the same bits.
+    /// Returns the cost of [`Projection::screen_unless`] for a single draw, in scalar arithmetic: the same bits.
     pub fn screen_one(&self, x: &Reduced, assembly: AssemblyMode) -> f64 {
         let ratio = [0, 1, 2].map(|k: usize| x[k].exp());
         let angle = ComplexLanes { re: x[3].cos(), im: x[3].sin() };
@@ -159,7 +149,8 @@ impl Projection {
         let q_sq = q * q;
         let half = s(0.5) * (q_sq - r * r);
         let mut gap = s(f64::INFINITY);
-        let mut sums = [Sums::zero(), Sums::zero()];
+        let zero = ComplexLanes::splat(Complex::new(0.0, 0.0));
+        let mut sums = [Sums { u: zero, phase_u: zero, u_target: zero }; 2];
         let c = &self.columns;
         for j in 0..self.points {
             let phase = Complex::new(c.phase[0][j], c.phase[1][j]);
@@ -240,7 +231,6 @@ impl Projection {
         let s = L::splat;
         let [a, g, b, c] = self.limits;
         let (by_q, by_r) = (p * q.recip(), p * r.recip());
-        let larger = |x: L, y: L| x.at_least(y, x, y);
         let low = larger(larger(s(a.0), p * s(g.0)), larger(by_q * s(b.0), by_r * s(c.0)));
         let high = s(a.1).min(p * s(g.1)).min((by_q * s(b.1)).min(by_r * s(c.1)));
         let inside = larger(length, low).min(high);

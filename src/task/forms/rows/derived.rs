@@ -10,13 +10,12 @@ pub(super) fn rows(at: &At<'_>, bounds: &[DerivedBound], each: &mut dyn FnMut(&R
     for bound in bounds {
         let (low, high) = (bound.limits.0, bound.limits.1);
         let kind = |lower| RowKind::Derived(bound.quantity, lower);
-        let mut row = [0.0; SHAPE];
-        let value = match bound.quantity {
-            Derived::Ground => {
-                row = at.link_rows[0];
-                links[0]
-            }
+        let (value, row) = match bound.quantity {
+            Derived::Ground => (links[0], at.link_rows[0]),
+            Derived::CrankSide => at.crank_side(),
+            Derived::FollowerSide => at.follower_side(),
             Derived::GroundAngle => {
+                let mut row = [0.0; SHAPE];
                 let ground = shape.follower_pivot - shape.crank_pivot;
                 let across = turned(unit(ground));
                 let middle = 0.5 * (low + high);
@@ -30,16 +29,6 @@ pub(super) fn rows(at: &At<'_>, bounds: &[DerivedBound], each: &mut dyn FnMut(&R
                     each(&Row::still(kind(sign < 0.0), half - sign * value, row));
                 }
                 continue;
-            }
-            Derived::CrankSide => {
-                let (value, by) = at.crank_side();
-                row = by;
-                value
-            }
-            Derived::FollowerSide => {
-                let (value, by) = at.follower_side();
-                row = by;
-                value
             }
         };
         let margin = if low == high { 0.0 } else { at.margin() };

@@ -12,15 +12,12 @@
 //! that joint in its place: never tighter, and as tight where two joints lie on that side.
 
 use super::swept::Swept;
-use super::{At, MOST_TURNS, Row, RowKind, Turn};
-use crate::mechanism::Complex;
+use super::{At, MOST_TURNS, Row, RowKind, Side, Turn};
 use crate::task::forms::design_space::SHAPE;
 use crate::task::requirement::RequirementKind;
 
 /// The joints C, D, P, A, B.
 const JOINTS: usize = 5;
-/// The axis and the sign of the directions +x, +y, -x, -y.
-const DIRECTIONS: [(usize, f64); 4] = [(0, 1.0), (1, 1.0), (0, -1.0), (1, -1.0)];
 
 /// The least coordinate of a joint in a direction over the motion, with its derivatives.
 #[derive(Clone, Copy)]
@@ -36,7 +33,7 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
     let Some(reaches) = reaches(at) else {
         // A linkage without any position has no extent: its violation is the target's size.
         let lacking = Row::still(kind, -at.size, [0.0; SHAPE]);
-        (0..1 + DIRECTIONS.len() * (JOINTS - 1)).for_each(|_| each(&lacking));
+        (0..1 + Side::ALL.len() * (JOINTS - 1)).for_each(|_| each(&lacking));
         return;
     };
     let extreme = reaches.map(|joints| {
@@ -72,22 +69,21 @@ fn diagonal(at: &At<'_>, kind: RowKind, most: f64, sides: &[Reach; 4]) -> Row {
 
 /// Returns the least coordinate of every joint in every direction; `None` if the loop closes nowhere.
 fn reaches(at: &At<'_>) -> Option<[[Reach; JOINTS]; 4]> {
-    const _: () = assert!(DIRECTIONS.len() == MOST_TURNS);
+    const _: () = assert!(Side::ALL.len() == MOST_TURNS);
     let swept = Swept::of(at.shape, at.motion)?;
     let nowhere = Reach { value: 0.0, shape: [0.0; SHAPE], turn: Turn::NONE };
     let mut found = [[nowhere; JOINTS]; 4];
-    for (reaches, (axis, sign)) in found.iter_mut().zip(DIRECTIONS) {
-        let coordinate = |p: Complex| sign * if axis == 0 { p.re } else { p.im };
+    for (reaches, side) in found.iter_mut().zip(Side::ALL) {
         for (joint, reach) in reaches.iter_mut().enumerate().take(3) {
-            let extreme = swept.extreme(joint, axis, sign)?;
-            let (shape, by) = extreme.derivative(at.shape, joint, axis, sign);
+            let extreme = swept.extreme(joint, side)?;
+            let (shape, by) = extreme.derivative(at.shape, joint, side);
             let turn = Turn { by, place: extreme.place };
-            *reach = Reach { value: coordinate(extreme.joints[joint]), shape, turn };
+            *reach = Reach { value: side.inwards(extreme.joints[joint]), shape, turn };
         }
         for (first, pivot) in [at.shape.crank_pivot, at.shape.follower_pivot].into_iter().enumerate() {
             let mut shape = [0.0; SHAPE];
-            shape[2 * first + axis] = sign;
-            reaches[3 + first] = Reach { value: coordinate(pivot), shape, turn: Turn::NONE };
+            shape[2 * first + side.axis()] = side.sign();
+            reaches[3 + first] = Reach { value: side.inwards(pivot), shape, turn: Turn::NONE };
         }
     }
     Some(found)

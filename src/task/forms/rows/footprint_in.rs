@@ -10,13 +10,12 @@ pub(super) fn rows(at: &At<'_>, each: &mut dyn FnMut(&Row)) {
     boxes::pivots(at, b, RequirementKind::FootprintIn, each);
     let positions = Swept::of(at.shape, at.motion);
     for joint in 0..3 {
-        for (axis, limit, sign) in [(0, b[0], 1.0), (1, b[1], 1.0), (0, b[2], -1.0), (1, b[3], -1.0)] {
-            let kind = RowKind::of(RequirementKind::FootprintIn, Some(Side::of(axis, sign > 0.0)));
+        for (side, limit) in Side::ALL.into_iter().zip(b) {
+            let kind = RowKind::of(RequirementKind::FootprintIn, Some(side));
             let row = positions.as_ref().and_then(|swept| {
-                let extreme = swept.extreme(joint, axis, sign)?;
-                let (shape, by_crank) = extreme.derivative(at.shape, joint, axis, sign);
-                let coordinate = if axis == 0 { extreme.joints[joint].re } else { extreme.joints[joint].im };
-                let value = sign * (coordinate - limit) - at.margin();
+                let extreme = swept.extreme(joint, side)?;
+                let (shape, by_crank) = extreme.derivative(at.shape, joint, side);
+                let value = side.inwards(extreme.joints[joint]) - side.sign() * limit - at.margin();
                 Some(Row { kind, value, shape, turns: Turn::at(extreme.place, by_crank) })
             });
             // A linkage without any position has no footprint: its violation is the target's size.

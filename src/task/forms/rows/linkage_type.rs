@@ -14,44 +14,43 @@ pub(super) fn rows(at: &At<'_>, aim: Option<LinkageType>, each: &mut dyn FnMut(&
     let combine =
         |factors, constant| at.combined(RowKind::of(RequirementKind::Type, None), factors, constant);
     let margin = TYPE_MARGIN * links.iter().sum::<f64>();
-    let shortest = match aim {
-        Some(LinkageType::DoubleCrank) => 0,
-        Some(LinkageType::CrankRocker) => 1,
-        Some(LinkageType::DoubleRocker) => 2,
-        Some(LinkageType::RockerCrank) => 3,
-        Some(LinkageType::TripleRocker) => {
-            // l + s - p - q >= 0 with the links as they are now, and l <= the others together.
-            let mut order = [0, 1, 2, 3];
-            order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
-            let mut factors = [0.0; 4];
-            for (place, sign) in [(0, 1.0), (1, -1.0), (2, -1.0), (3, 1.0)] {
-                factors[order[place]] = sign;
-            }
+    let Some(aim) = aim else { return };
+    if let Some(shortest) = shortest(aim) {
+        for other in (0..4).filter(|&i| i != shortest) {
+            let mut factors = [1.0; 4];
+            factors[shortest] = -1.0;
+            factors[other] = -1.0;
             each(&combine(factors, -margin));
-            let mut closes = [1.0; 4];
-            closes[order[3]] = -1.0;
-            each(&combine(closes, -margin));
-            return;
         }
-        Some(LinkageType::ChangePoint) => {
-            // The margin is zero: both inequalities, without slack.
-            let mut order = [0, 1, 2, 3];
-            order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
-            let mut factors = [0.0; 4];
-            for (place, sign) in [(0, -1.0), (1, 1.0), (2, 1.0), (3, -1.0)] {
-                factors[order[place]] = sign;
-            }
-            each(&combine(factors, 0.0));
-            each(&combine(factors.map(|f| -f), 0.0));
-            return;
-        }
-        None => return,
+        return;
+    }
+    // The links as they are now, in the order s, p, q, l.
+    let mut order = [0, 1, 2, 3];
+    order.sort_by(|&i, &j| links[i].total_cmp(&links[j]));
+    let ordered = |signs: [f64; 4]| {
+        let mut factors = [0.0; 4];
+        order.into_iter().zip(signs).for_each(|(link, sign)| factors[link] = sign);
+        factors
     };
-    for other in (0..4).filter(|&i| i != shortest) {
-        let mut factors = [1.0; 4];
-        factors[shortest] = -1.0;
-        factors[other] = -1.0;
-        each(&combine(factors, -margin));
+    if aim == LinkageType::TripleRocker {
+        // l + s - p - q >= 0, and l <= the others together.
+        each(&combine(ordered([1.0, -1.0, -1.0, 1.0]), -margin));
+        each(&combine(ordered([1.0, 1.0, 1.0, -1.0]), -margin));
+    } else {
+        // A change point, whose margin is zero: both inequalities, without slack.
+        each(&combine(ordered([-1.0, 1.0, 1.0, -1.0]), 0.0));
+        each(&combine(ordered([1.0, -1.0, -1.0, 1.0]), 0.0));
+    }
+}
+
+/// Returns the index of the link (ground, a, b, c) that is the shortest in a Grashof type; `None` in the others.
+fn shortest(linkage_type: LinkageType) -> Option<usize> {
+    match linkage_type {
+        LinkageType::DoubleCrank => Some(0),
+        LinkageType::CrankRocker => Some(1),
+        LinkageType::DoubleRocker => Some(2),
+        LinkageType::RockerCrank => Some(3),
+        LinkageType::TripleRocker | LinkageType::ChangePoint => None,
     }
 }
 
@@ -61,12 +60,6 @@ pub fn nearest_type(links: [f64; 4], allowed: &[LinkageType]) -> Option<LinkageT
     if allowed.is_empty() || allowed.contains(&own) {
         return Some(own);
     }
-    let shortest = |t: &LinkageType| match t {
-        LinkageType::DoubleCrank => links[0],
-        LinkageType::CrankRocker => links[1],
-        LinkageType::DoubleRocker => links[2],
-        LinkageType::RockerCrank => links[3],
-        LinkageType::TripleRocker | LinkageType::ChangePoint => grashof_margin(links).abs(),
-    };
-    allowed.iter().copied().min_by(|s, t| shortest(s).total_cmp(&shortest(t)))
+    let off = |t: &LinkageType| shortest(*t).map_or_else(|| grashof_margin(links).abs(), |link| links[link]);
+    allowed.iter().copied().min_by(|s, t| off(s).total_cmp(&off(t)))
 }

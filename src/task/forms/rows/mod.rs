@@ -49,14 +49,22 @@ pub enum Side {
 }
 
 impl Side {
-    /// Returns the side of a box at which a coordinate (0: x, 1: y) has its lower or its upper limit.
-    fn of(axis: usize, lower: bool) -> Side {
-        match (axis, lower) {
-            (0, true) => Side::XMin,
-            (0, false) => Side::XMax,
-            (_, true) => Side::YMin,
-            (_, false) => Side::YMax,
-        }
+    /// The sides in the order of their numbers.
+    const ALL: [Side; 4] = [Side::XMin, Side::YMin, Side::XMax, Side::YMax];
+
+    /// Returns the coordinate that the side limits (0: x, 1: y).
+    fn axis(self) -> usize {
+        self.index() % 2
+    }
+
+    /// Returns the sign of that coordinate's axis towards the inside of the box.
+    fn sign(self) -> f64 {
+        if self.index() < 2 { 1.0 } else { -1.0 }
+    }
+
+    /// Returns the component of a vector towards the inside of the box.
+    fn inwards(self, z: Complex) -> f64 {
+        self.sign() * if self.axis() == 0 { z.re } else { z.im }
     }
 
     /// Returns its index in [xmin, ymin, xmax, ymax].

@@ -1,6 +1,6 @@
 //! The joints over a motion with their extremes and derivatives, for the rows of the footprint.
 
-use super::{Motion, Place};
+use super::{Motion, Place, Side};
 use crate::mechanism::four_bar::gradient::{Frame, shape_gradient};
 use crate::mechanism::{AssemblyMode, Complex, FourBar};
 use crate::task::forms::design_space::{SHAPE, Shape, unit};
@@ -67,11 +67,10 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Returns the position at which `sign` times a joint's coordinate (C, D, P; x, y) is least; `None` if the loop closes
-    /// nowhere.
-    pub(super) fn extreme(&self, joint: usize, axis: usize, sign: f64) -> Option<SweptPosition> {
-        let value =
-            |p: &SweptPosition| sign * if axis == 0 { p.joints[joint].re } else { p.joints[joint].im };
+    /// Returns the position at which a joint (C, D, P) comes nearest to a side of a box around all positions; `None` if
+    /// the loop closes nowhere.
+    pub(super) fn extreme(&self, joint: usize, side: Side) -> Option<SweptPosition> {
+        let value = |p: &SweptPosition| side.inwards(p.joints[joint]);
         match self {
             Swept::Points { shape, positions } => positions
                 .iter()
@@ -129,14 +128,8 @@ impl SweptPosition {
         })
     }
 
-    /// Returns the derivative of `sign` times a joint's coordinate by the shape and by the crank angle.
-    pub(super) fn derivative(
-        &self,
-        shape: &Shape,
-        joint: usize,
-        axis: usize,
-        sign: f64,
-    ) -> ([f64; SHAPE], f64) {
+    /// Returns the derivative of a joint's coordinate inwards from a side, by the shape and by the crank angle.
+    pub(super) fn derivative(&self, shape: &Shape, joint: usize, side: Side) -> ([f64; SHAPE], f64) {
         // C is the coupler point at offset 0, D the one at offset b (which grows with b).
         let offset = match joint {
             0 => Complex::new(0.0, 0.0),
@@ -146,8 +139,7 @@ impl SweptPosition {
         let Some(gradient) = shape_gradient(&self.frame, shape.crank, shape.coupler, offset) else {
             return ([0.0; SHAPE], 0.0);
         };
-        let component = |z: Complex| sign * if axis == 0 { z.re } else { z.im };
-        let mut row = gradient.shape.map(component);
+        let mut row = gradient.shape.map(|z| side.inwards(z));
         match joint {
             0 => (row[7], row[8]) = (0.0, 0.0),
             1 => {
@@ -156,6 +148,6 @@ impl SweptPosition {
             }
             _ => {}
         }
-        (row, component(gradient.crank_angle))
+        (row, side.inwards(gradient.crank_angle))
     }
 }
