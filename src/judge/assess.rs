@@ -149,13 +149,11 @@ fn design_rows(problem: &Problem, linkage: &FourBar) -> Vec<Requirement> {
     ];
     let row = |(name, value): (&str, f64)| {
         let Limits(low, high) = design_limits(&problem.spec().design, name)?;
-        // The angle nearest to the middle of its limits.
-        let turns = if name == "design.ground_angle_deg" {
-            ((0.5 * (low + high) - value) / 360.0).round()
-        } else {
-            0.0
+        let value = match name {
+            // The angle nearest to the middle of its limits.
+            "design.ground_angle_deg" => value + 360.0 * ((0.5 * (low + high) - value) / 360.0).round(),
+            _ => value,
         };
-        let value = value + 360.0 * turns;
         Some(Requirement {
             name: name.into(),
             value: Figure::Number(value),
