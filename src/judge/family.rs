@@ -8,7 +8,7 @@
 
 use super::rank::exact_sum_sq;
 use super::warm::start_at;
-use crate::mechanism::turned;
+use crate::mechanism::{Complex, turned};
 use crate::numbers::optimise::levenberg_marquardt::{BlockLeastSquares, PointBlock};
 use crate::record::{Candidate, Family};
 use crate::task::Problem;
@@ -91,12 +91,10 @@ fn gradient(quantity: Derived, shape: &Shape) -> [f64; SHAPE] {
     let mut row = [0.0; SHAPE];
     let ground = shape.follower_pivot - shape.crank_pivot;
     let along = unit(ground);
+    let mut pivots = |by: Complex| row[..4].copy_from_slice(&[-by.re, -by.im, by.re, by.im]);
     match quantity {
-        Derived::Ground => (row[0], row[1], row[2], row[3]) = (-along.re, -along.im, along.re, along.im),
-        Derived::GroundAngle => {
-            let across = turned(along) / ground.norm().max(f64::MIN_POSITIVE);
-            (row[0], row[1], row[2], row[3]) = (-across.re, -across.im, across.re, across.im);
-        }
+        Derived::Ground => pivots(along),
+        Derived::GroundAngle => pivots(turned(along) / ground.norm().max(f64::MIN_POSITIVE)),
         Derived::CrankSide => {
             let side = unit(shape.offset);
             (row[7], row[8]) = (side.re, side.im);

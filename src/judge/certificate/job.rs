@@ -55,10 +55,6 @@ impl Proof {
         Ok(Proof { subject, searches })
     }
 
-    fn lower_bound(&self) -> f64 {
-        self.searches.iter().map(|(_, _, search)| search.lower_bound()).fold(f64::INFINITY, f64::min)
-    }
-
     /// Continues the search until the gap is reached, `cancel` is set or the deadline is over.
     pub fn run(
         &mut self,
@@ -79,7 +75,7 @@ impl Proof {
 
     fn progress(&self) -> Progress {
         let searches = || self.searches.iter().map(|(_, _, search)| search);
-        let lower_bound = self.lower_bound();
+        let lower_bound = searches().map(Search::lower_bound).fold(f64::INFINITY, f64::min);
         Progress {
             boxes: searches().map(Search::boxes).sum(),
             decided: searches().map(Search::decided).sum::<f64>() / self.searches.len() as f64,

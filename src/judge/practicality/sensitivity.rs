@@ -140,10 +140,9 @@ pub fn sensitivity(linkage: &FourBar, positions: &[At], crank: Crank) -> Option<
         if crank == Crank::TurnsWithGround {
             // d(angle of A -> B) = <i ground, dB - dA> / g
             let across = turned(ground) / linkage.ground();
-            row[0] -= by_crank * across.re;
-            row[1] -= by_crank * across.im;
-            row[2] += by_crank * across.re;
-            row[3] += by_crank * across.im;
+            for (k, by) in [-across.re, -across.im, across.re, across.im].into_iter().enumerate() {
+                row[k] += by_crank * by;
+            }
         }
         row[9] = row[2] * ground.re + row[3] * ground.im;
         if matches!(crank, Crank::Stays | Crank::TurnsWithGround) {

@@ -67,9 +67,7 @@ impl LoopRoots {
     /// Returns the position with the given assembly mode, if the loop closes.
     pub fn root(self, assembly: AssemblyMode) -> Option<LoopRoot> {
         match self {
-            LoopRoots::Closed([plus, minus]) => {
-                Some(if assembly == AssemblyMode::Plus { plus } else { minus })
-            }
+            LoopRoots::Closed(roots) => roots.into_iter().find(|root| root.assembly == assembly),
             LoopRoots::Open | LoopRoots::Singular(_) => None,
         }
     }
