@@ -5,7 +5,7 @@ use super::canvas::{Canvas, ROUND_ENDS, Spot, filled, outline, palette, stroke};
 use super::parts::{away, letter, plate, point_mark, stand};
 use super::scene::Bounds;
 use super::sheet::{FULL, Sheet, page};
-use super::text::significant;
+use super::text::{plural, significant};
 use crate::mechanism::analysis::Status;
 use crate::mechanism::analysis::chain::{CYCLE_SAMPLES, ChainAnalysis};
 use crate::mechanism::{Chain, Complex};
@@ -52,7 +52,7 @@ pub fn chain_svg(analysis: &ChainAnalysis, chain: &Chain) -> String {
         None => "it closes at none of the crank angles asked".to_owned(),
     };
     let input = if analysis.input_turns_fully { "the crank turns fully" } else { "the crank rocks" };
-    let mut lines = vec![format!("{} stages after the crank", analysis.stages)];
+    let mut lines = vec![format!("{} after the crank", plural(analysis.stages, "stage"))];
     if let Some(stroke) = analysis.stroke {
         let [w, h] = [0, 1].map(|axis| significant(stroke.high[axis] - stroke.low[axis], 5));
         lines.push(format!("{} moves {w} in x and {h} in y over a turn", analysis.trace));
