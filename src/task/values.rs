@@ -151,7 +151,7 @@ where
 
 /// A point.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
-#[schemars(transparent)]
+#[schemars(inline)]
 pub(crate) struct XY(#[schemars(with = "[Number; 2]")] pub [f64; 2]);
 
 impl<'de> Deserialize<'de> for XY {
@@ -162,7 +162,7 @@ impl<'de> Deserialize<'de> for XY {
 
 /// A rectangle, given by four numbers.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
-#[schemars(transparent)]
+#[schemars(inline)]
 pub(crate) struct Corners(#[schemars(with = "[Number; 4]")] pub [f64; 4]);
 
 impl<'de> Deserialize<'de> for Corners {
@@ -174,7 +174,7 @@ impl<'de> Deserialize<'de> for Corners {
 
 /// A point, each coordinate fixed or bounded.
 #[derive(Clone, Copy, Debug, PartialEq, JsonSchema)]
-#[schemars(transparent)]
+#[schemars(inline)]
 pub(crate) struct BoundedXY(#[schemars(with = "[Bounds; 2]")] pub [Limits; 2]);
 
 impl<'de> Deserialize<'de> for BoundedXY {
@@ -266,8 +266,7 @@ impl JsonSchema for OneOrEach {
 }
 
 /// A table and nothing else: serde's own structs would accept a list as their fields in order.
-#[derive(Clone, Debug, Default, PartialEq, JsonSchema)]
-#[schemars(transparent)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct OnlyTable<T>(pub T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for OnlyTable<T> {
@@ -283,6 +282,21 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OnlyTable<T> {
             }
         }
         deserializer.deserialize_any(TableVisitor(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for OnlyTable<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        T::schema_name()
+    }
+    fn schema_id() -> std::borrow::Cow<'static, str> {
+        T::schema_id()
+    }
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        T::json_schema(generator)
     }
 }
 

@@ -14,7 +14,7 @@ use toml::Spanned;
 
 /// Two names of points.
 #[derive(JsonSchema)]
-#[schemars(transparent)]
+#[schemars(inline)]
 struct Names([String; 2]);
 
 impl<'de> Deserialize<'de> for Names {
@@ -25,7 +25,7 @@ impl<'de> Deserialize<'de> for Names {
 
 /// Two lengths.
 #[derive(JsonSchema)]
-#[schemars(transparent)]
+#[schemars(inline)]
 struct Lengths([f64; 2]);
 
 impl<'de> Deserialize<'de> for Lengths {
