@@ -53,7 +53,7 @@ fn the_documents_have_the_numbers_of_the_program() {
         ("docs/guide.md", poor),
         (
             "docs/problem-file.md",
-            format!("How many evaluations of the objective at most; {evaluations} where silent."),
+            format!("The largest number of evaluations of the objective; {evaluations} where silent."),
         ),
         ("docs/certificate.md", "used on boxes with f >= 1e-4 only".to_owned()),
     ] {
