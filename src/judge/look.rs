@@ -1,7 +1,7 @@
 //! Difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included,
 //! and by their coupler curves.
 
-use crate::mechanism::{Complex, CouplerCurve, from_segment};
+use crate::mechanism::{Complex, CouplerCurve, nearest_share};
 use crate::record::Candidate;
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -112,8 +112,12 @@ fn span(joints: &Joints) -> f64 {
 
 /// Returns whether a curve lies within `reach` of a closed polygon.
 fn lies_on(curve: &[Complex], polygon: &[Complex], reach: f64) -> bool {
-    let side = |i: usize| [polygon[i], polygon[(i + 1) % polygon.len()]];
-    let near =
-        |p: &Complex| (0..polygon.len()).any(|i| from_segment(*p, side(i)).norm_sqr() <= reach * reach);
+    let near = |p: &Complex| {
+        (0..polygon.len()).any(|i| {
+            let (from, to) = (polygon[i], polygon[(i + 1) % polygon.len()]);
+            let share = nearest_share(*p, [from, to]);
+            (p - from - (to - from) * share).norm_sqr() <= reach * reach
+        })
+    };
     curve.iter().step_by(PROBE_EVERY).all(near)
 }

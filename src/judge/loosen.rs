@@ -366,6 +366,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_table_of_design_keys_is_in_the_order_of_their_declaration() {
+        for (i, (key, ..)) in DESIGN_KEYS.iter().enumerate() {
+            assert_eq!(*key as usize, i, "{key:?}");
+        }
+    }
+
+    #[test]
     fn rounding_goes_outward_and_never_past_twice_the_change() {
         for i in 1..2000 {
             let value = 0.37 * f64::from(i) - 300.0;

@@ -230,13 +230,12 @@ impl UsedMotion {
     pub fn transmission(&self) -> TransmissionExtremes {
         let [low, high] = self.range;
         let linkage = &self.on.linkage;
-        if self.on.arc.is_none() {
-            return linkage.transmission_over(low, high);
-        }
-        let extreme = [0.0, FRAC_PI_2, PI, -FRAC_PI_2].into_iter();
-        let inside = extreme.map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
+        let ground = linkage.ground_angle();
+        let extreme: &[f64] =
+            if self.on.arc.is_some() { &[0.0, FRAC_PI_2, PI, -FRAC_PI_2] } else { &[ground, ground + PI] };
+        let inside = extreme.iter().map(|t| low + (t - low).rem_euclid(TAU)).filter(|t| *t <= high);
         let all = [low, high].into_iter().chain(inside);
-        linkage.transmission_among(all.map(|t| self.on.position_at(t).0))
+        linkage.transmission_at(all.map(|t| linkage.diagonal(self.on.position_at(t).0)))
     }
 
     /// Returns [xmin, ymin, xmax, ymax] of A, B, C, D and P over the motion: dense samples, each extreme refined by

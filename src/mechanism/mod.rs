@@ -19,7 +19,7 @@ pub mod plates;
 mod unit;
 
 pub use crate::numbers::arithmetic::{
-    Complex, bounding_box, cross, dot, from_segment, least_and_greatest, length, point, turned, xy,
+    Complex, bounding_box, cross, dot, least_and_greatest, length, nearest_share, point, turned, xy,
 };
 pub use any::Linkage;
 pub use chain::{Chain, ChainBuilder};

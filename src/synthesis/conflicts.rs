@@ -74,7 +74,7 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
     if met.is_empty() && !context.stopped() {
         return Ok(explained);
     }
-    // The answers of another method have to be those of the method that was asked for.
+    // Where the problem asks for a method, only answers of that method are listed.
     if !met.is_empty() && problem.spec().solve.method == Method::Auto {
         let mut found = std::mem::take(&mut outcome.candidates);
         found.append(&mut outcome.others);

@@ -321,7 +321,7 @@ impl Jobs {
     fn run(&self, job: &Job, options: Options, one: &OneJob) -> Result<(), Failure> {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| stand_back());
-        let pool = pool.build()?;
+        let pool = pool.build().map_err(|e| format!("no threads to search with: {e}"))?;
         let listener = Listener {
             observer: &|progress| one.note(progress),
             proving: &|progress| {

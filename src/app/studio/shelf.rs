@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::SystemTime;
 
-/// The largest file that is read whole, bytes.
+/// The largest file of a result that is handed out, and the largest problem of a job, bytes.
 const MOST_BYTES: u64 = 64 << 20;
 
 /// A folder of results.

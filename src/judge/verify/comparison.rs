@@ -99,7 +99,9 @@ impl<'a> Comparison<'a> {
         let said = |name: &str| not_met.iter().any(|not_met| not_met == name);
         let (found_not_met, found_accepted) = verdict::verdict(self.problem, found, &said);
         self.same("accepted", accepted, found_accepted);
-        self.same("not_met", not_met.join(", "), found_not_met.join(", "));
+        if not_met != found_not_met {
+            self.differ("not_met", not_met.join(", "), found_not_met.join(", "));
+        }
     }
 
     /// Judges a recorded linkage anew; `None`, with a mismatch, if the counts are not those of the points or the linkage

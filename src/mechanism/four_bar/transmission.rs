@@ -121,14 +121,17 @@ impl FourBar {
     /// turns): they lie at the ends or where the crank lies along the ground.
     pub fn transmission_over(&self, from: f64, to: f64) -> TransmissionExtremes {
         let [low, high] = [from.min(to), from.max(to)];
-        let along = [self.ground_angle(), self.ground_angle() + PI];
-        let inside = along.map(|angle| low + (angle - low).rem_euclid(TAU)).into_iter();
-        self.transmission_among([low, high].into_iter().chain(inside.filter(|angle| *angle <= high)))
+        let along = [0.0, PI].map(|theta| self.ground_angle() + theta);
+        let extreme = [(self.ground() - self.crank()).abs(), self.ground() + self.crank()];
+        let is_passed = |angle: f64| low + (angle - low).rem_euclid(TAU) <= high;
+        let passed = along.into_iter().zip(extreme).filter(|(angle, _)| is_passed(*angle));
+        let ends = [low, high].map(|angle| self.diagonal(angle));
+        self.transmission_at(ends.into_iter().chain(passed.map(|(_, diagonal)| diagonal)))
     }
 
-    /// Computes the extremes among some crank angles, radians.
-    pub(crate) fn transmission_among(&self, crank_angles: impl Iterator<Item = f64>) -> TransmissionExtremes {
-        let [least, greatest] = least_and_greatest(crank_angles.map(|angle| self.diagonal(angle)));
+    /// Computes the extremes among some diagonals |CB|.
+    pub(crate) fn transmission_at(&self, diagonals: impl Iterator<Item = f64>) -> TransmissionExtremes {
+        let [least, greatest] = least_and_greatest(diagonals);
         let (b, c) = (self.coupler(), self.follower());
         TransmissionExtremes { min: angle_opposite(least, b, c), max: angle_opposite(greatest, b, c) }
     }

@@ -4,7 +4,7 @@
 //! parallel to those of the two polygons: if the origin lies inside, the nearest side decides; outside, the nearest
 //! pair of sides.
 
-use crate::mechanism::{Complex, cross, dot, from_segment, turned};
+use crate::mechanism::{Complex, cross, dot, nearest_share, turned};
 
 /// Computes the distance between two convex polygons (corners counter-clockwise, one or two for a point or a line), or
 /// minus the least shift that separates them if they overlap.
@@ -61,5 +61,8 @@ fn between_segments(a: Complex, b: Complex, c: Complex, d: Complex) -> f64 {
         return 0.0;
     }
     let ends = [(a, [c, d]), (b, [c, d]), (c, [a, b]), (d, [a, b])];
-    ends.into_iter().map(|(end, other)| from_segment(end, other).norm()).fold(f64::INFINITY, f64::min)
+    let distance = |(z, [from, to]): (Complex, [Complex; 2])| {
+        (from + (to - from) * nearest_share(z, [from, to]) - z).norm()
+    };
+    ends.into_iter().map(distance).fold(f64::INFINITY, f64::min)
 }

@@ -57,12 +57,13 @@ pub fn turned(z: Complex) -> Complex {
     Complex::new(-z.im, z.re)
 }
 
-/// Returns the vector to a point from the nearest point of a segment.
-pub fn from_segment(z: Complex, [from, to]: [Complex; 2]) -> Complex {
-    let (along, v) = (to - from, z - from);
+/// Returns the share s in [0, 1] for which from + s (to - from) is the point of a segment that is nearest to z; 0 if the
+/// segment is a point.
+#[inline]
+pub fn nearest_share(z: Complex, [from, to]: [Complex; 2]) -> f64 {
+    let along = to - from;
     let length_sq = along.norm_sqr();
-    let share = if length_sq > 0.0 { (dot(v, along) / length_sq).clamp(0.0, 1.0) } else { 0.0 };
-    v - along * share
+    if length_sq > 0.0 { (dot(z - from, along) / length_sq).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// Returns the least and the greatest of the values; [inf, -inf] if there are none.

@@ -72,10 +72,15 @@ impl StartSet {
     /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
     pub fn embedded() -> &'static StartSet {
         static SET: OnceLock<StartSet> = OnceLock::new();
-        SET.get_or_init(|| match StartSet::parse(EMBEDDED) {
+        SET.get_or_init(|| StartSet::built_in(EMBEDDED))
+    }
+
+    /// Reads the set within the program.
+    fn built_in(bytes: &[u8]) -> StartSet {
+        match StartSet::parse(bytes) {
             Ok(set) => set,
             Err(why) => panic!("the nine-point start set within the program is damaged: {why}"),
-        })
+        }
     }
 
     /// Reads the bytes of a start set and corrects its solutions by Newton's method.
@@ -152,4 +157,17 @@ fn with_rotations(pivots: Solution, at: &Displacements) -> Solution {
         }
     }
     answer
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_damaged_set_within_the_program_is_our_own_bug_and_never_an_empty_list() {
+        for damaged in [&EMBEDDED[..EMBEDDED.len() - 1], &EMBEDDED[1..], &[][..]] {
+            let made = std::panic::catch_unwind(|| StartSet::built_in(damaged));
+            assert!(made.is_err(), "{} bytes", damaged.len());
+        }
+    }
 }

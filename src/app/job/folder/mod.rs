@@ -401,14 +401,18 @@ fn read_record_file(file: &Path) -> Result<Record, FolderError> {
     }
 }
 
-/// Reads a file of at most `most` bytes; `None` if it has more. A pipe or a device states no length, so bytes are counted
-/// while they are read.
+/// Reads a file of at most `most` bytes; `None` if it has more. A file that states too many is not read; a pipe or a device
+/// states no length, so bytes are counted while they are read.
 ///
 /// # Errors
 /// The error of the system.
 pub fn read_at_most(file: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
+    let file = File::open(file)?;
+    if file.metadata()?.len() > most {
+        return Ok(None);
+    }
     let mut bytes = Vec::new();
-    File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
+    file.take(most + 1).read_to_end(&mut bytes)?;
     Ok(Some(bytes).filter(|bytes| bytes.len() as u64 <= most))
 }
 
