@@ -23,6 +23,7 @@ use super::coarse::points_of;
 use super::starts::{Starts, draw_ratios};
 use crate::mechanism::four_bar::mobility::{Mobility, linkage_type};
 use crate::mechanism::{Circuit, Complex, InputArc, LinkageType};
+use crate::numbers::arithmetic::once::once;
 use crate::numbers::arithmetic::streams::{Stream, below, stream, uniform};
 use crate::task::forms::linear_fit::{Ratios, coupler_direction};
 use crate::task::forms::start::Start;
@@ -272,13 +273,14 @@ fn draw(stream: &mut Stream) -> Option<Entry> {
 
 fn atlas() -> &'static [Entry] {
     static ATLAS: OnceLock<Vec<Entry>> = OnceLock::new();
-    ATLAS.get_or_init(|| {
+    once(&ATLAS, || {
         let chunk = |index: usize| -> Vec<Entry> {
             let mut draws = stream(SEED, index as u64);
             (0..CHUNK).filter_map(|_| draw(&mut draws)).collect()
         };
         (0..ENTRIES / CHUNK).into_par_iter().flat_map_iter(chunk).collect()
     })
+    .as_slice()
 }
 
 /// An arc of an entry's curve.
@@ -334,7 +336,7 @@ impl Arc {
 
 fn arcs() -> &'static [Arc] {
     static ARC_ATLAS: OnceLock<Vec<Arc>> = OnceLock::new();
-    ARC_ATLAS.get_or_init(|| {
+    once(&ARC_ATLAS, || {
         let of_chunk = |(chunk, entries): (usize, &[Entry])| -> Vec<Arc> {
             let mut draws = stream(SEED + 1, chunk as u64);
             let mut out = Vec::with_capacity(ARCS * entries.len());
@@ -348,6 +350,7 @@ fn arcs() -> &'static [Arc] {
         };
         atlas().par_chunks(CHUNK).enumerate().flat_map_iter(of_chunk).collect()
     })
+    .as_slice()
 }
 
 /// An entry fitted to a target by similarity.

@@ -7,6 +7,7 @@
 //! | [`dispatch`] | run-time choice of vector instructions: the one file of this crate that may use `unsafe` |
 //! | [`double_double`] | real and complex numbers as unevaluated sums of two doubles, about 32 digits |
 //! | [`lane`] | SIMD lanes: the arithmetic of the position solver, written once for one `f64` and for eight of them side by side |
+//! | [`mod@once`] | values that are made once, in parallel, and used by all threads |
 //! | [`mod@operators`] | operators of number types, written as functions of their operands |
 //! | [`streams`] | streams of pseudo-random numbers, each determined by a seed and an index, and the draws made from them |
 
@@ -14,6 +15,7 @@ pub mod complex_lanes;
 pub mod dispatch;
 pub mod double_double;
 pub mod lane;
+pub mod once;
 mod operators;
 pub mod streams;
 

@@ -19,6 +19,7 @@ use super::target::{Displacements, STEPS, Solution};
 use super::tracker::Segment;
 use linkwright_arithmetic::Complex;
 use linkwright_arithmetic::complex_lanes::ORDER;
+use linkwright_arithmetic::once::once;
 use std::sync::OnceLock;
 use thiserror::Error;
 
@@ -72,7 +73,7 @@ impl StartSet {
     /// When the bytes within the program are damaged: an empty set would pass for "no linkage goes through the points".
     pub fn embedded() -> &'static StartSet {
         static SET: OnceLock<StartSet> = OnceLock::new();
-        SET.get_or_init(|| StartSet::built_in(EMBEDDED))
+        once(&SET, || StartSet::built_in(EMBEDDED))
     }
 
     /// Reads the set within the program.
