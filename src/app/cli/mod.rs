@@ -6,7 +6,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`analyze`] | `analyze` and `cognates`: motion of a given linkage, and the other linkages of its curve |
-//! | [`arguments`] | commands and options, with their help texts and the checks of their values |
+//! | [`mod@arguments`] | commands and options, with their help texts and the checks of their values |
 //! | [`build`] | `build`: layers, distances and sensitivities of a linkage that is to be built |
 //! | [`certify`] | `certify`: lower bounds of the error, by branch and bound |
 //! | [`check`] | `check`: reads files and reports their faults without running anything |

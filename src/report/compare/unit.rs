@@ -41,7 +41,7 @@ impl Entry {
 /// The requirements and the costs of a candidate keep the values of its own problem.
 ///
 /// # Errors
-/// As [`FourBar::new`], if a length leaves the allowed range.
+/// As [`FourBar::new`](crate::mechanism::FourBar::new), if a length leaves the allowed range.
 pub fn in_one_unit(entries: &[Entry], unit: Option<Unit>) -> Result<Vec<Entry>, LinkageError> {
     let Some(unit) = unit else { return Ok(entries.to_vec()) };
     entries.iter().map(|entry| Ok(Entry { unit: Some(unit), ..entry.converted(unit)? })).collect()
