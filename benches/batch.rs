@@ -95,7 +95,7 @@ fn checkpoints(place: &Path, problem: &str, method: &str) {
     ];
     let set = set.map(|(key, value)| (key.to_owned(), value.to_owned()));
     let file = problem_file::load(&file, &set).expect("it is a problem");
-    let job = Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec };
+    let job = Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec, front: None };
     let writer = Writer::new(&job).expect("it has a digest");
     let spent = Mutex::new((0_usize, Duration::ZERO, 0));
     let sink = |state: &SearchState| {

@@ -230,7 +230,7 @@ fn row(class: &Class, noise: f64, with: &Arguments) {
         let yard = (noise > 0.0)
             .then(|| yardstick(&Problem::new(spec.clone()).expect("the targets are paths"), &traced));
         weak += u64::from(yard.is_some_and(|(_, weak)| weak));
-        let job = Job { name: class.name.into(), source: None, unit: None, spec };
+        let job = Job { name: class.name.into(), source: None, unit: None, spec, front: None };
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         let finished = run(&job, &context).expect("it runs");
         times.push(finished.search_s * 1e3);

@@ -57,7 +57,7 @@ fn by_points() {
             listed.join(", ")
         );
         let file = problem_file::parse("scaling.toml", &text, None, &[]).unwrap_or_else(|e| panic!("{e}"));
-        let job = Job { name: file.name, source: None, unit: None, spec: file.spec };
+        let job = Job { name: file.name, source: None, unit: None, spec: file.spec, front: None };
         let (record, search_s) = timed(1, &job);
         let used = record.evaluations.objective.max(1) as f64;
         let each = search_s / used;
@@ -78,7 +78,7 @@ fn by_threads() {
         let set = [("solve.candidates".to_string(), "1".to_string())];
         let mut file = problem_file::load(&path, &set).unwrap_or_else(|e| panic!("{e}"));
         file.spec.solve.evaluations = HARD;
-        let job = Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec };
+        let job = Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec, front: None };
         let [(one, one_s), (two, two_s)] = [timed(1, &job), timed(2, &job)];
         assert!(one == two, "{name}: one and two threads differ");
         let used = one.evaluations.objective;

@@ -5,6 +5,7 @@ use crate::files::diagnostic::escaped;
 use crate::files::linkage_file::LinkageFile;
 use crate::files::problem_file::ProblemFile;
 use crate::judge::assess::assess;
+use crate::judge::figures::extent;
 use crate::judge::verify::verify_candidate;
 use crate::mechanism::Unit;
 use crate::mechanism::{AssemblyMode, FourBar, LinkageError};
@@ -93,6 +94,7 @@ impl Target {
         let path = &self.problem.spec().task.path;
         Entry {
             label,
+            extent: Some(extent(&self.problem, &candidate)),
             candidate,
             target_name: self.name.clone(),
             target: path.points.clone(),

@@ -1,9 +1,8 @@
-//! Inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a
+//! Inputs of the export, comparison and report commands: a result of a run, one linkage of it, or a linkage without a
 //! run.
 
-use crate::app::job::folder::BUILDABLE;
 use crate::files::linkage_file::LinkageFile;
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, Pick, Record};
 
 /// An input of the export, comparison and report commands.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,8 +31,25 @@ pub enum Which {
     All,
     /// The candidate of this rank, as in `:2`. It exists.
     Rank(usize),
-    /// The buildable candidate, `:buildable`, which a run offers if its first candidate has warnings. It exists.
-    Buildable,
+    /// The member of the front of this number, as in `:front-2`. It exists.
+    Member(usize),
+    /// A linkage that a run offers beside its candidates, as in `:buildable` or `:smallest`. It exists.
+    Pick(Pick),
+}
+
+/// The beginning of the name of a member of the front: `front-2`.
+pub const MEMBER: &str = "front-";
+
+impl Which {
+    /// Returns the choice of a name as it is typed after a colon: `2`, `front-2`, `smallest`; `None` if it is none.
+    pub fn named(name: &str) -> Option<Which> {
+        let number = |text: &str| text.parse().ok().filter(|n: &usize| *n > 0);
+        if let Some(rank) = number(name) {
+            return Some(Which::Rank(rank));
+        }
+        let member = name.strip_prefix(MEMBER).and_then(number).map(Which::Member);
+        member.or_else(|| Pick::named(name).map(Which::Pick))
+    }
 }
 
 /// The error that a result has no candidate.
@@ -46,7 +62,7 @@ pub struct NoCandidate(pub String);
 pub struct Chosen<'a> {
     /// Its label: `results/k18:2`.
     pub label: String,
-    /// Its part in the names of its files: `2` or `buildable`.
+    /// Its part in the names of its files: `2`, `front-2` or `buildable`.
     pub suffix: String,
     /// The candidate, as the record has it.
     pub candidate: &'a Candidate,
@@ -64,8 +80,12 @@ impl Run {
         match self.which {
             Which::All => ranked.map(|(suffix, c)| chosen(suffix, c)).collect(),
             Which::Rank(rank) => ranked.skip(rank - 1).take(1).map(|(suffix, c)| chosen(suffix, c)).collect(),
-            Which::Buildable => {
-                self.record.buildable.iter().map(|c| chosen(BUILDABLE.to_owned(), c)).collect()
+            Which::Member(number) => {
+                let member = self.record.front.iter().flat_map(|front| &front.members).nth(number - 1);
+                member.map(|m| chosen(format!("{MEMBER}{number}"), &m.candidate)).into_iter().collect()
+            }
+            Which::Pick(pick) => {
+                self.record.pick(pick).map(|c| chosen(pick.name().to_owned(), c)).into_iter().collect()
             }
         }
     }

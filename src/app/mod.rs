@@ -4,7 +4,7 @@
 //! |---|---|
 //! | [`cli`] | the command line: arguments, commands, exit codes |
 //! | [`comparison`] | measuring the inputs of a comparison: every figure is computed again, and none is taken from a record unchecked |
-//! | [`inputs`] | inputs of the export, comparison and report commands: a result of a run, one candidate of it, or a linkage without a run |
+//! | [`inputs`] | inputs of the export, comparison and report commands: a result of a run, one linkage of it, or a linkage without a run |
 //! | [`job`] | jobs: one run from a problem to its record, the result's folder and files, checkpoints |
 //! | [`studio`] | a local page that answers while a target is drawn |
 //! | [`suite`] | the suite: benchmark problems whose answer is known, each run from many seeds, and compared with the population searches at equal evaluations and with published answers |

@@ -99,6 +99,7 @@ seed = 1                        # the same seed gives the same answers; another 
 # evaluations = 200000          # how long to search
 # time_limit_s = 60             # seconds at most; a run that it ends cannot be repeated to the digit
 # advice = false                # the answers alone: not what conflicts, what to build or what limits cost
+# picks_within = 1.5            # the smallest and the best transmitting linkage have at most this many times the least error
 # certify = true                # with crank angles: prove afterwards how little better any linkage could be
 # [certify]
 # gap = 1e-4                    # until that part of the best sum is left open

@@ -31,6 +31,15 @@ pub fn assess(
     assess_on_curve(problem, linkage, crank_deg, assemblies, None)
 }
 
+/// Computes the distances of a candidate to its whole curve anew. Those of the candidates that a search does not list are
+/// carried over from the frame in which it searched, and differ in the last digits.
+pub fn measure_curve(problem: &Problem, candidate: &mut Candidate) {
+    let anew = assess(problem, &candidate.linkage, &candidate.crank_deg, &candidate.t1_at);
+    if let Some(anew) = anew {
+        candidate.error.to_curve = anew.error.to_curve;
+    }
+}
+
 /// As [`assess`], for a linkage whose distances to its whole curve are known: a cognate has those of the linkage that
 /// it is a cognate of. They are most of the cost.
 ///

@@ -290,8 +290,8 @@ pub fn design_limits(design: &DesignSpec, row: &str) -> Option<Limits> {
 /// Returns the changes to type that lead from a problem to one in which `demands` have been loosened.
 ///
 /// A key that is typed is no longer filled in by a default, which may remove the default of another key:
-/// [`DesignSpec::resolve`] gives no ground if both pivots are given, and no B if the ground is. Such keys are typed as
-/// well, with the values that they have.
+/// [`DesignSpec::resolve`] gives no ground if both pivots are given, and no B if the ground is; a bounded length leaves
+/// `longest_max` without a default. Such keys are typed as well, with the values that they have.
 pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) -> Option<Vec<Change>> {
     let spec = problem.spec();
     let change = |demand: Demand| {
@@ -328,7 +328,22 @@ pub fn changes(problem: &Problem, loosened: &ProblemSpec, demands: &[Demand]) ->
             pin(FollowerPivot);
         }
     }
+    let longest = Demand::Require(RequirementKind::LongestMax);
+    if spec.has_default_longest()
+        && !keys.contains(&longest)
+        && keys.iter().any(|key| removes_default_longest(*key))
+    {
+        keys.push(longest);
+    }
     keys.into_iter().map(change).collect()
+}
+
+/// Returns whether `longest_max` may have no default any more where this key is typed.
+fn removes_default_longest(demand: Demand) -> bool {
+    match demand {
+        Demand::Require(kind) => kind == RequirementKind::ExtentMax,
+        Demand::Design(key) => key != DesignKey::GroundAngle,
+    }
 }
 
 /// Rounds a limit outward to three significant digits of itself or of its change, whichever is coarser; finer if that
@@ -370,6 +385,30 @@ mod tests {
         for (i, (key, ..)) in DESIGN_KEYS.iter().enumerate() {
             assert_eq!(*key as usize, i, "{key:?}");
         }
+    }
+
+    #[test]
+    fn a_key_that_would_remove_the_default_of_the_longest_link_is_typed_with_it() {
+        let text = |require: &str| {
+            format!("format = 1\n[task.path]\npoints = [[0, 0], [3, 4], [3, 1]]\n[require]\n{require}\n")
+        };
+        let keys = |require: &str, demand: Demand| -> Vec<String> {
+            let file = crate::parse_problem("it.toml", &text(require), None, &[]).expect("a problem");
+            let problem = Problem::new(file.spec.clone()).expect("a problem");
+            let wider = demand.dropped(&problem, file.spec);
+            let changes = changes(&problem, &wider, &[demand]).expect("they can be typed");
+            // What is typed is read as the problem that was meant.
+            let set: Vec<_> = changes.iter().map(|c| (c.key.clone(), c.to.to_string())).collect();
+            let again = crate::parse_problem("it.toml", &text(require), None, &set).expect("a problem");
+            assert_eq!(again.spec, wider);
+            changes.into_iter().map(|change| change.key).collect()
+        };
+        let crank = Demand::Design(DesignKey::Crank);
+        assert_eq!(keys("", crank), ["design.a", "require.longest_max"]);
+        assert_eq!(keys("longest_max = \"any\"", crank), ["design.a"]);
+        assert_eq!(keys("longest_max = 9", crank), ["design.a"]);
+        let ratio = Demand::Require(RequirementKind::LinkRatio);
+        assert_eq!(keys("", ratio), ["require.link_ratio_max"]);
     }
 
     #[test]

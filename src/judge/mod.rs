@@ -10,6 +10,7 @@
 //! | [`error`] | structural errors: at the positions of the points, and to the whole coupler curve |
 //! | [`exact_linkages`] | real solutions of the continuation as candidates: of each class the best of its six mechanisms, judged as every candidate is |
 //! | [`family`] | local dimension of the set of exact answers: detects whether an exact answer belongs to a family |
+//! | [`figures`] | figures by which linkages are compared in a front, computed from a judged candidate alone |
 //! | [`look`] | difference of two candidates, to tell distinct answers apart: by their joints at the first point, cognates included, and by their coupler curves |
 //! | [`loosen`] | relaxation of a problem: each requirement as limits with an outward side |
 //! | [`mechanisms`] | the mechanisms of a real solution: the six ways to build one class, each with its motion through the points |
@@ -18,6 +19,7 @@
 //! | [`referee`] | the referee: judges order, circuit and branch of a motion through target points |
 //! | [`requirement`] | the judge's own arithmetic for each requirement: value, limit and whether it is met |
 //! | [`symmetry`] | symmetries of a target, and the images of a linkage under them |
+//! | [`trade_off`] | trade-offs between figures: dominance, the choice of the members of a front by hypervolume, and its knees |
 //! | [`unwrapped`] | crank angles unwrapped along the motion through the points |
 //! | [`verify`] | verification of a record: every figure and verdict is recomputed from its problem and its linkages |
 //! | [`warm`] | warm starts: a candidate as the start of another fit, of the same problem or of one whose limits have moved |
@@ -31,6 +33,7 @@ pub mod costs;
 pub mod error;
 pub mod exact_linkages;
 pub mod family;
+pub mod figures;
 mod look;
 pub mod loosen;
 pub mod mechanisms;
@@ -39,6 +42,7 @@ pub mod rank;
 pub mod referee;
 mod requirement;
 pub mod symmetry;
+pub mod trade_off;
 pub mod unwrapped;
 pub mod verify;
 pub mod warm;

@@ -33,9 +33,15 @@ pub const SAME_CURVE: f64 = 1e-2;
 const APART: [f64; 4] = [0.5, 0.25, 0.12, NEAR];
 pub use crate::record::EXACT_MEAN_SQ as EXACT;
 
+/// Returns the mean square, in squares of the target's size, below which a fit is exact: at least that of points that lie
+/// as far from where they were as a grid allows.
+fn exact_mean_sq(problem: &Problem) -> f64 {
+    EXACT.max(0.5 * problem.grid().powi(2))
+}
+
 /// Returns the sum of squares below which a fit is exact.
 pub fn exact_sum_sq(problem: &Problem) -> f64 {
-    EXACT * problem.task().len() as f64 * problem.task().size().powi(2)
+    exact_mean_sq(problem) * problem.task().len() as f64 * problem.task().size().powi(2)
 }
 
 /// Returns whether an accepted candidate of a list is exact: the target is reached.
@@ -46,7 +52,7 @@ pub fn holds_an_exact(problem: &Problem, candidates: &[Candidate]) -> bool {
 
 /// Returns the weighted sum of squares below which a fit is exact.
 pub fn exact_cost(problem: &Problem) -> f64 {
-    EXACT * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
+    exact_mean_sq(problem) * problem.task().weights().iter().sum::<f64>() * problem.task().size().powi(2)
 }
 
 /// Returns the objective below which a fit is exact: a weighted sum of squares; or a largest deviation, which is a
@@ -57,7 +63,7 @@ pub fn exact_objective(problem: &Problem) -> f64 {
         Objective::MaxDeviation => {
             let least =
                 problem.task().tolerances().map_or(1.0, |t| t.iter().copied().fold(f64::INFINITY, f64::min));
-            EXACT.sqrt() * problem.task().size() / least
+            exact_mean_sq(problem).sqrt() * problem.task().size() / least
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file.
 
-use super::{Candidate, Record};
+use super::{Candidate, MOST_MEMBERS, Picks, Record};
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::task::spec::{MAX_CANDIDATES, MAX_POINTS, MAX_SMOOTHED};
 
@@ -43,6 +43,7 @@ impl Record {
             ("candidates", self.candidates.len(), MAX_CANDIDATES),
             ("relaxations", self.relaxations.len(), MAX_LIST),
             ("certificate.parts", self.certificate.as_ref().map_or(0, |c| c.parts.len()), MAX_FORMS),
+            ("front.members", self.front.as_ref().map_or(0, |front| front.members.len()), MOST_MEMBERS),
             ("exact.linkages", exact.map_or(0, |exact| exact.linkages.len()), MAX_LIST),
         ];
         let long = counts.into_iter().find(|(_, found, limit)| found > limit);
@@ -58,7 +59,10 @@ impl Record {
             let key = || format!("exact.linkages {}: others", i + 1);
             (listed.others.len() > MAX_FORMS).then(|| too_many(key(), listed.others.len(), MAX_FORMS))
         });
-        forms.or_else(|| self.candidates.iter().chain(&self.buildable).find_map(of_candidate))
+        let picks = self.picks.iter().flat_map(Picks::named).map(|(_, pick)| pick);
+        let members = self.front.iter().flat_map(|front| &front.members).map(|member| &member.candidate);
+        let all = self.candidates.iter().chain(&self.buildable).chain(picks).chain(members);
+        forms.or_else(|| all.into_iter().find_map(of_candidate))
     }
 }
 

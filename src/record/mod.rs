@@ -9,7 +9,9 @@
 //! | [`digest`] | the digest of the data that determine a search |
 //! | [`exact`] | exact synthesis: every linkage through nine points, counted, and the real ones listed |
 //! | [`extras`] | additions to a candidate's figures: warnings, the same curve by other linkages, families of answers |
+//! | [`front`] | the front of a problem and the picks beside its closest candidate |
 //! | [`limits`] | what a record may hold: nothing that no run writes, so that a reader's work and memory are bounded by its file |
+//! | [`pick`] | the linkages that a record offers beside its ranked candidates, each with the name that files and commands use |
 //! | [`repeats`] | repeated hits of the best answer, and the chance that a better one was not seen |
 //! | [`statistics`] | statistics of many runs: medians, hits, the best run |
 //! | [`suite`] | the figures of a suite: problems with a known answer, many seeds each |
@@ -25,7 +27,9 @@ mod certificate;
 pub mod digest;
 mod exact;
 mod extras;
+mod front;
 mod limits;
+mod pick;
 mod repeats;
 pub mod statistics;
 pub mod suite;
@@ -33,7 +37,12 @@ pub mod suite;
 pub use certificate::{Certificate, CertificatePart, Difference};
 pub use exact::{Census, Certified, Completeness, ExactForm, ExactLinkage, ExactRecord, GENERIC_CLASSES};
 pub use extras::{Alternative, Family, ON_BOUND_TEXT, Warning, WarningKind};
+pub use front::{
+    Axis, EQUAL_FIGURES, Figures, Front, LEAST_AXES, MOST_AXES, MOST_MEMBERS, Member, PICKS_LEAST,
+    PICKS_SHARE, Picks,
+};
 pub use limits::BeyondLimits;
+pub use pick::Pick;
 pub use repeats::Repeats;
 
 /// A requirement is met within this part of max(1, |limit|), and figures this near to each other are equal to a reader.
@@ -69,6 +78,12 @@ pub struct Record {
     /// among the candidates, 0 where it is none of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buildable: Option<Candidate>,
+    /// Linkages nearly as good as the closest that are smaller, or transmit better.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picks: Option<Picks>,
+    /// The trade-off between the axes that `front` was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front: Option<Front>,
     /// Nine precision points: every linkage through them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub exact: Option<ExactRecord>,
@@ -112,6 +127,8 @@ impl Record {
             evaluations,
             family: None,
             buildable: None,
+            picks: None,
+            front: None,
             exact: None,
             candidates,
             conflict: None,
@@ -184,7 +201,8 @@ pub struct MethodRecord {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// The best answer was found again and again from different starts.
+    /// The best answer was found again and again from different starts, or the error of a dense target kept its level for
+    /// several times as many starts as it took to reach it.
     Converged,
     /// The target was met: exact answers, as many as were asked for.
     TargetReached,

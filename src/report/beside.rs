@@ -1,7 +1,7 @@
-//! Lines printed below the candidates: the family, warnings, cognates, the buildable candidate.
+//! Lines printed below the candidates: the family, warnings, cognates, the buildable candidate, the picks.
 
 use super::text::{COLUMNS, clean, plural, significant, wrapped};
-use super::words;
+use super::{picks, words};
 use crate::record::{Candidate, ON_BOUND_TEXT, Record, WarningKind};
 
 /// The largest number of lines of warnings and of cognates in the text.
@@ -19,6 +19,7 @@ pub(super) fn lines(record: &Record) -> String {
     if let Some(candidate) = &record.buildable {
         parts.push(buildable(record, candidate));
     }
+    parts.extend(picks::lines(record));
     let cognates =
         record.candidates.iter().filter_map(|c| Some(format!("#{}: {}", c.rank, alternatives(c)?)));
     parts.extend(cognates.take(MOST_LINES));

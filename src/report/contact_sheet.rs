@@ -92,11 +92,27 @@ pub fn contact_sheet_svg(record: &Record) -> String {
     canvas.document(layout.width(), layout.height(n), &name, &counted)
 }
 
+/// The width and the height of a thumbnail, in pixels.
+const THUMBNAIL: [f64; 2] = [276.0, 210.0];
+
+/// Returns a small drawing of a candidate without words: linkage, coupler curve and target.
+pub(super) fn thumbnail_svg(record: &Record, candidate: &Candidate, title: &str) -> String {
+    let [width, height] = THUMBNAIL;
+    let mut canvas = Canvas::default();
+    thumbnail(&mut canvas, record, candidate, Area { x: 0.0, y: 0.0, width, height });
+    canvas.document(width, height, title, candidate.linkage_type.name())
+}
+
+/// Draws a candidate small into an area.
+fn thumbnail(canvas: &mut Canvas, record: &Record, candidate: &Candidate, area: Area) {
+    let scene = Scene::new(record, Some(candidate));
+    let view = View::fit(&scene.bounds(), area.shrunk(20.0));
+    draw(canvas, &scene, &view, Detail::small(0.6));
+}
+
 fn cell(canvas: &mut Canvas, record: &Record, candidate: &Candidate, layout: &Layout, frame: Area) {
     canvas.area(frame, &(outline(palette::FAINT, 1) + r#" rx="4""#));
-    let scene = Scene::new(record, Some(candidate));
-    let view = View::fit(&scene.bounds(), Area { height: layout.drawing, ..frame }.shrunk(20.0));
-    draw(canvas, &scene, &view, Detail::small(0.6));
+    thumbnail(canvas, record, candidate, Area { height: layout.drawing, ..frame });
 
     let (rms, unit) = (significant(candidate.error.rms, 4), words::unit_suffix(record));
     let rms = format!("#{}   rms {rms}{unit}", candidate.rank);

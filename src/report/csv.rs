@@ -6,7 +6,7 @@ use super::text::{cell, exact, push_exact};
 use super::words;
 use crate::mechanism::four_bar::transmission::angle_opposite;
 use crate::mechanism::{CouplerCurve, FourBar, Joints};
-use crate::record::{Candidate, Record};
+use crate::record::{Candidate, Member, Record};
 use crate::task::Defect;
 
 /// A column of a table: its name, and the value of a row in it.
@@ -63,6 +63,33 @@ pub fn candidates_csv(record: &Record) -> String {
         let mut row = cells(&FIGURES, c);
         row.extend(parameters(&c.linkage));
         row.extend([defects.join(";"), cell(&words::unmet(record, c).join(";"))]);
+        row
+    });
+    written(head, rows)
+}
+
+/// The figures of a member of a front.
+const FRONT: [Column<Member>; 8] = [
+    ("rms", |m| exact(m.figures.rms)),
+    ("max", |m| exact(m.figures.max)),
+    ("transmission_deg", |m| exact(m.figures.transmission_deg)),
+    ("extent", |m| exact(m.figures.extent)),
+    ("longest", |m| exact(m.figures.longest)),
+    ("link_ratio", |m| exact(m.figures.link_ratio)),
+    ("sensitivity", |m| exact(m.figures.sensitivity)),
+    ("kind", |_| FOUR_BAR.to_owned()),
+];
+
+/// The kind of a four-bar linkage in a table of several kinds.
+const FOUR_BAR: &str = "four-bar";
+
+/// Returns one row for each member of a record's front: its figures, its kind and its parameters; only the header row
+/// without a front.
+pub fn front_csv(record: &Record) -> String {
+    let head = names(&FRONT).chain(names(&PARAMETERS));
+    let rows = record.front.iter().flat_map(|front| &front.members).map(|member| {
+        let mut row = cells(&FRONT, member);
+        row.extend(parameters(&member.candidate.linkage));
         row
     });
     written(head, rows)

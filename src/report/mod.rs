@@ -8,11 +8,11 @@
 //!
 //! | for | call |
 //! |---|---|
-//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`] |
+//! | a terminal | [`table::candidates_table`], [`table::batch_summary`], [`exact::exact_text`], [`front::front_text`] |
 //! | | [`certificate::certificate_text`], [`plot::terminal_plot`] |
 //! | a page | [`svg::candidate_svg`], [`contact_sheet::contact_sheet_svg`], [`exact_sheet::exact_svg`] |
-//! | a browser | [`html::report_html`] |
-//! | a spreadsheet | [`csv::candidates_csv`], [`csv::curve_csv`] |
+//! | a browser | [`html::report_html`], [`html::front_html`] |
+//! | a spreadsheet | [`csv::candidates_csv`], [`csv::front_csv`], [`csv::curve_csv`] |
 //! | a linkage by itself | [`analysis_sheets::analysis_svg`], [`cognates_sheet::cognates_svg`] |
 //! | several results | [`compare::compare`] |
 //! | a suite of problems | [`suite::suite_text`], [`suite::suite_markdown`] |
@@ -23,7 +23,7 @@
 //! | [`analysis_sheets`] | an analysis as one self-contained SVG page: the drawings of the classic papers, as far as they apply |
 //! | [`analysis_text`] | an analysis as text: the mobility in words, and the tables of positions, motion and methods |
 //! | [`batch_csv`] | a batch as a table for spreadsheets and scripts: one row for each file |
-//! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate |
+//! | [`beside`] | lines printed below the candidates: the family, warnings, cognates, the buildable candidate, the picks |
 //! | [`canvas`] | the SVG shapes of the drawings, in pixels with y down, and the view that maps the plane to the canvas, with y up |
 //! | [`certificate`] | the certificate of a result, and the number of times its best answer was found, in words |
 //! | [`chain_sheet`] | a drawing of a compound mechanism at one position, with other positions drawn faintly and the path of its traced point |
@@ -36,13 +36,16 @@
 //! | [`exact_sheet`] | small drawings of every real linkage through nine points, side by side |
 //! | [`export`] | export of linkages to files for building them: drawings in true millimetres, cutting and printing files, lists |
 //! | [`figure`] | the drawing of a scene: curve, linkage, target and labels |
+//! | [`front`] | the front as text: a row for each member |
 //! | [`grid`] | a table of text with aligned columns, and the colours of a terminal |
 //! | [`html`] | a run as an HTML page in one file: the linkage moving over its target, with every figure and verdict |
 //! | [`labels`] | placement of labels beside their points, where they hide least |
 //! | [`parts`] | the parts of drawings of linkages: stands, bars, the coupler's triangle, letters |
+//! | [`picks`] | the picks beside the closest candidate, in words |
 //! | [`plot`] | a small plot for the terminal: the target points and the coupler curve, with one scale for both axes |
 //! | [`practicality`] | the practicality of a linkage as text: layers, distances, sensitivities |
 //! | [`price`] | the costs of requirements and the relaxations that would help, in words |
+//! | [`scale`] | scales of charts: figures mapped to the range from 0 to 1, in proportion or by logarithms, with round values for ticks |
 //! | [`scene`] | the scene of a candidate's drawing: target points, the circuits used, and one position of the linkage |
 //! | [`sheet`] | sheets: framed drawings with a title each, laid out on one page |
 //! | [`snap`] | the cost of snapping as text: before and after, and the next best linkages |
@@ -69,13 +72,16 @@ pub mod exact;
 pub mod exact_sheet;
 pub mod export;
 mod figure;
+pub mod front;
 mod grid;
 pub mod html;
 mod labels;
 mod parts;
+mod picks;
 pub mod plot;
 pub mod practicality;
 pub mod price;
+mod scale;
 pub(crate) mod scene;
 mod sheet;
 pub mod snap;

@@ -34,7 +34,8 @@ fn rms(record: &Record, candidate: &Candidate) -> f64 {
 pub(super) fn clause(record: &Record, candidate: &Candidate, name: &str) -> Option<String> {
     candidate.costs.iter().find(|cost| cost.name == name)?;
     let text = sentence(record, candidate, name);
-    Some(text.strip_prefix(&clean(name)).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
+    let head = named(record, name);
+    Some(text.strip_prefix(&head).unwrap_or(&text).trim_start_matches([':', ' ']).to_owned())
 }
 
 /// Returns a sentence such as `pivots_in costs 0.80 mm of rms; 1 mm more at xmax gives back 0.10 mm`.
@@ -44,7 +45,7 @@ fn sentence(record: &Record, candidate: &Candidate, name: &str) -> String {
     let own = || candidate.costs.iter().filter(|cost| cost.name == name);
     let rates: Vec<String> = own().filter_map(|cost| rate(record.problem.unit, with, cost)).collect();
     let without = own().find_map(|cost| cost.rms_without);
-    let name = clean(name);
+    let name = named(record, name);
     let total = without.map(|least| format!("costs {}{unit} of rms", significant(with - least, 2)));
     match (total, rates.is_empty()) {
         (Some(total), false) => format!("{name} {total}; {}", rates.join(", ")),
@@ -52,6 +53,13 @@ fn sentence(record: &Record, candidate: &Candidate, name: &str) -> String {
         (None, false) => format!("{name}: {} of rms", rates.join(", ")),
         (None, true) => format!("{name} binds"),
     }
+}
+
+/// Returns the name of a requirement, with a remark where it is a default that nobody may have typed.
+fn named(record: &Record, name: &str) -> String {
+    let longest = name == RequirementKind::LongestMax.name() && record.problem.resolved.has_default_longest();
+    let remark = if longest { " (3 sizes, the default)" } else { "" };
+    format!("{}{remark}", clean(name))
 }
 
 /// Returns a clause such as `1 mm more at xmax gives back 0.10 mm`.

@@ -25,7 +25,11 @@ const MOST_SAMPLES: usize = 144_000;
 
 /// Returns the drawing of `record.candidates[index]`; only the target if there is no such candidate.
 pub fn candidate_svg(record: &Record, index: usize) -> String {
-    let candidate = record.candidates.get(index);
+    drawing_svg(record, record.candidates.get(index))
+}
+
+/// Returns the drawing of a candidate that need not be among the ranked ones; only the target without one.
+pub fn drawing_svg(record: &Record, candidate: Option<&Candidate>) -> String {
     let scene = Scene::new(record, candidate);
     let bounds = scene.bounds();
     let small = candidate.is_some() && scene.target_bounds().extent() < SMALL_TARGET * bounds.extent();
@@ -62,8 +66,7 @@ pub fn candidate_svg(record: &Record, index: usize) -> String {
 
 /// Returns a text such as `candidate 1 of 5`.
 fn standing(record: &Record, candidate: Option<&Candidate>) -> String {
-    candidate
-        .map_or("no candidate".to_owned(), |c| format!("candidate {} of {}", c.rank, record.candidates.len()))
+    candidate.map_or("no candidate".to_owned(), |c| words::standing(record, c))
 }
 
 /// Draws title, rank and source; returns the height at which the drawing starts.

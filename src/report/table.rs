@@ -40,7 +40,7 @@ pub fn candidates_table(record: &Record, colour: Colour) -> String {
 }
 
 /// Returns name, source, points, size and timing.
-fn heading(record: &Record, colour: Colour) -> String {
+pub(super) fn heading(record: &Record, colour: Colour) -> String {
     let mut out = colour.paint(Ink::Strong, &shortened(&words::problem_name(record), COLUMNS));
     out.push('\n');
     out.push_str(&indented(&facts(record)));
@@ -224,9 +224,9 @@ fn linkage_toml(linkage: &FourBar) -> String {
 /// Returns method, seed, cost and the reason why the search ended, on one line.
 pub fn ending_sentences(record: &Record) -> String {
     let reason = if record.method.used == ["continuation"] && record.termination.reproducible {
-        "every solution path was followed to its end"
+        "every solution path was followed to its end".to_owned()
     } else {
-        words::reason(record.termination.reason)
+        words::ended(record)
     };
     let used: Vec<String> =
         record.method.used.iter().map(|m| clean(m)).filter(|m| !m.is_empty()).take(12).collect();

@@ -130,7 +130,7 @@ pub fn grouped(value: u64) -> String {
 }
 
 /// Returns a number with its noun: `1 cognate`, `2 cognates`.
-pub(super) fn plural(n: usize, noun: &str) -> String {
+pub(crate) fn plural(n: usize, noun: &str) -> String {
     format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }
 

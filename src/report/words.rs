@@ -1,8 +1,8 @@
 //! Verdicts, requirements and endings in plain words.
 
-use super::text::{brief, clean, exact};
+use super::text::{brief, clean, exact, significant};
 use crate::mechanism::Unit;
-use crate::record::{Candidate, Figure, Reason, Record, Requirement};
+use crate::record::{Candidate, Figure, Pick, Reason, Record, Requirement};
 use crate::task::requirement::RequirementKind;
 use crate::task::spec::{Measure, TransmissionOver};
 use crate::task::{AngleOffset, Defect};
@@ -294,6 +294,27 @@ pub(super) fn reason_name(reason: Reason) -> &'static str {
     }
 }
 
+/// Returns the reason why the search of a record ended, as a clause after "ended:".
+pub(super) fn ended(record: &Record) -> String {
+    let few = record.repeats.as_ref().filter(|repeats| repeats.hits < MANY_HITS);
+    match few {
+        Some(repeats) if record.termination.reason == Reason::Converged => {
+            let chance = repeats.unseen_better.map_or(String::new(), |chance| {
+                format!("; a better one was not seen with a chance of {} %", significant(100.0 * chance, 2))
+            });
+            format!(
+                "converged, the error kept its level through several times as many starts as it took to reach it \
+                 (the best answer came from {} of {} independent starts{chance})",
+                repeats.hits, repeats.starts
+            )
+        }
+        _ => reason(record.termination.reason).to_owned(),
+    }
+}
+
+/// Hits from which an answer counts as found again and again.
+const MANY_HITS: u64 = 4;
+
 /// Returns the reason why the search ended, as a clause after "ended:".
 pub(super) fn reason(reason: Reason) -> &'static str {
     match reason {
@@ -325,6 +346,21 @@ pub(super) fn timing(record: &Record) -> &'static str {
         Some(AngleOffset::Fixed) => "prescribed timing, from the x axis",
         Some(AngleOffset::Ground) => "prescribed timing, from the line A-B",
     }
+}
+
+/// Returns the place of a candidate in its record: `candidate 2 of 5`, `the smallest candidate`, `linkage 3 of 20 in the
+/// front`.
+pub(super) fn standing(record: &Record, candidate: &Candidate) -> String {
+    let ranked = || format!("candidate {} of {}", candidate.rank, record.candidates.len());
+    if candidate.rank > 0 {
+        return ranked();
+    }
+    if let Some(pick) = Pick::ALL.into_iter().find(|pick| record.pick(*pick) == Some(candidate)) {
+        return format!("the {} candidate", pick.words());
+    }
+    let members = record.front.as_ref().map_or(&[][..], |front| &front.members);
+    let place = members.iter().position(|member| member.candidate == *candidate);
+    place.map_or_else(ranked, |i| format!("linkage {} of {} in the front", i + 1, members.len()))
 }
 
 /// Returns the problem's name; never empty.

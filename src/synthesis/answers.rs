@@ -2,6 +2,7 @@
 //! candidate.
 
 use super::buildable::buildable;
+use super::constants::buildable::{LEAST, SHARE};
 use super::{Context, SearchOutcome};
 use crate::judge::family::family;
 use crate::judge::symmetry::mirror_image_serves;
@@ -28,7 +29,7 @@ pub fn annotate(problem: &Problem, candidate: &mut Candidate) {
 /// Annotates the candidates and returns the family and the buildable candidate.
 ///
 /// If the first candidate has warnings, the method is `auto` and advice is asked for, a second search looks for a
-/// buildable linkage. It uses at most as many evaluations as the first search used and the budget still has; they are
+/// buildable linkage. It uses a part of the evaluations that the first search used, if the budget still has them; they are
 /// added to the outcome's. If the time limit or a cancellation cuts it short, that becomes the outcome's reason.
 pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Beside {
     let problem = context.problem;
@@ -44,7 +45,7 @@ pub fn beside(context: Context<'_>, outcome: &mut SearchOutcome) -> Beside {
         return Beside { family, buildable: None };
     }
     let used = outcome.evaluations.objective;
-    let allowance = used.min(solve.evaluations.saturating_sub(used));
+    let allowance = (used / SHARE).max(LEAST).min(used).min(solve.evaluations.saturating_sub(used));
     let mut found = buildable(context, &outcome.candidates, &outcome.others, allowance);
     if let Some(candidate) = &mut found.candidate {
         candidate.mirror_serves = mirror_image_serves(problem, candidate);

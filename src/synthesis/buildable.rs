@@ -12,15 +12,16 @@ use super::constants::buildable::{
 };
 use super::driver::{Allowance, Standing, Strategy, drive, in_parallel};
 use super::multistart::{Fitted, LONG_FIT, RoundOutcome, fit_and_judge, judged, polish, round};
-use super::plan::{FAR, moved_back};
+use super::plan::Place;
 use super::starts::Starts;
 use super::states::SearchState;
 use super::{Context, Progress};
 use crate::judge::costs::marginal;
+use crate::judge::loosen::judged_under;
 use crate::judge::rank::{chosen, compare};
 use crate::judge::warm::{start_at, start_beside};
 use crate::judge::warnings::{GREATEST_LINK_RATIO, LEAST_TRANSMISSION_DEG, is_serious, warnings};
-use crate::mechanism::{Complex, LinkageType};
+use crate::mechanism::LinkageType;
 use crate::record::{Candidate, Evaluations, WarningKind};
 use crate::task::Problem;
 use crate::task::spec::ProblemSpec;
@@ -72,20 +73,19 @@ pub fn buildable(
         }
     };
     ranked.iter().chain(others).for_each(&mut offer);
-    // As in the main search, a far target is moved to the origin.
-    let centre = problem.task().centre();
-    let away = if centre.norm() > FAR * problem.task().size() { centre } else { Complex::new(0.0, 0.0) };
-    let spec = tightened(problem.spec()).shifted([-away.re, -away.im]);
+    let place = Place::of(problem);
+    let tight = Problem::new(tightened(problem.spec())).ok();
     if search
         && !context.stopped()
-        && let Ok(tight) = Problem::new(spec)
+        && let Some((tight, image)) = tight.and_then(|tight| place.image(&tight)).zip(place.image(problem))
     {
-        let near = |c: &Candidate| Some(Candidate { linkage: c.linkage.shifted(-away).ok()?, ..c.clone() });
-        let known: Vec<Candidate> = ranked.iter().chain(others).filter_map(near).collect();
-        let (found, evaluations) = second_search(context.of(&tight), &known, allowance);
+        let known: Vec<Candidate> =
+            ranked.iter().chain(others).filter_map(|c| place.there(&image, c)).collect();
+        let observer = |progress: &Progress| place.report(context, progress);
+        let within = Context { observer: &observer, ..context.of(&tight) };
+        let (found, evaluations) = second_search(within, &known, allowance);
         outcome.evaluations = evaluations;
-        let back = |c: &Candidate| moved_back(problem, c, away);
-        found.iter().filter_map(back).for_each(|candidate| offer(&candidate));
+        found.iter().filter_map(|c| place.back(problem, c)).for_each(|candidate| offer(&candidate));
     }
     if let Some(best) = &mut best {
         let equal = |c: &&Candidate| {
@@ -93,7 +93,10 @@ pub fn buildable(
         };
         best.rank = ranked.iter().find(equal).map_or(0, |c| c.rank);
         if best.rank == 0 {
-            // A ranked one has them already.
+            // A ranked one has them already; another may have been judged at a glance.
+            if let Some(judged) = judged_under(problem, best) {
+                best.error = judged.error;
+            }
             best.costs = marginal(problem, best);
         }
     }

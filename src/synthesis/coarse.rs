@@ -1,10 +1,11 @@
 //! Coarsening of dense targets: a search explores the problem with fewer points and fits the answer to all points.
 //!
 //! Neighbouring points are averaged in groups of (almost) equal size, which also smooths noise; a group has the total
-//! weight of its points. The pivots, bounds and requirements stay the problem's own.
+//! weight of its points. Means blur corners: a second coarse problem has one of each group's points instead, its corner
+//! if it has one. The pivots, bounds and requirements stay the problem's own.
 
-use super::constants::coarse::{DENSE, GROUPS};
-use crate::mechanism::Complex;
+use super::constants::coarse::{CORNER, DENSE, GROUPS};
+use crate::mechanism::{Complex, cross};
 use crate::task::forms::start::Start;
 use crate::task::forms::torus::{Positions, TorusFit};
 use crate::task::{Problem, Timing};
@@ -25,14 +26,50 @@ pub(super) fn points_of(problem: &Problem) -> usize {
     if task.repeats_first() { task.len() - 1 } else { task.len() }
 }
 
+/// Returns the weighted mean of a group of points.
+fn mean(problem: &Problem, group: Range<usize>) -> Complex {
+    let (points, weights) = (&problem.task().points()[group.clone()], &problem.task().weights()[group]);
+    points.iter().zip(weights).map(|(p, w)| p * w).sum::<Complex>() / weights.iter().sum::<f64>()
+}
+
+/// Returns the point of a group that lies farthest from the chord between its neighbours if that is a corner, else the
+/// middle one.
+fn corner(problem: &Problem, group: Range<usize>) -> Complex {
+    let (points, n) = (problem.task().points(), points_of(problem));
+    let cyclic = problem.task().closed() || problem.task().repeats_first();
+    let before = group.start.checked_sub(1).or(cyclic.then_some(n - 1)).unwrap_or(group.start);
+    let after = if group.end < n {
+        group.end
+    } else if cyclic {
+        0
+    } else {
+        n - 1
+    };
+    let chord = points[after] - points[before];
+    let off = |i: usize| cross(chord, points[i] - points[before]).abs();
+    let middle = (group.start + group.end - 1) / 2;
+    let farthest = group.max_by(|&i, &j| off(i).total_cmp(&off(j))).unwrap_or(middle);
+    points[if off(farthest) > CORNER * chord.norm_sqr() { farthest } else { middle }]
+}
+
 impl Coarse {
     /// Returns whether a target has free timing and so many points that it is explored in groups.
     pub fn is_for(problem: &Problem) -> bool {
         points_of(problem) > DENSE && matches!(problem.task().timing(), Timing::Free)
     }
 
-    /// Returns the coarse problem; `None` if the target has few points, is timed, or cannot be grouped.
+    /// Returns the coarse problem of the groups' means; `None` if the target has few points, is timed, or cannot be
+    /// grouped.
     pub fn of(problem: &Problem) -> Option<Coarse> {
+        Coarse::with(problem, mean)
+    }
+
+    /// Returns the coarse problem of one point of each group; `None` as for [`Coarse::of`].
+    pub fn of_corners(problem: &Problem) -> Option<Coarse> {
+        Coarse::with(problem, corner)
+    }
+
+    fn with(problem: &Problem, point: fn(&Problem, Range<usize>) -> Complex) -> Option<Coarse> {
         let task = problem.task();
         let n = points_of(problem);
         if !Coarse::is_for(problem) {
@@ -44,16 +81,15 @@ impl Coarse {
         spec.task.path.points = groups
             .iter()
             .map(|group| {
-                let pairs = task.points()[group.clone()].iter().zip(&task.weights()[group.clone()]);
-                let mean = pairs.map(|(p, w)| p * w).sum::<Complex>() / weight(group);
-                [mean.re, mean.im]
+                let point = point(problem, group.clone());
+                [point.re, point.im]
             })
             .collect();
         spec.task.path.weight = Some(groups.iter().map(weight).collect());
         spec.task.path.tolerance = None;
         let cyclic = task.closed() || task.repeats_first();
         spec.task.path.closed = cyclic;
-        Some(Coarse { problem: Problem::new(spec).ok()?, groups, cyclic })
+        Some(Coarse { problem: problem.with(spec).ok()?, groups, cyclic })
     }
 
     /// Returns the start of the dense problem from one of the coarse problem: the positions are interpolated between a

@@ -21,6 +21,7 @@ use super::constants::conflicts::{
 use super::multistart::{LONG_FIT, judged, polish};
 use super::relaxed::led_in;
 use super::{Context, Progress, SearchOutcome, offered_cognates, plan};
+use crate::judge::assess::measure_curve;
 use crate::judge::error::rms;
 use crate::judge::loosen::{Demand, changes, judged_under, rounded_outward};
 use crate::judge::rank::divided;
@@ -30,6 +31,7 @@ use crate::record::{Candidate, Conflict, RELAXED, Relaxation};
 use crate::task::Problem;
 use crate::task::requirement::Limit;
 use crate::task::spec::{Method, ProblemSpec};
+use rayon::prelude::*;
 
 /// Distance from a bound, in parts of its scale, within which the bound is active.
 const ACTIVE: f64 = 1e-6;
@@ -80,6 +82,7 @@ pub fn explain(context: Context<'_>, outcome: &mut SearchOutcome) -> Result<Expl
         found.append(&mut outcome.others);
         found.extend(met);
         (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+        outcome.candidates.par_iter_mut().for_each(|candidate| measure_curve(problem, candidate));
         offered_cognates::offer(context, &mut outcome.candidates);
         // The repeated hits were counted for another best answer.
         outcome.repeats = None;

@@ -38,6 +38,19 @@ pub mod plan {
     pub const REDUCED_SHARE: f64 = 0.5;
 }
 
+/// The canonical frame of free timing; no benchmark chooses them.
+pub mod frame {
+    /// Number of the other candidates that are taken back to the caller's frame.
+    pub const OTHERS: usize = 48;
+    /// Root mean square of the errors, in sizes of the target, up to which a candidate is fitted again to the target
+    /// as it was given: beyond it the grid costs less than a part in 1e12 of the sum of squares.
+    pub const NOTICED: f64 = 1e-5;
+    /// Most evaluations of such a fit.
+    pub const POLISH: u64 = 40;
+    /// At most one part in this many of a budget is kept for them.
+    pub const SHARE: u64 = 50;
+}
+
 /// Fits, and the rounds of prescribed timing in the physical parameters. `benches/recovery` has no prescribed timing:
 /// no benchmark chooses them.
 pub mod multistart {
@@ -111,15 +124,33 @@ pub mod free {
     pub const BATCH: u64 = 8;
     /// Relative difference below which errors of noise are equally good: the noise of n points has a sum of squares
     /// with a relative spread of (2/n)^(1/2).
-    pub const IN_NOISE: f64 = 1e-2;
+    pub const IN_NOISE: f64 = 3e-2;
     /// Rounds with equally good answers that suffice if the errors are noise.
-    pub const NOISE_HITS: usize = 5;
+    pub const NOISE_HITS: usize = 4;
     /// Least number of batches for a sparse target.
     pub const LEAST_BATCHES: u64 = 5;
     /// Batches in which a round on a dense target fits only its best start further.
     pub const DENSE_BATCHES: u64 = 2;
-    /// Least number of batches for a dense target whose errors are not noise.
+    /// Least number of batches for a dense target whose errors are small and not noise.
     pub const PATIENT_BATCHES: u64 = 60;
+    /// The rms error, in sizes of the target, up to which errors are small.
+    pub const SMALL: f64 = 3e-5;
+    /// The factor of sums of squares up to which they are on one level: errors that differ by 1 %. Chosen by
+    /// `benches/strokes`, as those that follow.
+    pub const LEVEL: f64 = 1.02;
+    /// Independent rounds that came to the level; least number of evaluations, and evaluations as a multiple of those that
+    /// it took to reach the level.
+    pub const LEVEL_HITS: usize = 4;
+    pub const LEVEL_LEAST: u64 = 100_000;
+    pub const LEVEL_TIMES: u64 = 3;
+    /// Rounds that came to the level with which this least number of evaluations is enough.
+    pub const MANY_HITS: usize = 12;
+    pub const MANY_LEAST: u64 = 80_000;
+    /// The least number of evaluations and their multiple if few rounds came to the level.
+    pub const QUIET_LEAST: u64 = 160_000;
+    pub const QUIET_TIMES: u64 = 4;
+    /// The rms error, in sizes of the target, below which errors that look like noise may be a small misfit.
+    pub const NOISE_LEAST: f64 = 2e-3;
     /// Correlation of the errors of neighbouring points above which they are not noise.
     pub const ALIKE: f64 = 0.3;
     /// Of `WHOLE_EVERY` batches on a dense target of at most `WHOLE_MOST` points one explores all of its points: the
@@ -128,6 +159,10 @@ pub mod free {
     pub const WHOLE_IN_NOISE: u64 = 3;
     pub const WHOLE_ELSE: u64 = 1;
     pub const WHOLE_MOST: usize = 200;
+    /// Of `CORNERS_EVERY` batches on a dense target one, this one, explores a point of each group in place of the means,
+    /// unless the errors are noise.
+    pub const CORNERS_EVERY: u64 = 4;
+    pub const CORNERS_AT: u64 = 2;
     /// Batches without a new distinct answer that end a search for further ones.
     pub const QUIET_BATCHES: u64 = 6;
     /// Number of ends kept.
@@ -152,8 +187,10 @@ pub mod free {
     pub const WORTH_LEADING_BACK: f64 = 16.0;
     /// The factor of the best merit on the explored points above which an end is not finished if one answer is wanted.
     pub const WORTH_FINISHING: f64 = 4.0;
+    pub const DENSE_WORTH_FINISHING: f64 = 2.0;
     /// The efforts of short fits and of longer ones; ends are finished by [`super::multistart::LONG_FIT`].
     pub const SHORT_FIT: Effort = Effort { steps: 16, rounds: 2, relative_reduction: 1e-4 };
+    /// The effort of fits further to an end on the explored points.
     pub const MIDDLE_FIT: Effort = Effort { steps: 100, rounds: 6, relative_reduction: 1e-6 };
     /// Range of random steps away from a known end, in parts of a length or of the target's size.
     pub const JITTER: (f64, f64) = (0.01, 0.5);
@@ -170,6 +207,9 @@ pub mod coarse {
     pub const DENSE: usize = 48;
     /// Number of groups.
     pub const GROUPS: usize = 32;
+    /// Distance of a point of a group from the chord between the group's neighbours, in parts of the chord, from which it
+    /// is a corner.
+    pub const CORNER: f64 = 0.2;
 }
 
 /// Population searches. `benches/population` compares them; no benchmark chooses these constants.
@@ -226,6 +266,10 @@ pub mod relaxed {
 pub mod buildable {
     use super::Effort;
 
+    /// The second search uses one part in `SHARE` of the evaluations of the first, or `LEAST` if that is more, but never
+    /// more than the first.
+    pub const SHARE: u64 = 8;
+    pub const LEAST: u64 = 20_000;
     /// Rounds that have to reach the best answer of the second search.
     pub const HITS: usize = 4;
     /// Rounds without a better answer after which the second search ends.
@@ -252,6 +296,70 @@ pub mod buildable {
     pub const HALVINGS: usize = 5;
     /// Number of the best candidates from which that move is made, until one of them needs no move.
     pub const MOST_FROM: usize = 3;
+}
+
+/// Fits under tightened limits; chosen by `benches/strokes`, which compares the picks with fronts.
+pub mod tightened {
+    /// Most evaluations of a fit.
+    pub const EVALUATIONS: u64 = 600;
+    /// Most evaluations of its polish for the largest deviation or for tolerances.
+    pub const FINISH: u64 = 60;
+}
+
+/// The picks beside the closest candidate; chosen by `benches/strokes`.
+pub mod picks {
+    /// The most distinct candidates from which limits are tightened, and how many of them run before their results are
+    /// read.
+    pub const STARTS: usize = 4;
+    pub const WAVE: usize = 2;
+    /// First steps: of the logarithm of the extent, and of the transmission angle in degrees.
+    pub const STEP_PART: f64 = 0.2;
+    pub const STEP_DEG: f64 = 8.0;
+    /// The step, in parts of the first, at which bisection ends; and most steps from one start.
+    pub const LEAST_STEP: f64 = 0.1;
+    pub const STEPS: usize = 10;
+}
+
+/// The front; chosen by `benches/front`.
+pub mod front {
+    use super::Effort;
+
+    /// The rms error of a member at most, in sizes of the target: beyond it a curve is no drawing of the target.
+    pub const MOST_ERROR: f64 = 0.3;
+    /// Distinct answers of the search that are fitted under the first combinations of limits: these angles, and these
+    /// parts of the closest linkage's lengths.
+    pub const SEEDS: usize = 3;
+    pub const ANCHOR_DEG: [f64; 3] = [25.0, 40.0, 55.0];
+    pub const ANCHOR_PARTS: [f64; 3] = [0.7, 0.5, 0.35];
+    /// Searches anew under tightened limits: lengths at most these parts of the target's size, angles at least this, and
+    /// both together; the evaluations of each, and how many of its answers are kept.
+    pub const COMPACT: [f64; 2] = [1.1, 1.7];
+    pub const STEEP_DEG: f64 = 45.0;
+    pub const SEARCH: u64 = 4000;
+    pub const ANSWERS: usize = 6;
+    /// Gaps filled in a generation, and the distance on the scaled axes below which a gap is left.
+    pub const GAPS: usize = 4;
+    pub const LEAST_GAP: f64 = 0.08;
+    /// The effort of fits before the last ones.
+    pub const EFFORT: Effort = Effort { steps: 40, rounds: 5, relative_reduction: 1e-4 };
+    /// The effort of the last fits of the members.
+    pub const LAST: Effort = Effort { steps: 120, rounds: 8, relative_reduction: 1e-9 };
+    /// Starts of a fit.
+    pub const NEAREST: usize = 2;
+    /// First steps of a push: in degrees, and of the logarithm of other figures; a push ends at this part of its first
+    /// step.
+    pub const PUSH_DEG: f64 = 6.0;
+    pub const PUSH_PART: f64 = 0.2;
+    pub const LEAST_PUSH: f64 = 0.05;
+    /// Generations in a row that add at most this volume that end a front.
+    pub const QUIET_GENERATIONS: u64 = 3;
+    pub const QUIET_VOLUME: f64 = 1e-3;
+    /// The most linkages kept.
+    pub const MOST_KEPT: usize = 200;
+    /// The least number of members fitted to the last digit, how many more than are asked for, and how often.
+    pub const LEAST_MEMBERS: usize = 10;
+    pub const SPARE: usize = 4;
+    pub const FITS: usize = 1;
 }
 
 /// The trials of a conflict analysis; no benchmark chooses them.
@@ -287,8 +395,8 @@ pub mod conflicts {
 pub mod errors_without {
     /// Most evaluations of the search without a requirement; one part in `SHORT_SHARE` of the evaluations of the search
     /// itself.
-    pub const SHORT_SEARCH: u64 = 20_000;
-    pub const SHORT_SHARE: u64 = 4;
+    pub const SHORT_SEARCH: u64 = 40_000;
+    pub const SHORT_SHARE: u64 = 2;
 }
 
 /// Live fitting; no benchmark chooses them.

@@ -9,6 +9,7 @@
 use super::{Context, Progress, SearchOutcome};
 use crate::judge::certified::{certified, nearly_exact, same, target};
 use crate::judge::exact_linkages::{Class, Depth, classes};
+use crate::judge::loosen::judged_under;
 use crate::judge::rank::{count_distinct, divided, holds_an_exact};
 use crate::numbers::nine_point;
 use crate::numbers::nine_point::certificate::{Certificate, certify, certify_all};
@@ -130,6 +131,12 @@ impl Exact {
         found.append(&mut outcome.candidates);
         found.append(&mut outcome.others);
         (outcome.candidates, outcome.others) = divided(problem, found, problem.spec().solve.candidates);
+        // One of the others may have been judged at a glance.
+        for candidate in &mut outcome.candidates {
+            if let Some(judged) = judged_under(problem, candidate) {
+                candidate.error = judged.error;
+            }
+        }
         let reached = holds_an_exact(problem, &outcome.candidates);
         if reached && matches!(outcome.reason, Reason::Converged | Reason::Stalled) {
             outcome.reason = Reason::TargetReached;

@@ -15,13 +15,16 @@
 //! | [`continuation`] | the method `continuation`: all linkages through nine precision points, as candidates, alone or beside the approximate answers of `auto` |
 //! | [`driver`] | the loop of every search in batches: states saved, a batch run, progress reported, the stopping rule asked |
 //! | [`errors_without`] | the error that is left without each requirement that is active at the best candidate |
+//! | [`frame`] | the canonical frame in which problems of free timing are searched, and the way back of their candidates |
 //! | [`free`] | multistart search for free timing: starts by arc length or from the atlas, joint Levenberg-Marquardt fits on the torus, and a stopping rule by repeated hits of the best answer |
+//! | [`front`] | the front of a problem: the trade-off between error, transmission angle, extent and other figures, by fits under tightened limits |
 //! | [`keeper`] | checkpoints of long searches: the state of a search at a batch boundary, and the keeper that saves it |
 //! | [`live`] | live fitting to a target that the user moves: known candidates follow it by warm starts, and the answers of a search join them |
 //! | [`local`] | the local searches by least squares, chosen by the timing |
 //! | [`multistart`] | multistart: Levenberg-Marquardt fits from many starts, in rounds |
 //! | [`nearest`] | positions at which a given linkage is nearest to a task's points: for linkages that were not placed by a search |
 //! | [`offered_cognates`] | the offer of Roberts cognates beside the candidates of a search |
+//! | [`picks`] | the smallest and the best transmitting linkage whose error is nearly that of the closest candidate |
 //! | [`plan`] | the plan of a search: the phases of each method, in their order |
 //! | [`polish`] | polish after a search by least squares: minimises the largest deviation, brings answers within tolerances, and gains the last digits of answers on which a limit is active |
 //! | [`population`] | the population searches on the design vector or in reduced variables: genetic, differential evolution, and uniform sampling as the baseline for comparison |
@@ -33,6 +36,7 @@
 //! | [`snap`] | snapping: lengths are brought to stock sizes, and the free parameters fitted again |
 //! | [`starts`] | starts of local searches: shapes drawn by type, positions by timing, the rest by linear least squares |
 //! | [`states`] | the states of the searches in a checkpoint: data alone |
+//! | [`tightened`] | fits of a known linkage under tightened limits, judged by the problem itself |
 //! | [`variable_projection`] | multistart search for prescribed timing by variable projection (the reduced form) |
 
 pub mod answers;
@@ -47,13 +51,16 @@ pub mod continuation;
 mod driver;
 pub mod errors_without;
 pub(crate) mod fixture;
+mod frame;
 pub mod free;
+pub mod front;
 pub mod keeper;
 pub mod live;
 mod local;
 pub mod multistart;
 pub mod nearest;
 pub mod offered_cognates;
+pub mod picks;
 pub mod plan;
 pub mod polish;
 pub mod population;
@@ -66,6 +73,7 @@ pub mod snap;
 pub mod starts;
 mod states;
 mod stopping_tests;
+mod tightened;
 pub mod variable_projection;
 
 pub use context::Context;

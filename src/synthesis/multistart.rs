@@ -5,6 +5,7 @@
 //! are read in their order, so the number of threads changes nothing but the time.
 
 pub use super::constants::Effort;
+pub use super::constants::free::MIDDLE_FIT;
 pub use super::constants::multistart::{LONG_FIT, SHORT_FIT};
 
 use super::Context;
@@ -39,12 +40,14 @@ pub struct RoundOutcome {
 /// Returns the options of a fit; `exact_cost` is the cost below which nothing is left to gain.
 fn options(problem: &Problem, effort: Effort, max_evaluations: u64) -> LmOptions {
     let task = problem.task();
+    // On a grid the answer is fitted again to the points as they were given.
+    let nothing_left = if problem.grid() > 0.0 { 1.0 } else { 1e-6 };
     LmOptions {
         max_steps: effort.steps,
         max_rounds: effort.rounds,
         max_evaluations,
         relative_reduction: effort.relative_reduction,
-        exact_cost: 1e-6 * exact_cost(problem),
+        exact_cost: nothing_left * exact_cost(problem),
         feasibility: 1e-9 * task.size(),
         // A mean error above a fifth of the size after half of the steps is hopeless.
         hopeless_cost: 0.04 * task.weights().iter().sum::<f64>() * task.size().powi(2),
@@ -208,16 +211,33 @@ impl Fitted {
 
 /// Fits from a start under all requirements, with at most `evaluations` of the cost (at least one).
 pub fn polish(context: Context<'_>, start: Start, effort: Effort, evaluations: u64) -> Fitted {
+    fit_with(context, start, &options(context.problem, effort, evaluations))
+}
+
+/// As [`polish`] from a start whose error may be large; ends as soon as all requirements are met and the cost is at most
+/// `enough`.
+pub(super) fn polish_until(
+    context: Context<'_>,
+    start: Start,
+    effort: Effort,
+    evaluations: u64,
+    enough: f64,
+) -> Fitted {
+    let usual = options(context.problem, effort, evaluations);
+    let exact_cost = usual.exact_cost.max(enough);
+    fit_with(context, start, &LmOptions { exact_cost, hopeless_cost: f64::INFINITY, ..usual })
+}
+
+fn fit_with(context: Context<'_>, start: Start, options: &LmOptions) -> Fitted {
     let problem = context.problem;
-    let options = options(problem, effort, evaluations);
     let stop = || context.stopped();
     let Start { design, setting, positions } = start;
     let result = if positions.is_empty() {
         let Some(fit) = TimedFit::new(problem, setting) else { return Fitted::NONE };
-        solve(&fit, design, positions, &options, &stop)
+        solve(&fit, design, positions, options, &stop)
     } else {
         let fit = TorusFit::new(problem, setting).in_order(&design, &positions);
-        solve(&fit, design, positions, &options, &stop)
+        solve(&fit, design, positions, options, &stop)
     };
     let usable = !matches!(result.outcome, LmOutcome::NoStart | LmOutcome::Abandoned);
     let weight: f64 = problem.task().weights().iter().sum();

@@ -7,10 +7,11 @@
 
 use super::constants::plan::{FAR_OTHERS, LOCAL_SHARE, POLISH_SHARE, RELAXED_SHARE};
 use super::driver::{Allowance, Found};
+use super::frame::{Frame, in_frame};
 use super::multistart::{LONG_FIT, fit_and_judge, polish};
 use super::polish::{improve, reserve};
 use super::population::{self, Population};
-use super::{Context, SearchOutcome, continuation, local, relaxed};
+use super::{Context, Progress, SearchOutcome, continuation, local, relaxed};
 use crate::judge::assess::assess;
 use crate::judge::rank::divided;
 use crate::mechanism::Complex;
@@ -22,7 +23,7 @@ use crate::task::{AngleOffset, Problem};
 
 /// Distance of a target from the origin, in sizes of the target, beyond which it is searched around its own centre: at
 /// 1e6 sizes differences of coordinates have lost six digits.
-pub(super) const FAR: f64 = 100.0;
+const FAR: f64 = 100.0;
 
 /// Searches as the problem's `[solve]` table says: if there are nine precision points, `continuation` and `auto` first
 /// solve for all linkages through them, and `auto` approximates if these do not give enough answers.
@@ -39,19 +40,22 @@ pub fn search(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
 
 /// As [`search`] without exact answers: used many times over to find conflicts and costs.
 ///
+/// Problems of free timing are searched in their canonical frame ([`super::frame`]), others in the caller's, far targets
+/// around their own centre.
+///
 /// # Errors
 /// As [`search`].
 pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationError> {
     let problem = context.problem;
-    let centre = problem.task().centre();
-    if centre.norm() <= FAR * problem.task().size() {
-        return search_here(context);
-    }
-    let Ok(near) = Problem::new(problem.spec().shifted([-centre.re, -centre.im])) else {
-        return search_here(context);
+    let place = Place::of(problem);
+    let near = match place {
+        Place::Frame(frame) => return in_frame(context, &frame, search_here),
+        Place::AsItIs => None,
+        Place::Around(_) => place.image(problem),
     };
+    let Some(near) = near else { return search_here(context) };
     let mut outcome = search_here(context.of(&near))?;
-    let back = |candidate: &Candidate| moved_back(problem, candidate, centre);
+    let back = |candidate: &Candidate| place.back(problem, candidate);
     // Also the next best: a linkage that only just closes there may be open here.
     let found = outcome.candidates.iter().chain(outcome.others.iter().take(FAR_OTHERS)).filter_map(back);
     let found = found.collect();
@@ -59,10 +63,73 @@ pub fn approximate(context: Context<'_>) -> Result<SearchOutcome, PopulationErro
     Ok(outcome)
 }
 
-/// Returns a candidate that was found around its target's centre, moved `by` back to the target and judged there;
-/// `None` if it does not close there. Its pivots are rounded in the move: angles that are counted from the ground line
-/// then count from the moved line.
-pub(super) fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
+/// The place in which a problem is searched.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Place {
+    /// Its canonical frame, if the timing is free and the numbers stay within their range there.
+    Frame(Frame),
+    /// The caller's frame.
+    AsItIs,
+    /// Around the target's centre, of a far target.
+    Around(Complex),
+}
+
+impl Place {
+    /// Returns the place of a problem.
+    pub(super) fn of(problem: &Problem) -> Place {
+        let centre = problem.task().centre();
+        if problem.spec().task.path.timing.is_none() {
+            let frame = Frame::of(problem);
+            if frame.exact(problem).is_some() { Place::Frame(frame) } else { Place::AsItIs }
+        } else if centre.norm() > FAR * problem.task().size() {
+            Place::Around(centre)
+        } else {
+            Place::AsItIs
+        }
+    }
+
+    /// Returns the image there of a problem of this target, its numbers not rounded to a grid; `None` if it has none.
+    pub(super) fn image(&self, problem: &Problem) -> Option<Problem> {
+        match self {
+            Place::Frame(frame) => frame.exact(problem),
+            Place::AsItIs => Some(problem.clone()),
+            Place::Around(centre) => Problem::new(problem.spec().shifted([-centre.re, -centre.im])).ok(),
+        }
+    }
+
+    /// Returns the image there of a candidate; `image` is the image of its problem.
+    pub(super) fn there(&self, image: &Problem, candidate: &Candidate) -> Option<Candidate> {
+        match self {
+            Place::Frame(frame) => frame.there(image, candidate),
+            Place::AsItIs => Some(candidate.clone()),
+            Place::Around(centre) => {
+                Some(Candidate { linkage: candidate.linkage.shifted(-centre).ok()?, ..candidate.clone() })
+            }
+        }
+    }
+
+    /// Returns a candidate that was found there, back at the target and judged by `problem`; `None` if it does not close
+    /// there.
+    pub(super) fn back(&self, problem: &Problem, candidate: &Candidate) -> Option<Candidate> {
+        match self {
+            Place::Frame(frame) => frame.back(problem, candidate),
+            Place::AsItIs => moved_back(problem, candidate, Complex::new(0.0, 0.0)),
+            Place::Around(centre) => moved_back(problem, candidate, *centre),
+        }
+    }
+
+    /// Reports the progress of a search there, in the caller's units.
+    pub(super) fn report(&self, context: Context<'_>, progress: &Progress) {
+        match self {
+            Place::Frame(frame) => frame.report(context, progress),
+            _ => (context.observer)(progress),
+        }
+    }
+}
+
+/// Returns a candidate moved by a vector and judged there; `None` if it does not close there. Its pivots are rounded in the
+/// move: angles that are counted from the ground line then count from the moved line.
+fn moved_back(problem: &Problem, candidate: &Candidate, by: Complex) -> Option<Candidate> {
     let linkage = candidate.linkage.shifted(by).ok()?;
     let timing = problem.spec().task.path.timing.as_ref();
     match timing.filter(|timing| timing.offset == AngleOffset::Ground) {

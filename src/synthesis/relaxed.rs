@@ -15,7 +15,6 @@ use crate::judge::assess::assess;
 use crate::judge::loosen::Demand;
 use crate::judge::warm::start_at;
 use crate::record::{Candidate, Evaluations};
-use crate::task::Problem;
 use crate::task::forms::start::Start;
 use rayon::prelude::*;
 
@@ -70,7 +69,7 @@ pub(super) fn search(context: Context<'_>, limit: u64) -> (Vec<Candidate>, Evalu
         if limit < LEAST_SEARCH || context.stopped() {
             break;
         }
-        let Ok(relaxed) = Problem::new(demand.dropped(problem, problem.spec().clone())) else { continue };
+        let Ok(relaxed) = problem.with(demand.dropped(problem, problem.spec().clone())) else { continue };
         let within = Context { keeper: None, ..context.of(&relaxed) };
         let ends = local::search(within, Allowance { limit, patience: limit });
         evaluations += ends.evaluations;
@@ -89,6 +88,7 @@ mod tests {
     use super::*;
     use crate::files::problem_file;
     use crate::synthesis::Budget;
+    use crate::task::Problem;
     use std::sync::atomic::AtomicBool;
 
     /// Returns a straight guide in a small box, with a tolerance and these lines under `[require]`.

@@ -5,6 +5,7 @@
 //! and the order of the fields are those of the checkpoint file.
 
 use super::belief::Belief;
+use super::front::FrontState;
 use crate::numbers::optimise::argmin_bridge::RestartsState;
 use crate::numbers::optimise::exact_float::{self, Exact};
 use crate::record::{Candidate, Evaluations};
@@ -29,6 +30,9 @@ pub struct SearchState {
     /// State of a population search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) population: Option<RestartsState>,
+    /// State of a front.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) front: Option<FrontState>,
 }
 
 /// Counters over all batches.
@@ -52,6 +56,16 @@ pub struct FreeState {
     pub(super) stages: Vec<StageState>,
     /// The ends, least merit first.
     pub(super) ends: Vec<End>,
+    /// The level of the best error on a dense target whose errors are not noise.
+    #[serde(default)]
+    pub(super) reached: Option<Level>,
+}
+
+/// A level of the error, and the evaluations after which it was reached.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Level {
+    pub(super) cost: Exact,
+    pub(super) evaluations: u64,
 }
 
 /// The results of the batches of a stage (on groups of points, or on all points) so far.

@@ -12,9 +12,9 @@ use std::sync::atomic::AtomicBool;
 
 /// Number of points of the targets: as many as need checks for a stop within a generation.
 const POINTS: usize = 1200;
-/// Greatest number of positions per point between two checks: the longest step is the judging of a candidate, with its
+/// Greatest number of positions per point between two checks: the longest step is the judging of both picks, with their
 /// distances to the whole curve and those of its cognates.
-const BETWEEN: u64 = 1500;
+const BETWEEN: u64 = 4000;
 /// Positions per point of one judged candidate with its alternatives.
 const JUDGED: u64 = 700;
 
@@ -36,7 +36,7 @@ fn job(closed: bool, timed: bool, set: &[(&str, &str)]) -> Job {
     let text = format!("format = 1\n[task.path]\npoints = {points:?}\nclosed = {closed}\n{timing}");
     let set: Vec<(String, String)> = set.iter().map(|(k, v)| ((*k).into(), (*v).into())).collect();
     let file = parse("it.toml", &text, None, &set).expect("a problem");
-    Job { name: "it".into(), source: None, unit: None, spec: file.spec }
+    Job { name: "it".into(), source: None, unit: None, spec: file.spec, front: None }
 }
 
 /// Runs a job on one thread, stopped at the check `stop_at`.
@@ -78,17 +78,17 @@ fn asks_often_enough(name: &str, job: &Job, stops: u64) {
 #[test]
 fn a_search_by_least_squares_asks_about_a_stop_often_enough() {
     for (name, closed, timed) in [("closed", true, false), ("open", false, false)] {
-        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "3000")]), 6);
+        asks_often_enough(name, &job(closed, timed, &[("solve.evaluations", "1200")]), 3);
     }
     for (name, closed) in [("closed, timed", true), ("open, timed", false)] {
-        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "3000")]), 6);
+        asks_often_enough(name, &job(closed, true, &[("solve.evaluations", "1200")]), 3);
     }
     let limits = [
-        ("solve.evaluations", "3000"),
+        ("solve.evaluations", "1200"),
         ("require.transmission_deg_min", "60"),
         ("require.footprint_in", "[-4, -4, 4, 4]"),
     ];
-    asks_often_enough("timed, with limits", &job(true, true, &limits), 6);
+    asks_often_enough("timed, with limits", &job(true, true, &limits), 3);
 }
 
 #[test]

@@ -13,12 +13,14 @@ use super::{AngleOffset, Problem, TaskError};
 /// let spec = Problem::builder(vec![[0.0, 0.0], [1.0, 1.0], [2.0, 1.5], [3.0, 1.0]]).tolerance(0.1).spec()?;
 /// assert_eq!((spec.solve.candidates, spec.require.link_ratio_max), (5, 20.0));
 /// assert!(spec.design.a.is_some_and(|limits| limits.0 > 0.0));
+/// assert!(spec.require.longest_max.is_some_and(|longest| longest > 3.0 * 3.0));
 /// let job = linkwright::Job::new("arc", spec);
 /// # Ok::<(), linkwright::TaskError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProblemBuilder {
     spec: ProblemSpec,
+    any_longest: bool,
 }
 
 impl Problem {
@@ -31,7 +33,7 @@ impl Problem {
             require: RequireSpec::default(),
             solve: SolveSpec::default(),
         };
-        ProblemBuilder { spec }
+        ProblemBuilder { spec, any_longest: false }
     }
 }
 
@@ -78,10 +80,18 @@ impl ProblemBuilder {
         self
     }
 
-    /// Sets the requirements.
+    /// Sets the requirements. A `longest_max` of `None` gets the default of a problem file: with free timing 3 sizes of
+    /// the target, where neither a length of the design nor `extent_max` is bounded.
     #[must_use]
     pub fn require(mut self, require: RequireSpec) -> Self {
         self.spec.require = require;
+        self
+    }
+
+    /// Lets links be of any length where the requirements set no `longest_max`: `longest_max = "any"` in a problem file.
+    #[must_use]
+    pub fn any_longest(mut self) -> Self {
+        self.any_longest = true;
         self
     }
 
@@ -97,7 +107,12 @@ impl ProblemBuilder {
     /// # Errors
     /// [`TaskError`] if the points with their lists make no task.
     pub fn spec(mut self) -> Result<ProblemSpec, TaskError> {
-        self.spec.design.resolve(&self.spec.task.path.to_task()?);
+        let ProblemSpec { task, design, require, .. } = &mut self.spec;
+        let task = task.path.to_task()?;
+        if require.longest_max.is_none() && !self.any_longest {
+            require.longest_max = require.default_longest(design, &task);
+        }
+        design.resolve(&task);
         Ok(self.spec)
     }
 
@@ -113,6 +128,7 @@ impl ProblemBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::task::spec::Limits;
 
     #[test]
     fn a_built_problem_is_that_of_a_file_with_the_same_keys() {
@@ -129,6 +145,35 @@ mod tests {
             .solve(SolveSpec { seed: 7, ..SolveSpec::default() });
         assert_eq!(built.clone().spec(), Ok(file.spec));
         assert!(built.build().is_ok());
+    }
+
+    #[test]
+    fn a_built_problem_has_the_longest_link_of_a_file() {
+        let points = || vec![[0.0, 0.0], [3.0, 4.0]];
+        let of_file = |lines: &str| {
+            let text = format!("format = 1\n[task.path]\npoints = [[0, 0], [3, 4]]\n{lines}");
+            crate::parse_problem("it.toml", &text, None, &[]).expect("a problem").spec
+        };
+        let built = |builder: ProblemBuilder| builder.spec().expect("a problem");
+        let plain = built(Problem::builder(points()));
+        assert_eq!((plain.require.longest_max, &plain), (Some(15.0), &of_file("")));
+        let any = built(Problem::builder(points()).any_longest());
+        assert_eq!((any.require.longest_max, &any), (None, &of_file("[require]\nlongest_max = \"any\"\n")));
+        let design = || DesignSpec { a: Some(Limits(1.0, 2.0)), ..DesignSpec::default() };
+        let bounded = built(Problem::builder(points()).design(design()));
+        assert_eq!((bounded.require.longest_max, &bounded), (None, &of_file("[design]\na = [1, 2]\n")));
+        let asked = RequireSpec { longest_max: Some(7.0), ..RequireSpec::default() };
+        let asked = built(Problem::builder(points()).require(asked).any_longest());
+        assert_eq!(asked, of_file("[require]\nlongest_max = 7\n"));
+        // What is resolved stays what it is.
+        for spec in [plain, any, bounded] {
+            let again = Problem::builder(points()).design(spec.design.clone()).require(spec.require.clone());
+            assert_eq!(built(again), spec);
+        }
+    }
+
+    #[test]
+    fn points_that_make_no_task_are_refused() {
         assert!(Problem::builder(vec![[0.0, 0.0]]).build().is_err());
         assert!(Problem::builder(vec![[0.0, 0.0], [1.0, 0.0]]).tolerances(vec![0.1]).spec().is_err());
     }

@@ -10,6 +10,7 @@
 //! | [`problem`] | a checked `ProblemSpec`, and the discrete choices of a search besides the design vector (`Setting`) |
 //! | [`requirement`] | requirements on a linkage, one file each: key, parsing, limits with their outward side, unit and words |
 //! | [`resampling`] | smoothing and resampling of digitised points into a target |
+//! | [`similarity`] | similarities that map the axes to themselves and renumberings of a path's points, of a whole problem |
 //! | [`spec`] | the problem as data: every key of a problem file with its default filled in |
 
 mod builder;
@@ -20,6 +21,7 @@ mod path;
 pub mod problem;
 pub mod requirement;
 pub mod resampling;
+pub mod similarity;
 pub mod spec;
 pub(crate) mod values;
 

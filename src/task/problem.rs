@@ -18,6 +18,7 @@ pub struct Problem {
     spec: ProblemSpec,
     task: PathTask,
     types: Vec<LinkageType>,
+    grid: f64,
 }
 
 /// The discrete choices of a search besides the design vector.
@@ -89,11 +90,32 @@ impl Problem {
         let mut types = spec.require.types.clone();
         types.sort();
         types.dedup();
-        let mut problem = Problem { spec, task, types };
+        let mut problem = Problem { spec, task, types, grid: 0.0 };
         if problem.has_to_turn_on() {
             problem.types = turning(&problem.types);
         }
         Ok(problem)
+    }
+
+    /// Creates a problem whose coordinates have been rounded to multiples of `grid`, a part of the target's size.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn on_grid(spec: ProblemSpec, grid: f64) -> Result<Self, TaskError> {
+        Ok(Problem { grid, ..Problem::new(spec)? })
+    }
+
+    /// Creates a problem of other data whose coordinates are as exact as this one's.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn with(&self, spec: ProblemSpec) -> Result<Self, TaskError> {
+        Problem::on_grid(spec, self.grid)
+    }
+
+    /// Returns the grid to which its coordinates have been rounded, a part of the target's size; 0 if they are as given.
+    pub fn grid(&self) -> f64 {
+        self.grid
     }
 
     /// Returns the data it was made from.

@@ -178,6 +178,12 @@ pub const DEFAULT_REACH: f64 = 5.0;
 pub const DEFAULT_SHORTEST: f64 = 0.02;
 
 impl DesignSpec {
+    /// Returns whether a length is bounded: a link, a distance of the coupler point or one of its coordinates.
+    pub fn bounds_a_length(&self) -> bool {
+        let DesignSpec { a, b, c, d, e, ground, coupler_x, coupler_y, .. } = self;
+        [a, b, c, d, e, ground, coupler_x, coupler_y].into_iter().any(Option::is_some)
+    }
+
     /// Fills in the defaults for a target: pivots within 5 sizes of its centre, links in [0.02, 5] sizes,
     /// coupler point within 5 sizes along and across.
     ///
@@ -355,6 +361,20 @@ fn is_advised(advice: &bool) -> bool {
     *advice
 }
 
+/// The default of `picks_within`.
+pub const PICKS_WITHIN: f64 = 1.5;
+/// The largest value of `picks_within`.
+pub const MOST_PICKS_WITHIN: f64 = 1000.0;
+
+fn usual_picks() -> f64 {
+    PICKS_WITHIN
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn are_usual_picks(within: &f64) -> bool {
+    *within == PICKS_WITHIN
+}
+
 /// The options and the limits of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SolveSpec {
@@ -377,6 +397,10 @@ pub struct SolveSpec {
     /// Whether advice is worked out beside the answers: what conflicts, what to build, what limits cost.
     #[serde(default = "advised", skip_serializing_if = "is_advised")]
     pub advice: bool,
+    /// The picks beside the closest candidate have at most this many times its error; with a tolerance, they keep within
+    /// it instead.
+    #[serde(default = "usual_picks", skip_serializing_if = "are_usual_picks")]
+    pub picks_within: f64,
     /// The options of the certificate that is worked out after the search, where one is asked for. It decides no candidate.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certify: Option<CertifySpec>,
@@ -420,6 +444,7 @@ impl Default for SolveSpec {
             evaluations: 200_000,
             time_limit_s: None,
             advice: true,
+            picks_within: PICKS_WITHIN,
             certify: None,
             genetic: GeneticParameters::default(),
             differential_evolution: DifferentialEvolutionParameters::default(),

@@ -228,6 +228,65 @@ impl JsonSchema for Bounds {
     }
 }
 
+/// The most characters of a faulty word that a message repeats.
+const MOST_QUOTED: usize = 60;
+
+/// A length, or the word "any" for no limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LengthOrAny {
+    Length(f64),
+    Any,
+}
+
+impl LengthOrAny {
+    /// Returns the length; `None` if any length will do.
+    pub(crate) fn length(self) -> Option<f64> {
+        match self {
+            LengthOrAny::Length(length) => Some(length),
+            LengthOrAny::Any => None,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for LengthOrAny {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct LengthOrAnyVisitor;
+        impl Visitor<'_> for LengthOrAnyVisitor {
+            type Value = LengthOrAny;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a length, or \"any\" for no limit")
+            }
+            visit_numbers!(LengthOrAny::Length);
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<LengthOrAny, E> {
+                match value {
+                    "any" => Ok(LengthOrAny::Any),
+                    number if number.parse::<f64>().is_ok() => {
+                        Err(E::invalid_type(Unexpected::Str(value), &self))
+                    }
+                    _ => {
+                        let given: String = value.chars().take(MOST_QUOTED).collect();
+                        let message = format_args!("{given:?} is neither a length nor \"any\"");
+                        Err(refuse(message, "write a length above 0, or \"any\" for no limit"))
+                    }
+                }
+            }
+        }
+        deserializer.deserialize_any(LengthOrAnyVisitor)
+    }
+}
+
+impl JsonSchema for LengthOrAny {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "LengthOrAny".into()
+    }
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({"anyOf": [{"type": "number"}, {"const": "any"}]})
+    }
+}
+
 /// One number for all points, or a list of one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum OneOrEach {

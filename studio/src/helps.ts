@@ -9,6 +9,8 @@ export const NAMES: Record<string, [string, string]> = {
   "require.type": ["driven by", ""],
   "require.transmission_deg_min": ["least transmission angle", "°"],
   "require.link_ratio_max": ["longest over shortest link", ""],
+  "require.extent_max": ["extent of the linkage", "unit"],
+  "require.longest_max": ["longest link", "unit"],
   "require.pivots_in": ["pivot box", "unit"],
   "require.footprint_in": ["space for the linkage", "unit"],
   "require.order": ["order of the points", ""],
@@ -18,6 +20,9 @@ export const NAMES: Record<string, [string, string]> = {
   "require.closing": ["return to the first point", ""],
   "task.path.tolerance": ["largest error", "unit"],
 };
+
+/** The requirements that the page has no control for: only what is kept of a file can state them. */
+const UNSHOWN = ["require.extent_max", "require.longest_max"];
 
 /** What is less is no length that anybody has drawn. */
 const ROUNDING = 1e-11;
@@ -45,7 +50,8 @@ function inWords(key: string, from: Value, to: Value, unit: string | undefined):
 export function changed(task: Task, key: string, to: Value): Task {
   if (key === "task.path.tolerance") return { ...task, tolerance: to as number, tolerances: undefined };
   if (key === "require.type") return { ...task, types: to as string[] };
-  if (key.startsWith("require.") && task.kept?.[key] === undefined) return { ...task, [key.slice(8)]: to };
+  if (key.startsWith("require.") && !UNSHOWN.includes(key) && task.kept?.[key] === undefined)
+    return { ...task, [key.slice(8)]: to };
   // JSON of numbers, words and lists of them is TOML too.
   return { ...task, kept: { ...task.kept, [key]: JSON.stringify(to) } };
 }

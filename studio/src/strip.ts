@@ -13,6 +13,8 @@ const WORDS: Record<string, string> = {
   type: "type",
   transmission_deg_min: "transmission angle",
   link_ratio_max: "link ratio",
+  extent_max: "extent",
+  longest_max: "longest link",
   pivots_in: "pivots",
   footprint_in: "space",
   direction: "direction of the crank",

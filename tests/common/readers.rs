@@ -195,7 +195,7 @@ pub const SEARCHES: [&str; 4] = [
 /// The job of one of [`SEARCHES`].
 pub fn search_job(text: &str) -> Job {
     let file = problem_file::parse("search.toml", text, None, &[]).expect("it is a problem");
-    Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec }
+    Job { name: file.name, source: file.source, unit: file.unit, spec: file.spec, front: None }
 }
 
 /// Checkpoints: as they are, and signed anew after whatever was done to the state, as somebody could who means harm.
@@ -244,6 +244,7 @@ pub fn entry(label: &str, record: &Record, index: usize) -> Option<Entry> {
         unit: record.problem.unit,
         measure: record.problem.resolved.measure(),
         of_run: true,
+        extent: None,
         untrue: Vec::new(),
     })
 }

@@ -3,6 +3,7 @@
 mod agreement;
 #[path = "../common/mod.rs"]
 mod common;
+mod front;
 mod leaves;
 #[path = "../synthesis/properties/problems.rs"]
 mod problems;

@@ -51,8 +51,8 @@ fn what_is_accepted_of_a_closed_path_turns_fully_whether_or_not_a_type_is_asked_
 
 #[test]
 fn a_rocker_is_refused_for_a_closed_path_and_accepted_in_words_where_the_way_back_is_any() {
-    let rocker = "[require]\ntype = [\"triple-rocker\"]\n";
-    let budget = "[solve]\nevaluations = 4000\n";
+    let rocker = "[require]\ntype = [\"triple-rocker\"]\nlongest_max = \"any\"\n";
+    let budget = "[solve]\nevaluations = 12000\ncandidates = 30\n";
     let file = parse(&oval(12, 0.0, &format!("{rocker}{budget}")));
     assert!(file.warnings[0].message.contains("no crank of these types turns fully"), "{}", file.warnings[0]);
     let strict = true_record(&oval(12, 0.0, &format!("{rocker}{budget}")));
@@ -83,8 +83,8 @@ fn a_rocker_is_refused_for_a_closed_path_and_accepted_in_words_where_the_way_bac
 fn the_way_back_is_among_what_conflicts_and_what_helps() {
     // Judged, not searched: the rocker of the loosened problem under the strict one.
     let rocker = "[require]\ntype = [\"triple-rocker\"]\n";
-    let strict = parse(&oval(12, 0.0, &format!("{rocker}[solve]\nevaluations = 1500\n")));
-    let record = true_record(&oval(12, 0.0, &format!("{rocker}[solve]\nevaluations = 1500\n")));
+    let strict = parse(&oval(12, 0.0, &format!("{rocker}[solve]\nevaluations = 6000\n")));
+    let record = true_record(&oval(12, 0.0, &format!("{rocker}[solve]\nevaluations = 6000\n")));
     let problem = Problem::new(strict.spec).expect("it is one");
     assert!(problem.has_to_turn_on());
     let among = &record.conflict.as_ref().expect("type and closing cannot be met together").among;

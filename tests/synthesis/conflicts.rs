@@ -63,9 +63,7 @@ fn impossible() -> Vec<(PathBuf, Set<'static>, &'static str)> {
 }
 
 fn with(path: &std::path::Path, set: &[(&str, &str)]) -> ProblemFile {
-    let mut set = set.to_vec();
-    set.push(("solve.evaluations", "40000"));
-    load(path, &set)
+    load(path, &[&[("solve.evaluations", "12000")], set].concat())
 }
 
 /// How many changes are proposed for impossible problems; each is typed and ends with an accepted candidate.
@@ -88,7 +86,8 @@ fn proposals_that_hold(problems: Vec<(PathBuf, Set<'static>, &'static str)>) -> 
             let again = run_on(1, with(&path, &all));
             let best = &again.candidates[0];
             assert!(best.accepted, "{name} {all:?}");
-            assert_eq!(best.error.sum_sq, relaxation.sum_sq, "{name} {all:?}");
+            // The run also fits the linkages that it meets on its way to the picks.
+            assert!(best.error.sum_sq <= relaxation.sum_sq, "{name} {all:?}");
             assert_eq!(verify(&again).expect("the problem is one"), Vec::new(), "{name} {all:?}");
             proposed += 1;
         }
@@ -185,7 +184,8 @@ fn a_tolerance_that_is_set_by_hand_takes_the_place_of_a_column() {
 #[test]
 #[ignore = "slow: .ci/run runs it"]
 fn a_proposal_is_not_much_more_than_is_needed() {
-    let set = [("require.link_ratio_max", "1.5"), ("require.transmission_deg_min", "50")];
+    let budget = ("solve.evaluations", "40000");
+    let set = [budget, ("require.link_ratio_max", "1.5"), ("require.transmission_deg_min", "50")];
     let record = run_on(2, with(&literature_path("k18"), &set));
     let of = |key: &str| {
         let found = record.relaxations.iter().find(|r| r.set.len() == 1 && r.set[0].key == key);
@@ -198,8 +198,11 @@ fn a_proposal_is_not_much_more_than_is_needed() {
         ((ratio - 0.15 * (ratio - 1.5)).to_string(), "50".to_string()),
     ];
     for (ratio, angle) in back {
-        let set =
-            [("require.link_ratio_max", ratio.as_str()), ("require.transmission_deg_min", angle.as_str())];
+        let set = [
+            budget,
+            ("require.link_ratio_max", ratio.as_str()),
+            ("require.transmission_deg_min", angle.as_str()),
+        ];
         let record = run_on(2, with(&literature_path("k18"), &set));
         assert!(record.candidates.iter().all(|c| !c.accepted), "{set:?} is enough");
     }

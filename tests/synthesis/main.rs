@@ -13,6 +13,7 @@ mod conflicts;
 mod costs;
 mod derivatives;
 mod deviation;
+mod invariance;
 mod projection;
 mod properties;
 #[path = "../common/random.rs"]

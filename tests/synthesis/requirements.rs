@@ -1,8 +1,11 @@
 //! What is required is held by the search, and what the search calls accepted the referee accepts.
 
-use crate::common::{parse, run_on};
+use crate::common::{bytes, parse, run_on};
+use linkwright::internals::files::problem_file::load_any;
 use linkwright::internals::judge::verify::verify;
 use linkwright::internals::record::{Figure, Record};
+use linkwright::internals::report::Colour;
+use linkwright::internals::report::table::candidates_table;
 use proptest::prelude::*;
 
 /// Twelve points of an egg-shaped curve with extra tables.
@@ -62,12 +65,15 @@ fn a_binding_transmission_angle_is_used_up_to_its_limit() {
 #[test]
 fn a_binding_extent_and_a_binding_longest_link_are_used_up_to_their_limits() {
     for name in ["extent_max", "longest_max"] {
-        let asked = |limit: f64| egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{name} = {limit}\n"));
+        let asked = |limit: f64| {
+            egg(&format!("[require]\ntype = [\"crank-rocker\"]\n{name} = {limit}\n[solve]\ncandidates = 1\n"))
+        };
         let number = |record: &Record| match requirement(record, name) {
             Figure::Number(value) => value,
             other => panic!("{name} = {other}"),
         };
-        let (loose, free) = (accepted_and_true(&asked(1e6)), accepted_and_true(&egg("")));
+        let any = egg("[require]\nlongest_max = \"any\"\n[solve]\ncandidates = 1\n");
+        let (loose, free) = (accepted_and_true(&asked(1e6)), accepted_and_true(&any));
         let limit = 0.85 * number(&loose);
         let tight = accepted_and_true(&asked(limit));
         let value = number(&tight);
@@ -76,6 +82,47 @@ fn a_binding_extent_and_a_binding_longest_link_are_used_up_to_their_limits() {
         assert!(sum_sq(&tight) > sum_sq(&loose), "{name} costs");
         assert!(free.candidates[0].requirements.iter().all(|r| r.name != name), "{name} is not asked for");
     }
+}
+
+#[test]
+fn a_bare_closed_path_is_drawn_by_links_of_three_sizes_at_most() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let csv = folder.path().join("oval.csv");
+    let rows: Vec<String> = (0..12)
+        .map(|i| f64::from(30 * i).to_radians())
+        .map(|t| format!("{:.1},{:.1}\n", 40.0 * t.cos(), 20.0 * t.sin()))
+        .collect();
+    std::fs::write(&csv, format!("x,y\n{}", rows.concat())).expect("written");
+    let run = |longest: Option<&str>| {
+        let mut set = vec![
+            ("task.path.closed".to_owned(), "true".to_owned()),
+            ("solve.candidates".into(), "1".into()),
+            ("solve.evaluations".into(), "40000".into()),
+        ];
+        set.extend(longest.map(|value| ("require.longest_max".to_owned(), value.to_owned())));
+        let record = run_on(2, load_any(&csv, &set).expect("a problem"));
+        assert_eq!(verify(&record).expect("the problem is one"), Vec::new());
+        assert!(record.candidates[0].accepted);
+        record
+    };
+    // The oval is 80 wide and 40 high.
+    let size = 80f64.hypot(40.0);
+    let longest = |record: &Record| {
+        let linkage = record.candidates[0].linkage;
+        linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+    };
+    let (plain, any, typed) = (run(None), run(Some("any")), run(Some(&(3.0 * size).to_string())));
+    assert!(longest(&plain) <= 3.0 * size * (1.0 + 1e-7), "{}", longest(&plain));
+    assert!(longest(&any) > 3.0 * size, "{}", longest(&any));
+    assert!(bytes(&plain) != bytes(&any));
+    // No record tells a limit that is typed from the default.
+    assert_eq!(bytes(&plain), bytes(&typed));
+    // The best answer is on the limit: the table says what it costs.
+    let cost = plain.candidates[0].costs.iter().find(|cost| cost.name == "longest_max").expect("it binds");
+    let rms = plain.candidates[0].error.rms;
+    assert!(cost.rms_without.is_some_and(|without| without < 0.5 * rms), "{cost:?}, {rms}");
+    let shown = candidates_table(&plain, Colour::Never);
+    assert!(shown.contains("longest_max (3 sizes, the default) costs"), "{shown}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use linkwright::internals::app::job::checkpoint::{Checkpoint, Writer};
 use linkwright::internals::app::job::run::{Context, Job, run_kept};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::record::{Reason, Record};
+use linkwright::internals::synthesis::front::FrontRequest;
 use linkwright::internals::synthesis::keeper::{Keeper, LEAST_PAUSE, SearchState};
 use std::fs;
 use std::path::PathBuf;
@@ -97,6 +98,31 @@ fn genetic_and_differential_evolution() {
     }
     let set = [("solve.method", "differential-evolution"), ("solve.evaluations", "4000")];
     resumed_is_unbroken(literature("e5-free", &set), 20);
+}
+
+#[test]
+fn a_front_between_its_generations() {
+    let folder = Folder::new();
+    let set = [("solve.evaluations", "40000"), ("solve.candidates", "2")];
+    let request = FrontRequest { points: 6, ..FrontRequest::default() };
+    let job = Job { front: Some(request), ..job(literature("k18", &set)) };
+    let (whole, checkpoints) = run_from(&job, SearchState::default(), 2, None);
+    assert!(whole.front.as_ref().is_some_and(|front| front.members.len() > 2));
+    let state_of = |bytes: &[u8]| -> serde_json::Value { serde_json::from_slice(bytes).expect("JSON") };
+    let of_front: Vec<&Vec<u8>> =
+        checkpoints.iter().filter(|bytes| state_of(bytes)["state"]["front"].is_object()).collect();
+    assert!(of_front.len() > 2, "{} boundaries", of_front.len());
+    for (i, at) in [0, of_front.len() / 2, of_front.len() - 1].into_iter().enumerate() {
+        let state = folder.state(of_front[at], &job);
+        let (resumed, _) = run_from(&job, state, 1 + i % 2, None);
+        assert_eq!(bytes(&resumed), bytes(&whole), "at boundary {at} of {}", of_front.len());
+    }
+    // A checkpoint of another front is no state of this one.
+    let other = FrontRequest { points: 5, ..FrontRequest::default() };
+    let other = Job { front: Some(other), ..job };
+    let (whole, _) = run_from(&other, SearchState::default(), 1, None);
+    let (resumed, _) = run_from(&other, folder.state(of_front[1], &other), 2, None);
+    assert_eq!(bytes(&resumed), bytes(&whole));
 }
 
 #[test]

@@ -248,7 +248,7 @@ fn manual_pages_are_printed() {
     assert!(synth.stdout.contains("KEY=VALUE"), "{}", synth.stdout);
     let unknown = page(&["nothing"]);
     assert!(
-        unknown.code == 2 && unknown.stderr.contains("the commands are synth, check"),
+        unknown.code == 2 && unknown.stderr.contains("the commands are synth, front, check"),
         "{}",
         unknown.stderr
     );

@@ -297,7 +297,7 @@ fn the_keys_of_the_json_are_these() {
     );
     assert_eq!(
         keys(&json["rows"][0]["figures"]),
-        "link_ratio max objective rms size sum_sq to_curve transmission"
+        "extent link_ratio max objective rms size sum_sq to_curve transmission"
     );
     assert_eq!(keys(&json["rows"][0]["ranks"]), "rms size");
     assert_eq!(json["reference"], "eighteen-point:2");

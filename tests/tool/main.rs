@@ -17,6 +17,7 @@ mod corpora;
 mod documents;
 mod exports;
 mod faults;
+mod front;
 mod long_runs;
 mod numbers_document;
 mod overwriting;

@@ -29,11 +29,75 @@ fn silent_keys_get_the_documented_defaults() {
     }
     assert_eq!((design.coupler_x, design.coupler_y), (Some(Limits(-25.0, 25.0)), Some(Limits(-25.0, 25.0))));
     assert_eq!((design.d, design.e, design.ground_angle_deg), (None, None, None));
-    assert_eq!(file.spec.require, RequireSpec::default());
+    // Links of 3 sizes at most, of a target whose size is 5.
+    assert_eq!(file.spec.require, RequireSpec { longest_max: Some(15.0), ..RequireSpec::default() });
     assert_eq!(file.spec.require.link_ratio_max, 20.0);
     assert_eq!(file.spec.solve, SolveSpec::default());
     let path = file.spec.task.path;
     assert!(!path.closed && path.weight.is_none() && path.tolerance.is_none() && path.timing.is_none());
+}
+
+#[test]
+fn longest_max_is_a_length_or_any() {
+    let asked =
+        |value: &str| parsed(&format!("{PLAIN}[require]\nlongest_max = {value}\n")).spec.require.longest_max;
+    assert_eq!((asked("7.5"), asked("8"), asked("\"any\"")), (Some(7.5), Some(8.0), None));
+    let set = |value: &str| {
+        let typed = [("require.longest_max".to_owned(), value.to_owned())];
+        problem_file::parse("arm.toml", PLAIN, None, &typed).map(|file| file.spec.require.longest_max)
+    };
+    assert_eq!((set("any"), set("\"any\""), set("7")), (Ok(None), Ok(None), Ok(Some(7.0))));
+    for (value, says) in [
+        ("none", "\"none\" is neither a length nor \"any\""),
+        ("\"20\"", "expected a length, or \"any\" for no limit, found the text \"20\""),
+        ("[1, 2]", "expected a length, or \"any\" for no limit, found a list"),
+        ("0", "longest_max = 0: a length must be positive"),
+        ("-1", "longest_max = -1: a length must be positive"),
+        ("1e13", "is too large"),
+        ("nan", "nan is not a number"),
+    ] {
+        let refused = set(value).expect_err(value);
+        assert!(refused.message.contains(says), "{value}: {refused}");
+        assert!(refused.help.is_some() || value.starts_with('['), "{value}: {refused}");
+    }
+}
+
+#[test]
+fn links_are_three_sizes_long_at_most_where_nothing_else_is_said_about_lengths() {
+    let longest = |lines: &str| parsed(&format!("{PLAIN}{lines}")).spec.require.longest_max;
+    for silent in [
+        "[design]\nA = [0, 0]\n",
+        "[design]\nA = [[-1, 1], 0]\nB = [15, 0]\n",
+        "[design]\nground_angle_deg = 10\n",
+        "[require]\nfootprint_in = [-9, -9, 9, 9]\n",
+        "[require]\npivots_in = [-9, -9, 9, 9]\n",
+        "[require]\nlink_ratio_max = 5\n",
+    ] {
+        assert_eq!(longest(silent), Some(15.0), "{silent}");
+    }
+    for key in ["a", "b", "c", "d", "e", "ground", "coupler_x", "coupler_y"] {
+        assert_eq!(longest(&format!("[design]\n{key} = [0.5, 40]\n")), None, "{key}");
+    }
+    assert_eq!(longest("[require]\nextent_max = 100\n"), None);
+    assert_eq!(longest("[task.path.timing]\ncrank_deg = [0, 30]\n"), None);
+    // Where the pivots are, no shorter links would do: 15.1 apart, and more than twice 15 from a point.
+    for far in [
+        "[design]\nA = [0, 0]\nB = [15.1, 0]\n",
+        "[design]\nA = [-26, -26]\n",
+        "[require]\npivots_in = [40, 0, 60, 10]\n",
+    ] {
+        assert_eq!(longest(far), None, "{far}");
+    }
+    // A bare list of points, and one whose size is beyond all numbers.
+    let folder = tempfile::tempdir().unwrap();
+    let bare = |text: &str| {
+        let csv = folder.path().join("p.csv");
+        std::fs::write(&csv, text).unwrap();
+        problem_file::load_any(&csv, &[]).unwrap().spec.require.longest_max
+    };
+    assert_eq!(bare("x,y\n0,0\n3,4\n"), Some(15.0));
+    assert_eq!(bare("x,y,crank_deg\n0,0,10\n3,4,20\n"), None);
+    assert_eq!(bare("x,y\n-1e12,0\n1e12,4\n"), Some(1e12));
 }
 
 #[test]

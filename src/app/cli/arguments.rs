@@ -3,8 +3,10 @@
 use crate::files::schema::SchemaKind;
 use crate::mechanism::MAX_MAGNITUDE;
 use crate::mechanism::analysis::PositionMethod;
+use crate::record::{Axis, MOST_MEMBERS};
 use crate::report::compare::SortKey;
 use crate::report::export::Format;
+use crate::synthesis::front::FrontRequest;
 use crate::synthesis::snap::Length;
 use crate::task::spec::{CertifySpec, MAX_CERTIFY_S};
 use clap::builder::RangedI64ValueParser;
@@ -32,6 +34,8 @@ pub struct Arguments {
 pub enum Command {
     /// Find linkages for problem files (or bare CSV points and SVG drawings): the main job
     Synth(Synth),
+    /// Find the trade-off of a problem: linkages none of which is beaten in error, transmission angle and size together
+    Front(Front),
     /// Check problem, linkage and points files without running anything
     Check(Check),
     /// Write a commented problem file that runs as it is
@@ -118,6 +122,52 @@ pub struct Synth {
     /// No progress and no picture on the terminal
     #[arg(long)]
     pub quiet: bool,
+    /// The front to be computed after the search: of the command `front` alone.
+    #[arg(skip)]
+    pub front: Option<FrontRequest>,
+}
+
+/// Options of `front`.
+#[derive(Debug, Args)]
+pub struct Front {
+    /// A problem file (TOML), points (CSV) or a drawing (SVG)
+    pub problem: PathBuf,
+    /// Two to four of rms, max, transmission, extent, longest, link_ratio, sensitivity
+    #[arg(long, value_name = "AXIS,..", value_delimiter = ',', default_value = "rms,transmission,extent", value_parser = axis)]
+    pub axes: Vec<Axis>,
+    /// How many linkages
+    #[arg(long, value_name = "N", default_value = "20", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=MOST_MEMBERS as i64))]
+    pub points: u16,
+    /// Where the result goes [default: results/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Where every draw comes from: as `--set solve.seed=..`
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(0..=i64::MAX as u64))]
+    pub seed: Option<u64>,
+    /// Set any key of the problem file, e.g. --set require.transmission_deg_min=30
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = |text: &str| pair(text, "require.transmission_deg_min=30"))]
+    pub set: Vec<(String, String)>,
+    /// Threads [default: all cores]; they change the time, never a digit
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint that an interrupted run left
+    #[arg(long)]
+    pub resume: bool,
+    /// Keep where the search stands not more often than this; 0: at every boundary, whatever it costs
+    #[arg(long, value_name = "SECONDS", default_value = "1", allow_negative_numbers = true, value_parser = seconds)]
+    pub checkpoint_every: Duration,
+    /// Print the record instead of the table
+    #[arg(long)]
+    pub json: bool,
+    /// No progress on the terminal
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+/// Reads the name of an axis.
+fn axis(name: &str) -> Result<Axis, String> {
+    let names = || Axis::ALL.map(Axis::name).join(", ");
+    Axis::named(name).ok_or_else(|| format!("write two to four of {}", names()))
 }
 
 /// Options of `check`.

@@ -82,7 +82,7 @@ fn job(
         return Err(CommandError::SamePlace { one, other, place: place.display().to_string() });
     }
     taken.insert(place.clone(), file.to_owned());
-    Ok((problem.into(), place))
+    Ok((Job { front: options.front.clone(), ..problem.into() }, place))
 }
 
 /// Returns the folder for the summary of a batch.

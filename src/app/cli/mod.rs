@@ -13,6 +13,7 @@
 //! | [`compare`] | `compare`: results and linkages side by side |
 //! | [`error`] | errors of commands, apart from those that another layer names |
 //! | [`export`] | `export`: a linkage as a file to build from |
+//! | [`front`] | `front`: the trade-off between error, transmission angle, size and other figures |
 //! | [`inputs`] | inputs of `synth`: files and folders of problem files, each with the folder of its result |
 //! | [`interrupt`] | signals |
 //! | [`man`] | `man`: the manual pages, made from the same definitions that `--help` is made from |
@@ -20,7 +21,7 @@
 //! | [`output`] | output files at places that a user names: files of other origin are kept, unless `--force` |
 //! | [`progress`] | a bar on a terminal, plain lines otherwise; nothing for work that is over before one could read it |
 //! | [`report`] | `report`: a result as a page, from its record alone |
-//! | [`result`] | RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate, or a linkage file |
+//! | [`result`] | RESULT on the command line: a folder, its record.json, either with `:2` for one candidate (or `:buildable`, `:smallest`, `:best-transmission`, `:front-2`), or a linkage file |
 //! | [`snap`] | `snap`: lengths brought to stock sizes |
 //! | [`studio`] | `studio`: a local page that answers while a target is drawn |
 //! | [`suite`] | `suite`: problems whose answer is known, from many seeds |
@@ -36,6 +37,7 @@ mod check;
 mod compare;
 mod error;
 mod export;
+mod front;
 mod inputs;
 mod interrupt;
 mod man;
@@ -131,6 +133,7 @@ fn arguments() -> Result<Arguments, Ended> {
 fn dispatch(command: Command) -> Result<Ended, Ended> {
     match command {
         Command::Synth(options) => synth::run(&options),
+        Command::Front(options) => front::run(options),
         Command::Check(options) => check::run(&options),
         Command::New(options) => new::run(&options),
         Command::Compare(options) => compare::run(&options),

@@ -168,6 +168,8 @@ fn best(progress: &Progress) -> String {
     match progress.best_sum_sq {
         Some(sum) if progress.accepted => format!("best {sum:.4e}"),
         Some(sum) => format!("best {sum:.4e} (not acceptable yet)"),
+        // The front, which has no single best answer.
+        None if progress.accepted => "from acceptable answers".into(),
         None => "nothing acceptable yet".into(),
     }
 }
@@ -216,6 +218,7 @@ mod tests {
         assert_eq!(told(Some(2.0), true), "best 2.0000e0");
         assert_eq!(told(Some(2.0), false), "best 2.0000e0 (not acceptable yet)");
         assert_eq!(told(None, false), "nothing acceptable yet");
+        assert_eq!(told(None, true), "from acceptable answers");
     }
 
     #[test]

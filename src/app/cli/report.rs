@@ -7,7 +7,7 @@ use super::{Ended, terminal};
 use crate::app::job::folder::RECORD;
 use crate::files::diagnostic::escaped;
 use crate::files::generator::FileKind;
-use crate::report::html::report_html;
+use crate::report::html::{Shown, report_showing};
 use std::path::{Path, PathBuf};
 
 /// So many of the figures that are not so are named.
@@ -18,16 +18,13 @@ pub fn run(options: &Report) -> Result<Ended, Ended> {
     let run = read_run_of(&options.result, "report")?;
     is_true(&run)?;
     let first = match run.which {
-        Which::All => 0,
-        Which::Rank(rank) => rank - 1,
-        // It follows the candidates, unless it is one of them.
-        Which::Buildable => run.record.buildable.as_ref().map_or(0, |c| match c.rank {
-            0 => run.record.candidates.len(),
-            rank => rank - 1,
-        }),
+        Which::All => Shown::Candidate(0),
+        Which::Rank(rank) => Shown::Candidate(rank - 1),
+        Which::Member(number) => Shown::Member(number - 1),
+        Which::Pick(pick) => Shown::Pick(pick),
     };
     let place = options.out.clone().unwrap_or_else(|| beside(Path::new(&run.named)));
-    let page = report_html(&run.record, first);
+    let page = report_showing(&run.record, first);
     Output::new([&options.result], options.force).write(&[(&place, FileKind::Html, page)])?;
     terminal::answer(&format!("{}\n", terminal::shown(&place)));
     Ok(Ended::Good)

@@ -1,15 +1,15 @@
-//! RESULT on the command line: a folder, its record.json, either with `:2` (or `:buildable`) for one candidate,
-//! or a linkage file. Every command that takes one reads it here.
+//! RESULT on the command line: a folder, its record.json, either with `:2` for one candidate (or `:buildable`,
+//! `:smallest`, `:best-transmission`, `:front-2`), or a linkage file. Every command that takes one reads it here.
 
 use super::{Ended, refuse, refuse_at, refuse_path, terminal};
 pub use crate::app::inputs::{Given, NoCandidate, Run, Which};
 use crate::app::job::files;
-use crate::app::job::folder::{BUILDABLE, RECORD, read_record};
+use crate::app::job::folder::{RECORD, read_record};
 use crate::files::linkage_file;
 use crate::files::linkage_file::AnyLinkageFile;
 use crate::judge::verify::{Mismatch, verify};
 use crate::mechanism::Linkage;
-use crate::record::Record;
+use crate::record::{Pick, Record};
 use std::path::{Path, PathBuf};
 
 impl From<NoCandidate> for Ended {
@@ -94,30 +94,46 @@ fn is_linkage_file(argument: &Path) -> bool {
 
 fn read_run(argument: &Path) -> Result<Run, Ended> {
     let (folder, name) = split(argument);
-    let which = match (name, name.and_then(|name| name.parse().ok())) {
-        (None, _) => Which::All,
-        (_, Some(rank @ 1..)) => Which::Rank(rank),
-        (Some(BUILDABLE), _) => Which::Buildable,
-        _ => {
-            let why = format!("after the colon stands a candidate's rank, from 1, or the word {BUILDABLE}");
-            return Err(refuse_path(argument, why));
-        }
+    let which = match name {
+        None => Which::All,
+        Some(name) => Which::named(name).ok_or_else(|| refuse_path(argument, choices()))?,
     };
     let record = read_record(folder).map_err(refuse)?;
-    let n = record.candidates.len();
-    match which {
-        Which::Rank(rank) if rank > n => {
-            return Err(refuse_path(argument, format!("there is no candidate {rank}, the result has {n}")));
-        }
-        Which::Buildable if record.buildable.is_none() => {
-            let why = format!(
-                "the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
-            );
-            return Err(refuse_path(argument, why));
-        }
-        _ => {}
+    if let Some(why) = missing(&record, which) {
+        return Err(refuse_path(argument, why));
     }
     let folder = folder.display().to_string();
     let named = folder.trim_end_matches("/record.json").trim_end_matches('/').to_owned();
     Ok(Run { named, record, which })
+}
+
+/// Returns the names that can follow a colon, in words.
+fn choices() -> String {
+    let picks = Pick::ALL.map(Pick::name).join(", ");
+    format!(
+        "after the colon stands a candidate's rank, from 1, front-1, front-2, .. for a linkage of the front, or {picks}"
+    )
+}
+
+/// Returns the reason why a record does not have what was chosen; `None` if it does.
+fn missing(record: &Record, which: Which) -> Option<String> {
+    let n = record.candidates.len();
+    match which {
+        Which::Rank(rank) if rank > n => Some(format!("there is no candidate {rank}, the result has {n}")),
+        Which::Member(number) => match &record.front {
+            None => Some("the result has no front; linkwright front PROBLEM computes one".to_owned()),
+            Some(front) if number > front.members.len() => {
+                Some(format!("there is no linkage {number} in the front, it has {}", front.members.len()))
+            }
+            Some(_) => None,
+        },
+        Which::Pick(Pick::Buildable) if record.buildable.is_none() => Some(format!(
+            "the result has no buildable candidate besides its {n} (one is offered where the first has warnings)"
+        )),
+        Which::Pick(pick) if record.pick(pick).is_none() => Some(format!(
+            "the result has no {} linkage (it is looked for where a candidate is accepted and solve.advice is on)",
+            pick.words()
+        )),
+        Which::All | Which::Rank(_) | Which::Pick(_) => None,
+    }
 }

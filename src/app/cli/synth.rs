@@ -6,7 +6,7 @@ use super::inputs;
 use super::inputs::Input;
 use super::progress::Shown;
 use super::{Ended, interrupt, refuse, terminal};
-use crate::app::job::folder::{FolderError, OutputFile, Replace, check_files, write_files};
+use crate::app::job::folder::{FRONT_HTML, FolderError, OutputFile, Replace, check_files, write_files};
 use crate::app::job::run::Job;
 use crate::app::job::save;
 use crate::app::job::save::{Done, Listener, Options, Ran, SaveError, Written};
@@ -15,6 +15,7 @@ use crate::record::{Reason, Record};
 use crate::report::batch_csv::batch_csv;
 use crate::report::certificate::certificate_text;
 use crate::report::exact::exact_text;
+use crate::report::front::front_text;
 use crate::report::html::Extent;
 use crate::report::plot::{Glyphs, terminal_plot};
 use crate::report::table::{BatchRow, batch_summary, candidates_table};
@@ -283,10 +284,16 @@ fn summary(
 
 /// Returns the text that is printed for one problem.
 fn page(Done { record, folder, timing, .. }: &Done, brief: bool, all: bool) -> String {
-    let mut text = candidates_table(record, terminal::colour());
-    text.push_str(&exact_text(record, all, terminal::colour()));
-    text.push_str(&certificate_text(record, terminal::colour()));
-    if !brief && stdout().is_terminal() && !record.candidates.is_empty() {
+    let colour = terminal::colour();
+    let front = front_text(record, colour);
+    let has_front = !front.is_empty();
+    let mut text =
+        if has_front { front } else { candidates_table(record, colour) + &exact_text(record, all, colour) };
+    if record.front.is_some() && !has_front {
+        text.push_str("\n  The front is empty: no linkage that was found is acceptable and near enough to the target.\n");
+    }
+    text.push_str(&certificate_text(record, colour));
+    if !brief && !has_front && stdout().is_terminal() && !record.candidates.is_empty() {
         text.push('\n');
         text.push_str(&terminal_plot(record, 0, 72, 22, Glyphs::Braille));
     }
@@ -297,7 +304,8 @@ fn page(Done { record, folder, timing, .. }: &Done, brief: bool, all: bool) -> S
     });
     if !record.candidates.is_empty() && !brief {
         let quoted = if shown.contains(' ') { format!("\"{shown}\"") } else { shown };
-        text.push_str(&format!("  Look at {quoted}/candidate-1.svg, then: linkwright verify {quoted}\n"));
+        let look = if has_front { FRONT_HTML } else { "candidate-1.svg" };
+        text.push_str(&format!("  Look at {quoted}/{look}, then: linkwright verify {quoted}\n"));
     }
     text.push('\n');
     text

@@ -11,8 +11,7 @@ use crate::judge::certificate::{CheckError, Checked as CheckedLeaves, check};
 use crate::judge::verify::{Checked, Mismatch, unchecked, verify_certificate};
 use crate::numbers::leaves::{LeavesError, MAX_BYTES};
 use crate::record::Record;
-use crate::report::text::COLUMNS;
-use crate::report::text::wrapped;
+use crate::report::text::{COLUMNS, plural, wrapped};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -74,10 +73,9 @@ fn certificate_of(path: &Path, record: &Record) -> Result<Vec<Mismatch>, Ended> 
 
 /// Says of a true record how much of it was recomputed.
 fn say_true(shown: &str, record: &Record, options: &Verify, leaves: Option<CheckedLeaves>) {
-    let n = record.candidates.len();
-    let word = if n == 1 { "candidate" } else { "candidates" };
+    let subjects = subjects(record);
     terminal::answer(&format!(
-        "{shown}: true. The figures and verdicts of {n} {word} were recomputed and agree.\n"
+        "{shown}: true. The figures and verdicts of {subjects} were recomputed and agree.\n"
     ));
     terminal::answer(&limits_of(record, options));
     if options.certificate {
@@ -88,6 +86,15 @@ fn say_true(shown: &str, record: &Record, options: &Verify, leaves: Option<Check
             "  The leaves cover every linkage and each was shown in arithmetic of its own: {leaves} leaves, {boxes} \
              boxes.\n"
         ));
+    }
+}
+
+/// The linkages of a record that were judged anew, counted: `5 candidates and 20 linkages of the front`.
+fn subjects(record: &Record) -> String {
+    let candidates = plural(record.candidates.len(), "candidate");
+    match record.front.as_ref().map_or(0, |front| front.members.len()) {
+        0 => candidates,
+        n => format!("{candidates} and {} of the front", plural(n, "linkage")),
     }
 }
 

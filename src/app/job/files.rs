@@ -1,10 +1,15 @@
 //! The files of a result's folder, as bytes: pure functions of the record, apart from its times.
+//!
+//! `linkage-N.toml` and `curve-N.csv` belong to the candidate of rank N; if the record has a front, to its N-th member
+//! instead. The picks' files have their names in place of a number. `candidate-N.svg` is always the drawing of the
+//! candidate of rank N.
 
-use crate::app::job::folder::BUILDABLE;
+use crate::app::inputs::MEMBER;
+use crate::app::job::folder::{FRONT_CSV, FRONT_HTML};
 use crate::app::job::run::AdviceSeconds;
 use crate::files::linkage_file;
 use crate::files::name;
-use crate::record::Record;
+use crate::record::{Candidate, Pick, Record};
 use crate::report::html::Extent;
 use crate::report::{contact_sheet, csv, exact_sheet, html, svg};
 
@@ -39,9 +44,11 @@ impl Timing {
     pub fn words(&self) -> String {
         let advice = self.advice_s.unwrap_or_default();
         let others = [
+            (advice.picks, "picks"),
             (advice.costs, "what limits cost"),
             (advice.conflicts, "what conflicts"),
             (advice.buildable, "what can be built"),
+            (advice.front, "the front"),
             (self.total_s - self.search_s - self.beside_s, "reading and writing"),
         ];
         let others = others.into_iter().filter(|(seconds, _)| *seconds >= WORTH_SAYING_S);
@@ -78,12 +85,11 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
         ("timing.json".to_string(), json(serde_json::to_string_pretty(timing))?),
         ("candidates.csv".to_string(), csv::candidates_csv(record).into_bytes()),
     ];
-    let ranked = record.candidates.iter().zip(1..).map(|(c, n): (_, usize)| (n.to_string(), c));
-    let buildable = record.buildable.iter().map(|c| (BUILDABLE.to_owned(), c));
-    for (which, c) in ranked.chain(buildable) {
-        let toml = linkage_file::to_toml(&linkage_name(record, &which), record.problem.unit, &c.linkage);
-        files.push((format!("linkage-{which}.toml"), toml.into_bytes()));
-        files.push((format!("curve-{which}.csv"), csv::candidate_curve_csv(c).into_bytes()));
+    for Listed { file, name, candidate } in listed(record) {
+        let toml =
+            linkage_file::to_toml(&linkage_name(record, &name), record.problem.unit, &candidate.linkage);
+        files.push((format!("linkage-{file}.toml"), toml.into_bytes()));
+        files.push((format!("curve-{file}.csv"), csv::candidate_curve_csv(candidate).into_bytes()));
     }
     let drawings: Vec<String> = (0..record.candidates.len()).map(|i| svg::candidate_svg(record, i)).collect();
     if record.candidates.len() > 1 {
@@ -97,10 +103,55 @@ pub fn files_of(record: &Record, timing: &Timing, extent: Extent) -> Result<Vec<
     files.push(("report.html".into(), html::report_with_drawings(record, 0, &drawn, extent).into_bytes()));
     files
         .extend((1..).zip(drawings).map(|(n, drawing)| (format!("candidate-{n}.svg"), drawing.into_bytes())));
+    for (pick, candidate) in picks(record) {
+        let drawing = svg::drawing_svg(record, Some(candidate));
+        files.push((format!("candidate-{}.svg", pick.name()), drawing.into_bytes()));
+    }
+    if record.front.is_some() {
+        files.push((FRONT_CSV.into(), csv::front_csv(record).into_bytes()));
+        files.push((FRONT_HTML.into(), html::front_html(record).into_bytes()));
+    }
     Ok(files)
 }
 
-/// Returns the name in the linkage file of a candidate: the problem's name with the candidate's rank (or `buildable`).
+/// A linkage with files of its own.
+struct Listed<'a> {
+    /// The part of the names of its files: `2` or `smallest`.
+    file: String,
+    /// The part of its own name, as after the colon in `results/egg:front-2`.
+    name: String,
+    candidate: &'a Candidate,
+}
+
+/// Returns the linkages with files of their own.
+fn listed(record: &Record) -> Vec<Listed<'_>> {
+    let numbered = |(candidate, n): (_, usize), prefix: &str| Listed {
+        file: n.to_string(),
+        name: format!("{prefix}{n}"),
+        candidate,
+    };
+    let mut listed: Vec<Listed<'_>> = match &record.front {
+        Some(front) => {
+            let members = front.members.iter().map(|member| &member.candidate);
+            members.zip(1..).map(|member| numbered(member, MEMBER)).collect()
+        }
+        None => record.candidates.iter().zip(1..).map(|ranked| numbered(ranked, "")).collect(),
+    };
+    listed.extend(picks(record).map(|(pick, candidate)| {
+        let name = pick.name().to_owned();
+        Listed { file: name.clone(), name, candidate }
+    }));
+    listed
+}
+
+/// Returns the picks that are not the closest candidate itself.
+fn picks(record: &Record) -> impl Iterator<Item = (Pick, &Candidate)> {
+    let all = Pick::ALL.into_iter().filter_map(|pick| Some((pick, record.pick(pick)?)));
+    all.filter(|(_, candidate)| candidate.rank != 1)
+}
+
+/// Returns the name in the linkage file of a candidate: the problem's name with the candidate's rank (or
+/// `buildable`, `front-2`).
 pub fn linkage_name(record: &Record, which: &str) -> String {
     name::with_suffix(&name::legal(&record.problem.name, "linkage"), &format!("-{which}"))
 }

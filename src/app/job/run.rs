@@ -1,21 +1,25 @@
 //! One run: from a problem to its record. It joins the other modules.
 
 use crate::files::problem_file::ProblemFile;
-use crate::judge::assess::to_raw;
+use crate::judge::assess::{measure_curve, to_raw};
 use crate::judge::certificate;
+use crate::judge::costs::marginal;
 use crate::judge::rank::holds_an_exact;
 use crate::mechanism::Unit;
 use crate::numbers::optimise::population::PopulationError;
 use crate::record::digest::NotWritten;
-use crate::record::{ProblemRecord, Reason, Record};
+use crate::record::{Candidate, Front, Picks, ProblemRecord, Reason, Record};
 use crate::synthesis::conflicts::Explained;
+use crate::synthesis::front::{self, FrontRequest};
 use crate::synthesis::keeper::Keeper;
+use crate::synthesis::picks;
 use crate::synthesis::{self, Budget, Observer, SearchOutcome, answers, conflicts, continuation, plan};
 use crate::synthesis::{errors_without, offered_cognates};
 use crate::task::Problem;
 use crate::task::TaskError;
 use crate::task::forms::precision::{Refusal, precision_points};
 use crate::task::spec::{Method, ProblemSpec};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -31,31 +35,33 @@ pub struct Job {
     pub unit: Option<Unit>,
     /// The problem with every default filled in.
     pub spec: ProblemSpec,
+    /// The front to be computed after the search, if any.
+    pub front: Option<FrontRequest>,
 }
 
 impl Job {
     /// Creates a job from its name and a problem without a source and without a unit.
     pub fn new(name: impl Into<String>, spec: ProblemSpec) -> Self {
-        Job { name: name.into(), source: None, unit: None, spec }
+        Job { name: name.into(), source: None, unit: None, spec, front: None }
     }
 }
 
 impl From<ProblemFile> for Job {
     fn from(ProblemFile { name, source, unit, spec, .. }: ProblemFile) -> Self {
-        Job { name, source, unit, spec }
+        Job { name, source, unit, spec, front: None }
     }
 }
 
 impl From<ProblemRecord> for Job {
     fn from(ProblemRecord { name, source, unit, resolved, .. }: ProblemRecord) -> Self {
-        Job { name, source, unit, spec: resolved }
+        Job { name, source, unit, spec: resolved, front: None }
     }
 }
 
 impl TryFrom<Job> for ProblemRecord {
     type Error = NotWritten;
 
-    fn try_from(Job { name, source, unit, spec }: Job) -> Result<Self, NotWritten> {
+    fn try_from(Job { name, source, unit, spec, .. }: Job) -> Result<Self, NotWritten> {
         ProblemRecord::new(name, source, unit, spec)
     }
 }
@@ -89,12 +95,22 @@ pub enum RunError {
 /// The seconds spent on each part of the advice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct AdviceSeconds {
+    /// The smallest and the best transmitting linkage.
+    pub picks: f64,
     /// Costs of the limits on which candidates lie.
     pub costs: f64,
     /// Conflicts of requirements, and the relaxations that help.
     pub conflicts: f64,
     /// Warnings, a family, and a buildable candidate.
     pub buildable: f64,
+    /// The front, if one is asked for.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub front: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_nothing(seconds: &f64) -> bool {
+    *seconds < 1e-6
 }
 
 /// A record with the time that its search took.
@@ -152,12 +168,14 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
     let mut outcome = plan::search(inputs)?;
     offered_cognates::offer(inputs, &mut outcome.candidates);
     let search_s = start.elapsed().as_secs_f64();
+    let picked = picks::beside(inputs, &mut outcome);
     let mut advice_s = AdviceSeconds::default();
     let mut so_far = search_s;
     let mut lap = |part: &mut f64| {
         let now = start.elapsed().as_secs_f64();
         (*part, so_far) = (now - so_far, now);
     };
+    lap(&mut advice_s.picks);
     let explained = explained(inputs, &mut outcome)?;
     // After it: the list of candidates is final, and ranks refer to it.
     continuation::finish(&problem, &mut outcome);
@@ -171,12 +189,17 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         candidate.error.to_raw = to_raw(&problem, candidate);
     }
     outcome.reason = reached(&problem, &outcome);
+    let picks = picked.picks.map(|picks| settled(&problem, &outcome.candidates, picks));
+    let front = job.front.as_ref().map(|request| fronted(inputs, request, &mut outcome, &picked.met));
+    lap(&mut advice_s.front);
     let beside_s = start.elapsed().as_secs_f64() - search_s;
     let asked = job.clone().try_into()?;
     let found = Record::new(asked, outcome.used, outcome.reason, outcome.evaluations, outcome.candidates);
     let record = Record {
         family: beside.family,
         buildable: beside.buildable,
+        picks,
+        front,
         conflict: explained.conflict,
         relaxations: explained.relaxations,
         repeats: outcome.repeats,
@@ -184,6 +207,47 @@ pub fn run_kept(job: &Job, context: &Context<'_>, keeper: Option<&Keeper<'_>>) -
         ..found
     };
     Ok(Finished { record, search_s, beside_s, advice_s })
+}
+
+/// Computes the front from all that was met; its cost and its end become those of the outcome.
+fn fronted(
+    context: synthesis::Context<'_>,
+    request: &FrontRequest,
+    outcome: &mut SearchOutcome,
+    met: &[Candidate],
+) -> Front {
+    let known: Vec<Candidate> =
+        outcome.candidates.iter().chain(&outcome.others).chain(met).cloned().collect();
+    let mut found = front::search(context, request, &known, context.problem.spec().solve.evaluations);
+    outcome.evaluations += found.evaluations;
+    outcome.reason = found.reason.unwrap_or(outcome.reason);
+    found.front.members.par_iter_mut().for_each(|member| annotate(context.problem, &mut member.candidate));
+    found.front
+}
+
+/// Makes each pick equal to the candidate with the same linkage and crank angles, which has been annotated since it was
+/// picked; a pick that is none of them is annotated as candidates are.
+fn settled(problem: &Problem, candidates: &[Candidate], mut picks: Picks) -> Picks {
+    for pick in picks.smallest.iter_mut().chain(&mut picks.best_transmission) {
+        let is_it = |c: &&Candidate| {
+            (c.linkage, &c.crank_deg, &c.t1_at) == (pick.linkage, &pick.crank_deg, &pick.t1_at)
+        };
+        match candidates.iter().find(is_it) {
+            Some(same) => *pick = same.clone(),
+            None => annotate(problem, pick),
+        }
+    }
+    picks
+}
+
+/// Gives a linkage that is not among the ranked candidates its warnings, the costs of its limits, and its distance from
+/// the points as they were given.
+fn annotate(problem: &Problem, candidate: &mut Candidate) {
+    (candidate.rank, candidate.alternatives, candidate.certified) = (0, Vec::new(), None);
+    measure_curve(problem, candidate);
+    candidate.costs = marginal(problem, candidate);
+    candidate.error.to_raw = to_raw(problem, candidate);
+    answers::annotate(problem, candidate);
 }
 
 /// Returns the reason why a search ended, consistent with its list: a target is reached only if an accepted candidate of

@@ -212,7 +212,8 @@ pub fn put_in_place(mut written: Vec<Written>) -> Vec<Result<Done, SaveError>> {
 }
 
 /// Returns the record of an earlier run of the same problem that has nothing left to do: of the same version, with the
-/// same number of candidates, with advice if that is asked for, neither interrupted nor ended by a time limit, nor by a
+/// same number of candidates, with the same picks and front, with advice if that is asked for,
+/// neither interrupted nor ended by a time limit, nor by a
 /// budget that has been raised since.
 fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, NotWritten> {
     let Ok(record) = read_record(place) else { return Ok(None) };
@@ -220,13 +221,21 @@ fn done_before(job: &Job, place: &Path) -> Result<Option<Record>, NotWritten> {
     let same = record.problem.digest == digest(&job.spec)?
         && record.tool.version == env!("CARGO_PKG_VERSION")
         && then.candidates == now.candidates
-        && then.advice == now.advice;
+        && then.advice == now.advice
+        && then.picks_within == now.picks_within
+        && is_front_of(job, &record);
     let over = match record.termination.reason {
         Reason::Cancelled | Reason::TimeLimit | Reason::Snapped | Reason::ByHand => false,
         Reason::EvaluationLimit | Reason::Stalled => now.evaluations <= then.evaluations,
         Reason::Converged | Reason::TargetReached => true,
     };
     Ok(Some(record).filter(|record| same && over && is_proved(job, record)))
+}
+
+/// Returns whether a record has the front that a job asks for: with the same axes and number of members, or none at all.
+fn is_front_of(job: &Job, record: &Record) -> bool {
+    let recorded = record.front.as_ref().map(|front| (&front.axes, front.points));
+    recorded == job.front.as_ref().map(|request| (&request.axes, request.points))
 }
 
 /// Returns whether nothing is left to prove of what the job asks for: the bound is proved with the gap that is asked

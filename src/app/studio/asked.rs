@@ -354,14 +354,17 @@ fn table<T: Serialize>(value: &T) -> toml::Table {
 /// Returns the keys that a problem gives and the studio has no control for.
 fn kept(spec: &ProblemSpec) -> BTreeMap<String, String> {
     let ProblemSpec { task, design, require, solve } = spec;
-    let mut kept = task.path.to_task().map_or_else(
-        |_| BTreeMap::new(),
-        |task| differing("design", &bounds(design, &task), &toml::Table::new()),
-    );
-    let others = [
-        ("require", table(require), table(&RequireSpec::default())),
-        ("solve", table(solve), table(&SolveSpec::default())),
-    ];
+    let (mut kept, mut usual) = (BTreeMap::new(), RequireSpec::default());
+    if let Ok(task) = task.path.to_task() {
+        let given = bounds(design, &task);
+        kept = differing("design", &given, &toml::Table::new());
+        usual.longest_max = given.try_into().ok().and_then(|given| require.default_longest(&given, &task));
+        if usual.longest_max.is_some() && require.longest_max.is_none() {
+            kept.insert("require.longest_max".into(), "\"any\"".into());
+        }
+    }
+    let others =
+        [("require", table(require), table(&usual)), ("solve", table(solve), table(&SolveSpec::default()))];
     for (name, mut given, usual) in others {
         let shown = TABLES.iter().filter(|(table, _)| *table == name).flat_map(|(_, keys)| *keys);
         given.retain(|key, _| !shown.clone().any(|shown| *shown == key));
@@ -491,6 +494,33 @@ mod tests {
         assert!(again.published[0].source.starts_with("x\"\n[task"));
         moved.expect.as_mut().expect("known").answer.best_known_sum_sq = Some(-1.0);
         assert!(moved.problem().is_err());
+    }
+
+    #[test]
+    fn the_longest_link_is_kept_only_where_it_is_not_the_default() {
+        let of = |lines: &str| {
+            let text = format!("format = 1\n[task.path]\npoints = [[0, 0], [3, 4], [3, 1]]\n{lines}");
+            let problem = parse("arm", &text, None, &[]).expect("a problem");
+            let ask = Ask::of(&problem).expect("it fits");
+            assert_eq!(ask.problem().expect("a problem").spec, problem.spec);
+            (ask.kept.get("require.longest_max").cloned(), problem.spec.require.longest_max, ask)
+        };
+        let (kept, longest, mut ask) = of("");
+        assert_eq!((kept, longest), (None, Some(15.0)));
+        ask.points[1] = [6.0, 8.0];
+        assert_eq!(
+            ask.problem().expect("a problem").spec.require.longest_max,
+            Some(30.0),
+            "it follows the size"
+        );
+        let any = Some("\"any\"".to_owned());
+        assert_eq!(of("[require]\nlongest_max = \"any\"\n").0, any);
+        assert_eq!(of("[require]\nlongest_max = 7\n").0, Some("7.0".to_owned()));
+        assert_eq!(of("[require]\nlongest_max = 15\n").0, None);
+        // Bounds that a file gives although they are the usual ones leave it without a limit.
+        assert_eq!(of("[design]\na = [0.1, 25]\n").0, any);
+        assert_eq!(of("[design]\na = [0.2, 25]\n").0, None);
+        assert_eq!(of("[require]\nextent_max = 90\n").0, None);
     }
 
     #[test]

@@ -29,8 +29,8 @@ use crate::task::forms::precision::precision_points;
 use crate::task::forms::reduced;
 use crate::task::requirement::{RawRequire, RequirementKind};
 use crate::task::spec::{
-    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, Method, Objective, PathSpec, ProblemSpec, RequireSpec,
-    SolveSpec, TaskSpec, TimingSpec,
+    MAX_CANDIDATES, MAX_EVALUATIONS, MAX_POPULATION, MOST_PICKS_WITHIN, Method, Objective, PathSpec,
+    ProblemSpec, RequireSpec, SolveSpec, TaskSpec, TimingSpec,
 };
 use raw::RawSolve;
 use std::path::Path;
@@ -142,7 +142,11 @@ fn parse_at(
         path::path_of(&toml, path, whereabouts, raw.unit, tolerance_is_set)?;
     let mut design = design::spec_of(&raw.design.0);
     design::check(&toml, &design)?;
-    let require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
+    let longest_is_silent = raw.require.0.longest_max.is_none();
+    let mut require = require_of(&toml, raw.require.0, path.timing.as_ref())?;
+    if longest_is_silent {
+        require.longest_max = require.default_longest(&design, &task);
+    }
     warnings.extend(design::against_requirements(&toml, &design, &require)?);
     let asked = raw.solve.0.certify;
     let mut solve = solve_of(&toml, raw.solve.0)?;
@@ -219,6 +223,16 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
         let help = "write seconds above 0, or remove the key for no limit";
         return toml.refuse("solve.time_limit_s", message, help);
     }
+    let picks_within = raw.picks_within.map_or(default.picks_within, |within| within.0);
+    if !(1.0..=MOST_PICKS_WITHIN).contains(&picks_within) {
+        let message =
+            format!("picks_within = {picks_within}: a factor of the least error, 1 to {MOST_PICKS_WITHIN}");
+        return toml.refuse(
+            "solve.picks_within",
+            message,
+            "write 1.5 for picks with half as much error again",
+        );
+    }
     let (OnlyTable(genetic), OnlyTable(differential_evolution)) = (raw.genetic, raw.differential_evolution);
     let parameters = [
         ("genetic", genetic.check(), genetic.population),
@@ -248,6 +262,7 @@ fn solve_of(toml: &TomlText<'_>, raw: RawSolve) -> Checked<SolveSpec> {
         evaluations,
         time_limit_s: raw.time_limit_s.map(|t| t.0),
         advice: raw.advice.unwrap_or(default.advice),
+        picks_within,
         certify: None,
         genetic,
         differential_evolution,

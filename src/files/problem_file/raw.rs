@@ -149,6 +149,8 @@ pub(crate) struct RawSolve {
     pub time_limit_s: Option<Number>,
     /// Whether advice is worked out beside the answers: which requirements conflict, what can be built, what limits cost; where silent, true.
     pub advice: Option<bool>,
+    /// How many times the error of the closest candidate the picks (the smallest, the best transmitting) may have, 1 to 1000; 1.5 where silent. With a tolerance they keep within it instead.
+    pub picks_within: Option<Number>,
     /// Whether a lower bound of the sum of squares is proved after the search (prescribed timing); where silent, false.
     #[serde(default)]
     pub certify: bool,

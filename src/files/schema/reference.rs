@@ -204,6 +204,9 @@ impl<'a> Page<'a> {
         if let Some(choices) = self.words(value) {
             return if choices.is_empty() { "text".into() } else { "a word".into() };
         }
+        if let Some(word) = value["const"].as_str() {
+            return format!("`\"{word}\"`");
+        }
         match kind(value).as_deref() {
             Some("number") => "number".into(),
             Some("integer") => "whole number".into(),

@@ -11,13 +11,7 @@ impl Comparison<'_> {
     /// Checks everything in the record apart from the candidates' figures.
     pub(super) fn extras(&mut self, record: &Record) {
         for candidate in record.candidates.iter().chain(&record.buildable) {
-            let mut own = self.of_candidate(candidate.rank);
-            own.warnings(candidate);
-            let serves = mirror_image_serves(own.problem, candidate);
-            own.same("mirror_serves", candidate.mirror_serves, serves);
-            for (i, alternative) in candidate.alternatives.iter().enumerate() {
-                own.under(&format!("alternative {}: ", i + 1)).alternative(candidate, alternative);
-            }
+            self.of_candidate(candidate.rank).annotations(candidate);
         }
         let words = |family: Option<&Family>| {
             family.map_or("none".to_string(), |f| format!("{}, exact {}: {}", f.dimension, f.exact, f.text))
@@ -30,11 +24,26 @@ impl Comparison<'_> {
         }
     }
 
-    fn buildable(&mut self, record: &Record, buildable: &Candidate) {
+    /// Checks the warnings of a candidate, whether its mirror image serves, and its alternatives.
+    pub(super) fn annotations(&mut self, candidate: &Candidate) {
+        self.warnings(candidate);
+        let serves = mirror_image_serves(self.problem, candidate);
+        self.same("mirror_serves", candidate.mirror_serves, serves);
+        for (i, alternative) in candidate.alternatives.iter().enumerate() {
+            self.under(&format!("alternative {}: ", i + 1)).alternative(candidate, alternative);
+        }
+    }
+
+    /// Checks that a candidate beside the ranked ones has the rank of the equal one, 0 if there is none.
+    pub(super) fn rank_beside(&mut self, record: &Record, candidate: &Candidate) {
         let known = record.candidates.iter().find(|c| {
-            (c.linkage, &c.crank_deg, &c.t1_at) == (buildable.linkage, &buildable.crank_deg, &buildable.t1_at)
+            (c.linkage, &c.crank_deg, &c.t1_at) == (candidate.linkage, &candidate.crank_deg, &candidate.t1_at)
         });
-        self.same("buildable.rank", buildable.rank, known.map_or(0, |c| c.rank));
+        self.same("rank", candidate.rank, known.map_or(0, |c| c.rank));
+    }
+
+    fn buildable(&mut self, record: &Record, buildable: &Candidate) {
+        self.under("buildable.").rank_beside(record, buildable);
         self.same("buildable.accepted", buildable.accepted, true);
         let warned = record.candidates.first().map_or(&[][..], |best| &best.warnings);
         if warned.is_empty() {

@@ -7,6 +7,8 @@
 //! | [`coverage`] | coverage of the verification of a record: each key is recomputed, held to limits, or not checked |
 //! | [`exact`] | verification of exact linkages: the census adds up, and each linkage passes the points, has the stated abilities, and is proved again |
 //! | [`extras`] | verification of the other parts of a record: warnings, alternatives, the family, the buildable candidate |
+//! | [`front`] | verification of a front: every figure of its members, that none dominates another, and its knees |
+//! | [`picks`] | verification of the picks: each has an error that is allowed, and is no worse in its wish than the candidates |
 //! | [`searched`] | verification of a record's statements about its search |
 //! | [`mod@verdict`] | verdicts on requirements, compared exactly except for those whose figure lies within rounding of the limit |
 
@@ -27,6 +29,8 @@ mod comparison;
 mod coverage;
 mod exact;
 mod extras;
+mod front;
+mod picks;
 mod searched;
 mod verdict;
 
@@ -96,6 +100,8 @@ pub fn verify(record: &Record) -> Result<Vec<Mismatch>, ProblemError> {
         whole.of_candidate(candidate.rank).candidate(candidate);
     }
     whole.extras(record);
+    whole.picks(record);
+    whole.front(record);
     whole.exact(record);
     whole.certificate(record);
     Ok(mismatches)
@@ -174,10 +180,10 @@ impl Comparison<'_> {
         }
     }
 
-    /// Checks every figure and verdict of a candidate.
-    fn candidate(&mut self, recorded: &Candidate) {
+    /// Checks every figure and verdict of a candidate; returns whether it could be judged.
+    fn candidate(&mut self, recorded: &Candidate) -> bool {
         let at = (&recorded.linkage, recorded.crank_deg.as_slice(), recorded.t1_at.as_slice());
-        let Some(found) = self.judged(at, "open at one of them") else { return };
+        let Some(found) = self.judged(at, "open at one of them") else { return false };
         self.errors(recorded, &found);
         self.number(
             "grashof_margin",
@@ -202,6 +208,7 @@ impl Comparison<'_> {
         self.costs(recorded, &found);
         self.timing(&recorded.linkage, &recorded.crank_deg);
         self.requirements(recorded, &found);
+        true
     }
 
     fn errors(&mut self, recorded: &Candidate, found: &Candidate) {

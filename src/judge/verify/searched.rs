@@ -3,7 +3,7 @@
 
 use super::Comparison;
 use crate::judge::rank::holds_an_exact;
-use crate::record::{RELAXED, Reason, Record};
+use crate::record::{Picks, RELAXED, Reason, Record};
 use crate::task::Problem;
 use crate::task::spec::Method;
 
@@ -52,12 +52,23 @@ impl Comparison<'_> {
         }
     }
 
-    /// Checks that the budget holds, and that each evaluation computes at least one position.
+    /// Checks that the budget holds, beside which the picks and the front have budgets of their own, and that each
+    /// evaluation computes at least one position.
     fn evaluations(&mut self, record: &Record) {
         let spent = record.evaluations;
         let budget = record.problem.resolved.solve.evaluations;
-        if spent.objective > budget {
-            let most = format!("at most {budget}, the budget");
+        let for_picks = record.picks.as_ref().map_or(0, |picks| picks.evaluations);
+        let most = Picks::most_evaluations(budget);
+        if for_picks > most {
+            let found = format!("at most {most} beside a budget of {budget}");
+            self.differ("picks.evaluations", for_picks, found);
+        }
+        let for_front = record.front.as_ref().map_or(0, |front| front.evaluations);
+        if spent.objective > budget.saturating_add(for_picks).saturating_add(for_front) {
+            let most = match for_picks.saturating_add(for_front) {
+                0 => format!("at most {budget}, the budget"),
+                beside => format!("at most {budget}, the budget, and {beside} for picks and front"),
+            };
             self.differ("evaluations.objective", spent.objective, most);
         }
         if spent.positions < spent.objective {

@@ -79,6 +79,13 @@ impl FourBar {
         })
     }
 
+    /// Computes the joints from a frame that [`FourBar::frame`] gave: C, D and P.
+    pub fn joints_of(&self, frame: &Frame) -> [Complex; 3] {
+        let crank_pin = self.crank_pivot() + frame.crank * self.crank();
+        let at = |along: Complex| crank_pin + frame.coupler * along;
+        [crank_pin, at(Complex::new(self.coupler(), 0.0)), at(self.coupler_offset())]
+    }
+
     /// Computes dP by the nine natural coordinates (Ax, Ay, Bx, By, a, b, c, d, e) and by the crank angle.
     ///
     /// It follows from the shape's gradient with coupler_x = (d^2 + b^2 - e^2)/(2b) and coupler_y = t2 sqrt(d^2 -

@@ -122,7 +122,7 @@ impl Comparison {
     /// column `rank_KEY` for each follows, with a reference a column `KEY_percent_above` for each figure.
     pub fn csv(&self) -> String {
         let several = self.keys.len() > 1;
-        let head = names(&PLACE).chain(FIGURES).chain(["size"]).chain(names(&PARAMETERS));
+        let head = names(&PLACE).chain(FIGURES).chain(["size", "extent"]).chain(names(&PARAMETERS));
         let mut head: Vec<String> = head.chain(["unit", "recorded_differently"]).map(str::to_owned).collect();
         if several {
             head.extend(self.keys.iter().map(|key| format!("rank_{}", key.name())));
@@ -134,7 +134,7 @@ impl Comparison {
             let entry = &row.entry;
             let mut line = cells(&PLACE, row);
             line.extend(figures(&entry.candidate, &FIGURES));
-            line.push(number(row.figure_of(SortKey::Size)));
+            line.extend([SortKey::Size, SortKey::Extent].map(|key| number(row.figure_of(key))));
             line.extend(parameters(&entry.candidate.linkage));
             line.push(entry.unit.map_or(String::new(), |unit| unit.label().to_owned()));
             line.push(cell(&entry.untrue.join("; ")));

@@ -22,6 +22,8 @@ pub enum SortKey {
     LinkRatio,
     /// The diagonal of the box that the joints sweep over the circuit, least first.
     Size,
+    /// The diagonal of the box of all joints and P over the motion that the points use, least first.
+    Extent,
     /// The objective of the candidate's problem, least first: the sum of squared errors with its weights, or the
     /// largest error, in parts of the tolerances if these are given.
     Objective,
@@ -29,7 +31,7 @@ pub enum SortKey {
 
 impl SortKey {
     /// Every key.
-    pub const ALL: [SortKey; 8] = [
+    pub const ALL: [SortKey; 9] = [
         SortKey::SumSq,
         SortKey::Rms,
         SortKey::Max,
@@ -37,13 +39,14 @@ impl SortKey {
         SortKey::Transmission,
         SortKey::LinkRatio,
         SortKey::Size,
+        SortKey::Extent,
         SortKey::Objective,
     ];
 
     /// Returns the name on the command line: `to_curve`.
     pub fn name(self) -> &'static str {
         const NAMES: [&str; SortKey::ALL.len()] =
-            ["sum_sq", "rms", "max", "to_curve", "transmission", "link_ratio", "size", "objective"];
+            ["sum_sq", "rms", "max", "to_curve", "transmission", "link_ratio", "size", "extent", "objective"];
         NAMES[self as usize]
     }
 

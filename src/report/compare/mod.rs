@@ -46,6 +46,9 @@ pub struct Entry {
     pub unit: Option<Unit>,
     /// The measure by which the candidates of that problem are ranked.
     pub measure: Measure,
+    /// The extent: the diagonal of the box of all joints and P over the motion that the points use; `None` if it is not
+    /// known.
+    pub extent: Option<f64>,
     /// Whether it is a candidate of a run; otherwise it is a linkage file.
     pub of_run: bool,
     /// The false statements of its record; the figures here are the recomputed ones.
@@ -79,6 +82,7 @@ impl Entry {
             SortKey::Transmission => self.candidate.transmission_deg.worst,
             SortKey::LinkRatio => self.candidate.link_ratio,
             SortKey::Size => self.size(),
+            SortKey::Extent => self.extent.unwrap_or(f64::NAN),
             SortKey::Objective => error.objective,
         }
     }

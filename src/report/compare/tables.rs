@@ -8,11 +8,11 @@ use crate::report::grid::{Colour, Grid, Ink, plain, verdict};
 use crate::report::text::{COLUMNS, NO_NUMBER, clean, columns_of, indented, shortened_in_front, significant};
 
 /// The headings of the figures after the first.
-const SHOWN: [&str; 6] = ["rms", "max", "to curve", "transm.", "ratio", "size"];
+const SHOWN: [&str; 7] = ["rms", "max", "to curve", "transm.", "ratio", "size", "extent"];
 /// The largest width of a label, in columns.
 const LABEL: usize = 28;
 /// The smallest width of a label, in columns.
-const LEAST_LABEL: usize = 8;
+const LEAST_LABEL: usize = 6;
 
 /// Returns `+12.3 %`, `0 %`, or `-` without a number.
 pub(super) fn signed_percent(percent: Option<f64>) -> String {
@@ -88,9 +88,9 @@ impl Comparison {
     }
 
     /// Returns the figures of the tables, in the order of their columns.
-    pub(super) fn shown_figures(&self) -> [SortKey; 7] {
-        use SortKey::{LinkRatio, Max, Rms, Size, ToCurve, Transmission};
-        [self.first_figure(), Rms, Max, ToCurve, Transmission, LinkRatio, Size]
+    pub(super) fn shown_figures(&self) -> [SortKey; 8] {
+        use SortKey::{Extent, LinkRatio, Max, Rms, Size, ToCurve, Transmission};
+        [self.first_figure(), Rms, Max, ToCurve, Transmission, LinkRatio, Size, Extent]
     }
 
     fn figures(&self, colour: Colour, label: usize) -> String {
@@ -98,7 +98,7 @@ impl Comparison {
             (Left, &["#", "linkage"]),
             (Right, &["behind", self.first_head("sum of sq")]),
             (Right, &SHOWN),
-            (Left, &["accepted"]),
+            (Left, &["ok"]),
         ]);
         let first = self.first_figure();
         for row in &self.rows {

@@ -2,7 +2,7 @@
 
 use super::{Comparison, Ranked, SortKey, strokes};
 use crate::report::canvas::{Anchor, Canvas, Spot, bold, font, palette, px};
-use crate::report::scene::round_length;
+use crate::report::scale::{LOGARITHMIC, Scale};
 use crate::report::text::brief;
 
 pub(super) const WIDTH: f64 = 640.0;
@@ -11,50 +11,7 @@ const LEFT: f64 = 66.0;
 const RIGHT: f64 = 30.0;
 const TOP: f64 = 22.0;
 const BOTTOM: f64 = 52.0;
-/// The ratio of the greatest to the least error above which the scale is logarithmic.
-const LOGARITHMIC: f64 = 12.0;
 const RADII: [f64; 2] = [7.0, 17.0];
-
-/// One axis, which maps values to the range from 0 to 1.
-struct Axis {
-    low: f64,
-    high: f64,
-    logarithmic: bool,
-}
-
-impl Axis {
-    /// Returns an axis that contains the values, with a margin.
-    fn new(values: &[f64], may_be_logarithmic: bool) -> Axis {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if may_be_logarithmic && low > 0.0 && high > LOGARITHMIC * low {
-            return Axis { low: low.ln() - 0.12, high: high.ln() + 0.12, logarithmic: true };
-        }
-        let room = if high > low { 0.08 * (high - low) } else { 0.1 * high.abs().max(f64::MIN_POSITIVE) };
-        Axis { low: (low - room).max(0.0), high: high + room, logarithmic: false }
-    }
-
-    fn part(&self, value: f64) -> f64 {
-        let value = if self.logarithmic { value.ln() } else { value };
-        ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
-    }
-
-    /// Returns round values on the axis.
-    fn ticks(&self) -> Vec<f64> {
-        if self.logarithmic {
-            let (low, high) = (self.low.exp(), self.high.exp());
-            let decades = low.log10().floor() as i32..=high.log10().ceil() as i32;
-            let few = decades.clone().count() > 5;
-            let steps: &[u8] = if few { &[1] } else { &[1, 2, 5] };
-            let number = |(e, m): (i32, u8)| format!("{m}e{e}").parse::<f64>().unwrap_or(1.0);
-            let all = decades.flat_map(|e| steps.iter().map(move |m| (e, *m))).map(number);
-            return all.filter(|x| (low..=high).contains(x)).collect();
-        }
-        let step = round_length((self.high - self.low) / 4.0);
-        let first = (self.low / step).ceil();
-        (0..12).map(|i| (first + f64::from(i)) * step).take_while(|x| *x <= self.high).collect()
-    }
-}
 
 /// Draws the marks of all rows that have the three figures; `None` if fewer than two have.
 pub(super) fn trade_off<'c>(comparison: &'c Comparison) -> Option<Canvas> {
@@ -67,7 +24,7 @@ pub(super) fn trade_off<'c>(comparison: &'c Comparison) -> Option<Canvas> {
         return None;
     }
     let values = |k: usize| rows.iter().map(|row| row.2[k]).collect::<Vec<f64>>();
-    let (across, up) = (Axis::new(&values(0), true), Axis::new(&values(1), false));
+    let (across, up) = (Scale::new(&values(0), LOGARITHMIC), Scale::new(&values(1), f64::INFINITY));
     let largest = values(2).into_iter().fold(f64::MIN_POSITIVE, f64::max);
     let spot = |x: f64, y: f64| {
         Spot::new(
@@ -97,7 +54,7 @@ pub(super) fn trade_off<'c>(comparison: &'c Comparison) -> Option<Canvas> {
     Some(canvas)
 }
 
-fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Axis, up: &Axis) {
+fn axes(canvas: &mut Canvas, comparison: &Comparison, across: &Scale, up: &Scale) {
     let faint = format!(r#"stroke="{}" stroke-width="1""#, palette::FAINT);
     let muted = font(12, palette::MUTED);
     let (left, right, top, bottom) = (LEFT, WIDTH - RIGHT, TOP, HEIGHT - BOTTOM);

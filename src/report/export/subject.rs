@@ -7,6 +7,7 @@ use crate::mechanism::{AssemblyMode, FourBar};
 use crate::record::{Candidate, Record};
 use crate::report::scene::positions_at;
 use crate::report::text::clean;
+use crate::report::words::standing;
 
 /// A linkage to export.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,10 +36,7 @@ impl Subject {
         positions.retain(|(angle, _)| angle.is_finite());
         Subject {
             name: record.problem.name.clone(),
-            standing: match candidate.rank {
-                0 => "the buildable candidate".to_owned(),
-                rank => format!("candidate {rank} of {}", record.candidates.len()),
-            },
+            standing: standing(record, candidate),
             unit: record.problem.unit,
             linkage: candidate.linkage,
             target: path.points.clone(),

@@ -1,7 +1,7 @@
 //! The sections of the report page, in their order.
 
 use super::page::{list, paragraph, section};
-use super::{Extent, candidate, data, exact, practicality, proof, table};
+use super::{Extent, Shown, candidate, data, exact, picks, practicality, proof, table};
 use crate::files::name;
 use crate::record::{Candidate, Record};
 use crate::report::certificate as certificate_words;
@@ -10,14 +10,15 @@ use crate::report::{price, table as text_table, words};
 use maud::{Markup, PreEscaped, html};
 
 /// Returns everything that is visible on the page, section by section.
-pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent) -> Markup {
+pub(super) fn body(record: &Record, drawings: &[&str], extent: Extent, shown: Shown) -> Markup {
     let found = !record.candidates.is_empty();
     html! {
         (header(record))
         main {
             @if found { (LIVE) }
-            (table::candidates(record))
-            (candidate::articles(record, drawings))
+            (table::candidates(record, shown))
+            (picks::picks(record, extent))
+            (candidate::articles(record, drawings, shown))
             (practicality::practicality(record, extent))
             (proof::proof(record))
             (exact::exact(record))

@@ -1,12 +1,13 @@
 //! One candidate in words: figures, mobility and defects, requirements, dimensions, other linkages with the same curve.
 
-use super::data::{BUILDABLE_KEY, MOST_ALTERNATIVES, candidate_key};
+use super::data::{MOST_ALTERNATIVES, candidate_key};
+use super::extras::{Shown, extras};
 use super::page::{paragraph, still};
 use super::table::{Cell, Column, minus, tabulated};
 use super::{dimensions, mobility, page, requirements};
-use crate::record::{Alternative, Candidate, Record};
+use crate::record::{Alternative, Candidate, Pick, Record};
 use crate::report::text::{clean, significant};
-use crate::report::words;
+use crate::report::{picks, words};
 use maud::{Markup, html};
 
 /// The largest number of candidates with a drawing for readers without a script.
@@ -17,14 +18,14 @@ pub(super) fn drawn(record: &Record) -> usize {
     record.candidates.len().min(MOST_DRAWN)
 }
 
-/// Returns an article for each candidate, and for the buildable candidate if it is not among them.
-pub(super) fn articles(record: &Record, drawings: &[&str]) -> Markup {
+/// Returns an article for each candidate, and for each other linkage that the page shows.
+pub(super) fn articles(record: &Record, drawings: &[&str], shown: Shown) -> Markup {
     html! {
         @for (i, c) in record.candidates.iter().enumerate() {
             (ranked(record, i, c, drawings.get(i).copied().filter(|_| i < MOST_DRAWN)))
         }
-        @if let Some(c) = record.buildable.as_ref().filter(|c| c.rank == 0) {
-            (article(record, c, (BUILDABLE_KEY, "buildable", "The buildable answer"), None))
+        @for extra in extras(record, shown) {
+            (article(record, extra.candidate, (&extra.key, &extra.short, &extra.title()), None))
         }
     }
 }
@@ -45,7 +46,7 @@ fn article(
     (key, short, title): (&str, &str, &str),
     drawing: Option<&str>,
 ) -> Markup {
-    let best = record.buildable.as_ref().is_some_and(|b| b.rank == c.rank && b.rank > 0);
+    let is = |pick| record.pick(pick).is_some_and(|p| p.rank == c.rank && p.rank > 0);
     html! {
         article.card data-key=(key) data-short=(short) aria-labelledby={ (key) "-title" } {
             h2 id={ (key) "-title" } { (title) }
@@ -56,7 +57,12 @@ fn article(
                     h3 { "What it can do" }
                     (mobility::mobility(record, c))
                     (warnings(c))
-                    @if best { (paragraph("", "It is the best one without the warnings of the first.")) }
+                    @if is(Pick::Buildable) {
+                        (paragraph("", "It is the best one without the warnings of the first."))
+                    }
+                    @for pick in picks::BOTH.into_iter().filter(|pick| is(*pick)) {
+                        (paragraph("", &format!("It is the {} one {}.", pick.words(), picks::within(record))))
+                    }
                     (requirements::requirements(record, c))
                 }
                 div {

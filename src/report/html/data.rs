@@ -1,5 +1,6 @@
 //! The data of the player: the target and the mechanisms, each with its motion, as JSON.
 
+use super::extras::{Shown, extras, first_key};
 use super::motion::Drive;
 use crate::mechanism::{AssemblyMode, FourBar, MAX_MAGNITUDE};
 use crate::record::{Candidate, Record};
@@ -41,7 +42,8 @@ struct Target {
 /// A linkage that can be played.
 #[derive(Serialize)]
 struct Mechanism<'a> {
-    /// The key: `c1`: candidate 1; `b`: the buildable one; `c1a2`: its second alternative; `x7`: the seventh exact
+    /// The key: `c1`: candidate 1; `b`: the buildable one (or
+    /// another of [`extras`]); `c1a2`: its second alternative; `x7`: the seventh exact
     /// linkage.
     key: String,
     /// The name for readers.
@@ -63,12 +65,9 @@ pub(super) fn candidate_key(index: usize) -> String {
     format!("c{}", index + 1)
 }
 
-/// The key of the buildable candidate if it is not among the candidates.
-pub(super) const BUILDABLE_KEY: &str = "b";
-
 impl<'a> Data<'a> {
-    /// Returns the data of a record; the candidate `first` (from 0) is shown first.
-    pub(super) fn new(record: &'a Record, first: usize) -> Self {
+    /// Returns the data of a record, of which `shown` is shown first.
+    pub(super) fn new(record: &'a Record, shown: Shown) -> Self {
         let path = &record.problem.resolved.task.path;
         let chosen = chosen(record);
         let of_candidate = |key, name, c: &'a Candidate| {
@@ -83,10 +82,9 @@ impl<'a> Data<'a> {
                 mechanisms.push(Mechanism::new(key, name, passed, Some(c.error.max_at), &chosen));
             }
         }
-        let buildable = record.buildable.as_ref().filter(|c| c.rank == 0);
-        mechanisms.extend(
-            buildable.map(|c| of_candidate(BUILDABLE_KEY.to_owned(), "the buildable answer".to_owned(), c)),
-        );
+        for extra in extras(record, shown) {
+            mechanisms.push(of_candidate(extra.key, format!("the {}", extra.name), extra.candidate));
+        }
         for (x, i) in record.exact.iter().flat_map(|exact| &exact.linkages).take(MOST_EXACT).zip(1..) {
             let (key, name) = (format!("x{i}"), format!("exact linkage {i}"));
             mechanisms.push(Mechanism::new(key, name, (&x.linkage, &x.crank_deg, &x.t1_at), None, &chosen));
@@ -102,10 +100,7 @@ impl<'a> Data<'a> {
                 tolerance: path.tolerance.as_ref().map(pick),
             },
             transmission_deg_min: record.problem.resolved.require.transmission_deg_min,
-            first: match record.candidates.get(first) {
-                Some(_) => candidate_key(first),
-                None => BUILDABLE_KEY.to_owned(),
-            },
+            first: first_key(record, shown),
             mechanisms,
         }
     }

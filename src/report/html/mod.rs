@@ -6,9 +6,12 @@
 //! body.rs         the page's sections in their order; a new section is a line there
 //! table.rs        candidates side by side
 //! candidate.rs    one candidate in words: mobility.rs, requirements.rs, dimensions.rs
+//! picks.rs        the closest, the smallest, the best transmitting and the buildable linkage side by side
+//! extras.rs       the linkages that the page shows beside the ranked candidates
 //! practicality.rs layers, clearances and sensitivities of the linkages that one would build
 //! exact.rs        every linkage through nine points
 //! proof.rs        the certificate, and the number of times the best answer was found
+//! front.rs        the page of a front, with its scatter plot in scatter.rs
 //! player/*.mjs    position solver, drawing, charts, transport: independent of this page
 //! report.mjs, report.css    the page around the player
 //! ```
@@ -23,14 +26,20 @@ mod candidate;
 mod data;
 mod dimensions;
 mod exact;
+mod extras;
+mod front;
 mod mobility;
 mod motion;
 pub(super) mod page;
+mod picks;
 mod practicality;
 mod proof;
 mod requirements;
+mod scatter;
 pub(super) mod table;
 
+pub use extras::Shown;
+pub use front::front_html;
 pub use motion::{Drive, DriveKind};
 
 /// The player's modules, each after those that it imports.
@@ -46,16 +55,21 @@ pub(super) const PLAYER: [&str; 7] = [
 /// The style sheet of the player, with its colours.
 pub(super) const PLAYER_STYLE: &str = include_str!("player/player.css");
 
-/// Returns the report of a record, with its candidate `first` (counted from 0) shown first: a whole HTML file.
+/// Returns the report of a record as [`report_showing`] does, with its candidate `first` (counted from 0) shown first.
+pub fn report_html(record: &Record, first: usize) -> String {
+    report_showing(record, Shown::Candidate(first))
+}
+
+/// Returns the report of a record: a whole HTML file.
 ///
 /// It is a pure function of the record. It is made for records that [`verify`](crate::judge::verify::verify) accepts and shows
 /// any other without harm. Of more than 400 target points the player gets 400; there are drawings for readers without a
 /// script for the first ten candidates.
-pub fn report_html(record: &Record, first: usize) -> String {
+pub fn report_showing(record: &Record, shown: Shown) -> String {
     let drawn: Vec<String> =
         (0..candidate::drawn(record)).map(|i| super::svg::candidate_svg(record, i)).collect();
     let drawn: Vec<&str> = drawn.iter().map(String::as_str).collect();
-    report_with_drawings(record, first, &drawn, Extent::Full)
+    page_with_drawings(record, shown, &drawn, Extent::Full)
 }
 
 /// The extent of a page.
@@ -70,13 +84,17 @@ pub enum Extent {
 /// Returns the report as [`report_html`] does, for a caller who has the candidates' drawings already:
 /// [`candidate_svg`](super::svg::candidate_svg) of each, in their order, is most of the work.
 pub fn report_with_drawings(record: &Record, first: usize, drawings: &[&str], extent: Extent) -> String {
+    page_with_drawings(record, Shown::Candidate(first), drawings, extent)
+}
+
+fn page_with_drawings(record: &Record, shown: Shown, drawings: &[&str], extent: Extent) -> String {
     let mut modules = PLAYER.to_vec();
     modules.push(include_str!("report.mjs"));
     page::Page {
         title: &format!("{}: linkages", super::words::problem_name(record)),
         styles: &[PLAYER_STYLE, include_str!("report.css")],
-        body: body::body(record, drawings, extent),
-        data: &page::embedded(&data::Data::new(record, first)),
+        body: body::body(record, drawings, extent, shown),
+        data: &page::embedded(&data::Data::new(record, shown)),
         modules: &modules,
     }
     .render()

@@ -1,6 +1,7 @@
 //! The table of the candidates side by side, each figure in a column of its own.
 
-use super::data::{BUILDABLE_KEY, candidate_key};
+use super::data::candidate_key;
+use super::extras::{Shown, extras};
 use super::page::{paragraph, section, still};
 use crate::record::{Candidate, Record};
 use crate::report::text::{NO_NUMBER, significant};
@@ -109,7 +110,7 @@ pub(super) fn scrolling<T: Render>(
 }
 
 /// Returns the section with the table.
-pub(super) fn candidates(record: &Record) -> Markup {
+pub(super) fn candidates(record: &Record, shown: Shown) -> Markup {
     if record.candidates.is_empty() {
         let drawing = crate::report::svg::candidate_svg(record, 0);
         return section(
@@ -141,10 +142,9 @@ pub(super) fn candidates(record: &Record) -> Markup {
     let ranked =
         record.candidates.iter().enumerate().map(|(i, c)| (c, candidate_key(i), (i + 1).to_string()));
     // After all others when sorted by rank.
-    let buildable = record.buildable.as_ref().filter(|c| c.rank == 0);
-    let buildable = buildable.map(|c| (c, BUILDABLE_KEY.to_owned(), "buildable".to_owned()));
+    let others = extras(record, shown).into_iter().map(|extra| (extra.candidate, extra.key, extra.short));
     let rows = ranked
-        .chain(buildable)
+        .chain(others)
         .enumerate()
         .map(|(i, (c, key, name))| (Some(key), Cell::number(i as f64 + 1.0, name), c));
     let lengths = match words::unit_suffix(record).trim() {

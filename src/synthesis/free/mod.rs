@@ -5,8 +5,8 @@
 //! ends and along the differences between them. It fits the `SHORT` most promising for a few steps, fits the best
 //! `MIDDLE` of those further, and finishes those that can still matter.
 //!
-//! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, to find
-//! detail that grouping blurs. The correspondence between the points and the curve is recomputed for their ends
+//! Dense targets are explored in groups of points ([`super::coarse`]); now and then all points are explored, or one point
+//! of each group, to find detail that the groups' means blur. The correspondence between the points and the curve is recomputed for their ends
 //! (`reassign`), and these are fitted again for as long as that gains. The ends of a batch are finished on all points
 //! after it, each of them once however many rounds reached it. Ends whose points have strayed to a circuit or branch
 //! that the referee will refuse are led back (`required`). Rounds run in parallel in batches of `BATCH` and are read in
@@ -19,8 +19,11 @@
 //! batches brought no new one. Sparse targets are searched through `LEAST_BATCHES` batches at least, so that rounds
 //! near known ends get their turn. On a dense target the rule depends on the residuals. If they are noise, uncorrelated
 //! from point to point, `NOISE_HITS` answers within `IN_NOISE` of each other are enough. If neighbouring residuals are
-//! correlated, the linkage misses a shape that another linkage may have, and `PATIENT_BATCHES` batches are searched at
-//! least. An exact answer needs no second hit.
+//! correlated, the linkage misses a shape that another linkage may have. The search then ends when the error has kept
+//! its level (within a factor `LEVEL`) for several times as many evaluations as it took to reach it: `LEVEL_TIMES` if
+//! `LEVEL_HITS` independent rounds came to that level, else `QUIET_TIMES`. An error below `SMALL` sizes may be that
+//! of a clean curve whose own linkage is still to be found: `PATIENT_BATCHES` batches are searched at least. An exact
+//! answer needs no second hit.
 
 pub use super::constants::free::LEAST_MATCHED;
 
@@ -30,15 +33,16 @@ use super::coarse::Coarse;
 use super::driver::{Allowance, Found, Standing, Strategy, are_enough, drive};
 use super::polish::{basins_wanted, promising};
 use super::starts::Starts;
-use super::states::{Counts, End, FreeState, SearchState, StageState};
+use super::states::{Counts, End, FreeState, Level, SearchState, StageState};
 use super::{Context, HitsSoFar, repeats};
 use crate::judge::rank::{exact_cost, searched};
 use crate::mechanism::dot;
 use crate::numbers::optimise::exact_float::Exact;
 use crate::record::Candidate;
 use crate::synthesis::constants::free::{
-    ALIKE, BATCH, IN_NOISE, KEPT, LEAST_BATCHES, NOISE_HITS, PATIENT_BATCHES, QUIET_BATCHES, WHOLE_ELSE,
-    WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
+    ALIKE, BATCH, CORNERS_AT, CORNERS_EVERY, IN_NOISE, KEPT, LEAST_BATCHES, LEVEL, LEVEL_HITS, LEVEL_LEAST,
+    LEVEL_TIMES, MANY_HITS, MANY_LEAST, NOISE_HITS, NOISE_LEAST, PATIENT_BATCHES, QUIET_BATCHES, QUIET_LEAST,
+    QUIET_TIMES, SMALL, WHOLE_ELSE, WHOLE_EVERY, WHOLE_IN_NOISE, WHOLE_MOST,
 };
 use crate::task::Problem;
 use batch::Batch;
@@ -72,6 +76,7 @@ fn likeness(problem: &Problem, candidate: &Candidate) -> f64 {
 struct Free<'a> {
     problem: &'a Problem,
     coarse: Option<&'a Coarse>,
+    corners: Option<(&'a Coarse, &'a Starts<'a>)>,
     whole: &'a Starts<'a>,
     /// Number of distinct answers wanted.
     wanted: usize,
@@ -89,9 +94,12 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     let coarse = Coarse::of(problem);
     let whole = Starts::new(problem);
     let grouped = coarse.as_ref().map(|coarse| Starts::new(&coarse.problem));
+    let corners = Coarse::of_corners(problem);
+    let of_corners = corners.as_ref().map(|corners| Starts::new(&corners.problem));
     let mut free = Free {
         problem,
         coarse: coarse.as_ref(),
+        corners: corners.as_ref().zip(of_corners.as_ref()),
         whole: &whole,
         wanted: basins_wanted(problem),
         exact: exact_cost(problem),
@@ -103,9 +111,7 @@ pub(super) fn search(context: Context<'_>, allowance: Allowance) -> Option<Found
     let points = coarse.as_ref().map_or(problem.task().len(), |coarse| coarse.problem.task().len());
     let earlier = context.keeper.and_then(|keeper| keeper.earlier().free.clone());
     if let Some(state) = earlier.filter(|state| state.is_of(problem, points)) {
-        if state.stages.len() > 1 {
-            free.begin_stage(None, &whole);
-        }
+        (1..state.stages.len()).for_each(|_| free.begin_next_stage());
         free.at = state.judged_again(problem);
     }
     let reason = drive(context, allowance, &mut free);
@@ -128,16 +134,38 @@ impl<'a> Free<'a> {
         self.at.stages.push(StageState::BEGUN);
     }
 
-    /// Returns the index of the stage of the next batch: now and then all points are explored, to find detail that
-    /// grouping blurs.
-    fn next_stage(&mut self) -> usize {
-        let grouped_few = self.coarse.is_some() && self.problem.task().len() <= WHOLE_MOST;
-        let on_all_at = if is_noise(self.problem, &self.at.ends) { WHOLE_IN_NOISE } else { WHOLE_ELSE };
-        let on_all = grouped_few && self.at.counts.batch % WHOLE_EVERY == on_all_at;
-        if self.setups.len() == 1 && on_all {
-            self.begin_stage(None, self.whole);
+    /// Returns whether all points are explored now and then: groups of few points.
+    fn has_whole(&self) -> bool {
+        self.coarse.is_some() && self.problem.task().len() <= WHOLE_MOST
+    }
+
+    /// Begins the stage on all points, or, if that has begun or there is none, the one on the points of the groups.
+    fn begin_next_stage(&mut self) {
+        match self.corners {
+            Some((corners, starts)) if self.setups.len() > usize::from(self.has_whole()) => {
+                self.begin_stage(Some(corners), starts);
+            }
+            _ => self.begin_stage(None, self.whole),
         }
-        usize::from(on_all)
+    }
+
+    /// Returns the index of the stage of the next batch: now and then all points are explored, or one point of each
+    /// group, to find detail that grouping blurs.
+    fn next_stage(&mut self) -> usize {
+        let is_noise = is_noise(self.problem, &self.at.ends);
+        let batch = self.at.counts.batch;
+        let on_all_at = if is_noise { WHOLE_IN_NOISE } else { WHOLE_ELSE };
+        let on_all = self.has_whole() && batch % WHOLE_EVERY == on_all_at;
+        let on_corners = !is_noise && self.corners.is_some() && batch % CORNERS_EVERY == CORNERS_AT;
+        let stage = match (on_all, on_corners) {
+            (true, _) => 1,
+            (_, true) => 1 + usize::from(self.has_whole()),
+            _ => 0,
+        };
+        while self.setups.len() <= stage {
+            self.begin_next_stage();
+        }
+        stage
     }
 
     /// Sorts the ends and drops the worst. Only some of the refused ends are kept: they must not crowd out the accepted.
@@ -185,6 +213,12 @@ impl<'a> Free<'a> {
     fn accepted(&self) -> Vec<Candidate> {
         let judged = self.at.ends.iter().filter_map(|end| end.verdict.as_ref());
         judged.filter(|c| promising(self.problem, c)).cloned().collect()
+    }
+
+    /// Returns the cost of an rms error given in sizes of the target.
+    fn cost_of(&self, rms: f64) -> f64 {
+        let task = self.problem.task();
+        (rms * task.size()).powi(2) * task.weights().iter().sum::<f64>()
     }
 
     fn hits_wanted(&self) -> FreeHits {
@@ -252,13 +286,26 @@ impl Strategy for Free<'_> {
         let believed = self.within(error, SAME_OPTIMUM) >= hits.same
             || self.within(error, NEARLY) >= hits.near
             || (is_noise && self.within(error, IN_NOISE) >= NOISE_HITS);
-        let least = match self.coarse {
-            _ if is_exact => 0,
-            None => LEAST_BATCHES,
-            Some(_) if is_noise => 1,
-            Some(_) => PATIENT_BATCHES,
+        let batches = self.at.counts.batch;
+        let ripe = match self.coarse {
+            _ if is_exact => believed,
+            None => believed && batches >= LEAST_BATCHES,
+            Some(_) if is_noise && error > self.cost_of(NOISE_LEAST) => believed,
+            Some(_) => {
+                let spent = self.at.evaluations.objective;
+                let reached = self.at.reached.filter(|level| error >= level.cost.0 / LEVEL);
+                let reached = reached.unwrap_or(Level { cost: Exact(error), evaluations: spent });
+                self.at.reached = Some(reached);
+                let after = |least: u64, times: u64| spent >= least.max(times * reached.evaluations);
+                let again = self.within(error, LEVEL - 1.0);
+                let is_small = error <= self.cost_of(SMALL);
+                let many = again >= MANY_HITS && after(MANY_LEAST, LEVEL_TIMES);
+                (believed && batches >= PATIENT_BATCHES)
+                    || (!is_small && (many || (again >= LEVEL_HITS && after(LEVEL_LEAST, LEVEL_TIMES))))
+                    || (!is_small && after(QUIET_LEAST, QUIET_TIMES))
+            }
         };
-        if !((believed && self.at.counts.batch >= least) || (is_exact && self.wanted == 1)) {
+        if !(ripe || (is_exact && self.wanted == 1)) {
             return false;
         }
         let accepted = if self.wanted == 1 { Vec::new() } else { self.accepted() };

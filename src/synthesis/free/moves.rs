@@ -16,7 +16,9 @@ pub(super) fn near(problem: &Problem, end: &Start, stream: &mut Stream) -> Optio
     let size = problem.task().size();
     for (i, (value, &(low, high))) in start.design.iter_mut().zip(fit.space().bounds()).enumerate() {
         let step = normal(stream, 0.0, scale);
-        let unit = if fit.space().is_length(i) { value.abs() } else { size };
+        // An angle is moved by parts of a radian.
+        let other = if fit.space().is_angle(i) { 1.0 } else { size };
+        let unit = if fit.space().is_length(i) { value.abs() } else { other };
         *value = (*value + step * unit).max(low).min(high);
     }
     fit.settle(&start.design, &mut start.positions).then_some(start)

@@ -11,8 +11,8 @@ use crate::synthesis::atlas::Matches;
 use crate::synthesis::belief::SAME_OPTIMUM;
 use crate::synthesis::coarse::Coarse;
 use crate::synthesis::constants::free::{
-    BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, JITTERED, MATCHED, MIDDLE, MIDDLE_FIT, REASSIGNED,
-    SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
+    BATCH, DENSE_BATCHES, DENSE_MIDDLE, DENSE_SHORT, DENSE_WORTH_FINISHING, JITTERED, MATCHED, MIDDLE,
+    MIDDLE_FIT, REASSIGNED, SCREEN, SHORT, SHORT_FIT, WORTH_FINISHING, WORTH_LEADING_BACK,
 };
 use crate::synthesis::multistart::{Effort, LONG_FIT, Spender, by_merit, promise};
 use crate::synthesis::reassign::{Reassigned, reassigned};
@@ -47,7 +47,8 @@ impl Setup<'_> {
 
     /// Returns whether an end with this merit on the explored points can still matter beside the best one there.
     fn is_worth_finishing(&self, merit: f64, best: f64) -> bool {
-        !self.single || merit <= WORTH_FINISHING * best + self.exact
+        let factor = if self.finishes_apart() { DENSE_WORTH_FINISHING } else { WORTH_FINISHING };
+        !self.single || merit <= factor * best + self.exact
     }
 }
 

@@ -17,8 +17,11 @@ impl FreeState {
     pub(super) fn is_of(&self, problem: &Problem, points: usize) -> bool {
         let n = problem.task().len();
         let stages = self.stages.len();
-        let possible = stages == 1 || (stages == 2 && points != n && n <= WHOLE_MOST);
-        let mut explored = self.stages.iter().zip([points, n]);
+        let whole = (points != n && n <= WHOLE_MOST).then_some(n);
+        let corners = (points != n).then_some(points);
+        let all: Vec<usize> = [Some(points), whole, corners].into_iter().flatten().collect();
+        let possible = (1..=all.len()).contains(&stages);
+        let mut explored = self.stages.iter().zip(all);
         possible
             && self.is_counted()
             && explored.all(|(stage, n)| stage.leading.iter().all(|(_, start)| start.positions.len() == n))

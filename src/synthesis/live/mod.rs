@@ -114,7 +114,8 @@ mod tests {
     }
 
     fn searched(problem: &Problem) -> Vec<Candidate> {
-        let job = Job { name: "egg".into(), source: None, unit: None, spec: problem.spec().clone() };
+        let job =
+            Job { name: "egg".into(), source: None, unit: None, spec: problem.spec().clone(), front: None };
         let context = Context { cancel: &AtomicBool::new(false), observer: &|_| {} };
         run(&job, &context).expect("it runs").record.candidates
     }

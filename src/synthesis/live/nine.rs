@@ -59,7 +59,13 @@ mod tests {
         let first = nine.follow(&points(0.0), &cancel).expect("nine points");
         assert!(first.record.census.classes == 1442 && first.record.linkages.len() > 3);
         let moved = nine.follow(&points(0.01), &cancel).expect("nine points");
-        let job = Job { name: "n".into(), source: None, unit: None, spec: points(0.01).spec().clone() };
+        let job = Job {
+            name: "n".into(),
+            source: None,
+            unit: None,
+            spec: points(0.01).spec().clone(),
+            front: None,
+        };
         let record = run(&job, &Context { cancel: &cancel, observer: &|_| {} }).expect("it runs").record;
         let afresh = record.exact.expect("nine points");
         let counts = |c: &Census| (c.classes, c.real, c.one_circuit, c.in_order, c.free_of_defects);

@@ -385,12 +385,19 @@ impl DesignSpace {
 
     /// Clamps a linkage's pivots and lengths exactly to their bounds if rounding took them out.
     pub fn project(&self, linkage: &FourBar) -> Result<FourBar, LinkageError> {
+        self.project_off_grid(linkage, 0.0, 0.0)
+    }
+
+    /// As [`DesignSpace::project`], for numbers that were found on a grid, in parts of `size`: what lies within it of a
+    /// bound, inside or outside, was on the bound there.
+    pub fn project_off_grid(&self, linkage: &FourBar, grid: f64, size: f64) -> Result<FourBar, LinkageError> {
         let mut p = linkage.natural_coordinates();
         let snap = |value: &mut f64, (low, high): (f64, f64)| {
-            let slack = 1e-9 * (1.0 + value.abs());
-            if *value < low && low - *value <= slack {
+            let off = grid * size.max(value.abs());
+            let slack = off.max(1e-9 * (1.0 + value.abs()));
+            if *value != low && low - *value <= slack && *value - low <= off {
                 *value = low;
-            } else if *value > high && *value - high <= slack {
+            } else if *value != high && *value - high <= slack && high - *value <= off {
                 *value = high;
             }
         };

@@ -22,11 +22,12 @@ mod transmission;
 
 pub use limit::{Limit, LimitUnit};
 pub use link_ratio::DEFAULT_LINK_RATIO;
+pub use longest_max::DEFAULT_LONGEST;
 pub use transmission::TransmissionOver;
 
 use crate::mechanism::LinkageType;
 use crate::task::spec::{ClosingPolicy, DirectionPolicy, OnePolicy, OrderPolicy, ProblemSpec, TimingSpec};
-use crate::task::values::{Corners, Number, OneOrMore};
+use crate::task::values::{Corners, LengthOrAny, Number, OneOrMore};
 use crate::task::{Defect, Problem};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -243,8 +244,9 @@ pub(crate) struct RawRequire {
     pub footprint_in: Option<Corners>,
     /// The greatest diagonal of the box of every joint and P over the motion used, wherever it lies; where silent, any.
     pub extent_max: Option<Number>,
-    /// The greatest length of the longest of ground, a, b, c, d and e; where silent, any.
-    pub longest_max: Option<Number>,
+    /// The greatest length of the longest of ground, a, b, c, d and e; "any" for no limit. Where silent, 3 sizes of a
+    /// target with free timing, unless `[design]` bounds a length, extent_max is given or the pivots lie too far out; else any.
+    pub longest_max: Option<LengthOrAny>,
     /// Whether the points must be passed in order.
     #[serde(default)]
     pub order: OrderPolicy,
@@ -285,7 +287,7 @@ pub struct RequireSpec {
     /// The greatest diagonal of the box of every joint and P over the motion used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extent_max: Option<f64>,
-    /// The greatest length of the longest of ground, a, b, c, d and e.
+    /// The greatest length of the longest of ground, a, b, c, d and e; absent: any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub longest_max: Option<f64>,
     /// Whether the points must be passed in order.
@@ -335,7 +337,7 @@ impl From<RawRequire> for RequireSpec {
             pivots_in: corners(raw.pivots_in),
             footprint_in: corners(raw.footprint_in),
             extent_max: number(raw.extent_max),
-            longest_max: number(raw.longest_max),
+            longest_max: raw.longest_max.and_then(LengthOrAny::length),
             order: raw.order,
             direction: raw.direction,
             circuit: raw.circuit,

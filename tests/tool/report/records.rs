@@ -148,6 +148,8 @@ pub fn record(name: &str, path: PathSpec) -> Record {
         evaluations: Evaluations { objective: 12_345, positions: 222_210 },
         family: None,
         buildable: None,
+        picks: None,
+        front: None,
         candidates: Vec::new(),
         conflict: None,
         relaxations: Vec::new(),

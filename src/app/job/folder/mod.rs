@@ -1,6 +1,6 @@
 //! A result's folder: locked while it is written to, replaced as a whole, and never mixed with files of other origin.
 
-use crate::record::{BeyondLimits, Record};
+use crate::record::{BeyondLimits, Pick, Record};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -31,8 +31,10 @@ pub const CHECKPOINT: &str = "checkpoint.json";
 pub const LEAVES: &str = "certificate.leaves";
 /// The name of the file with the checkpoint of an unfinished certificate.
 pub const CERTIFICATE_CHECKPOINT: &str = "certificate.checkpoint";
-/// The word used instead of a rank in the file names of the buildable candidate.
-pub const BUILDABLE: &str = "buildable";
+/// The name of the table of a front.
+pub const FRONT_CSV: &str = "front.csv";
+/// The name of the page of a front.
+pub const FRONT_HTML: &str = "front.html";
 /// The largest record that is read, in bytes.
 pub const MAX_RECORD_BYTES: u64 = 256 << 20;
 
@@ -168,12 +170,12 @@ fn is_ours(name: &str) -> bool {
     let numbered = |prefix: &str, suffix: &str| {
         name.strip_prefix(prefix)
             .and_then(|rest| rest.strip_suffix(suffix))
-            .is_some_and(|n| n == BUILDABLE || is_rank(n))
+            .is_some_and(|n| Pick::named(n).is_some() || is_rank(n))
     };
     matches!(
         name,
         LOCK | RECORD | "timing.json" | "candidates.csv" | "contact-sheet.svg" | "exact.svg" | "report.html"
-    ) || [CHECKPOINT, LEAVES, CERTIFICATE_CHECKPOINT].contains(&name)
+    ) || [FRONT_CSV, FRONT_HTML, CHECKPOINT, LEAVES, CERTIFICATE_CHECKPOINT].contains(&name)
         || is_temporary(name)
         || numbered("curve-", ".csv")
         || numbered("linkage-", ".toml")

@@ -387,6 +387,8 @@ fn entries_that_no_run_writes_under_a_name_are_refused_and_stay() {
         "candidate-9.svg",
         "curve-3.csv",
         "linkage-buildable.toml",
+        "linkage-best-transmission.toml",
+        "front.html",
         "record.json",
         "report.html",
         "checkpoint.json",

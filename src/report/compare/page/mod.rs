@@ -155,6 +155,7 @@ impl Comparison {
             Column::figure("transm.", SortKey::Transmission, 3).said("worst transmission angle"),
             Column::figure("link ratio", SortKey::LinkRatio, 3),
             Column::figure("size", SortKey::Size, 4),
+            Column::figure("extent", SortKey::Extent, 4),
             Column::new("type", |_, row| Cell::words(row.entry.candidate.linkage_type.name())),
             Column::new("accepted", |_, row| Cell::words(verdict(&row.entry.candidate))),
         ];
@@ -165,8 +166,16 @@ impl Comparison {
 
     fn difference_section(&self) -> Option<Markup> {
         let reference = self.reference_label()?;
-        let heads =
-            [self.first_head("sum of squares"), "rms", "max", "to curve", "transm.", "link ratio", "size"];
+        let heads = [
+            self.first_head("sum of squares"),
+            "rms",
+            "max",
+            "to curve",
+            "transm.",
+            "link ratio",
+            "size",
+            "extent",
+        ];
         let column = |(head, key): (_, SortKey)| {
             Column::new(head, move |place, row| {
                 let percent = row.difference_percent.get(key as usize).copied().flatten();

@@ -119,13 +119,8 @@ impl SweptPosition {
     }
 
     fn at(linkage: &FourBar, assembly: AssemblyMode, angle: f64) -> Option<SweptPosition> {
-        let joints = linkage.position_with(angle, assembly).joints()?;
-        Some(SweptPosition {
-            place: Place::Anywhere,
-            angle,
-            frame: linkage.frame(angle, assembly)?,
-            joints: [joints.crank_pin, joints.follower_pin, joints.coupler_point],
-        })
+        let frame = linkage.frame(angle, assembly)?;
+        Some(SweptPosition { place: Place::Anywhere, angle, frame, joints: linkage.joints_of(&frame) })
     }
 
     /// Returns the derivative of a joint's coordinate inwards from a side, by the shape and by the crank angle.

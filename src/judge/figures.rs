@@ -1,0 +1,35 @@
+//! Figures by which linkages are compared in a front, computed from a judged candidate alone.
+
+use crate::judge::practicality::crank_of;
+use crate::judge::practicality::sensitivity::{At, sensitivity};
+use crate::judge::referee::judge;
+use crate::mechanism::FourBar;
+use crate::record::{Candidate, Figures};
+use crate::task::Problem;
+
+/// Returns the diagonal of the box of A, B, C, D and P over the motion that a candidate uses.
+pub fn extent(problem: &Problem, candidate: &Candidate) -> f64 {
+    let radians: Vec<f64> = candidate.crank_deg.iter().map(|deg| deg.to_radians()).collect();
+    let verdict = judge(problem.task(), &candidate.linkage, &radians, &candidate.t1_at);
+    let [x0, y0, x1, y1] = verdict.motion.footprint();
+    (x1 - x0).hypot(y1 - y0)
+}
+
+/// Returns the longest of ground, a, b, c, d and e.
+pub fn longest(linkage: &FourBar) -> f64 {
+    linkage.longest_link().max(linkage.crank_side()).max(linkage.follower_side())
+}
+
+/// Returns all figures of a candidate; `None` if the path has no direction at any point (every point is at a toggle).
+pub fn figures(problem: &Problem, candidate: &Candidate) -> Option<Figures> {
+    let felt = sensitivity(&candidate.linkage, &At::of_candidate(candidate), crank_of(problem))?;
+    Some(Figures {
+        rms: candidate.error.rms,
+        max: candidate.error.max,
+        transmission_deg: candidate.transmission_deg.worst,
+        extent: extent(problem, candidate),
+        longest: longest(&candidate.linkage),
+        link_ratio: candidate.link_ratio,
+        sensitivity: felt.band,
+    })
+}

@@ -1,0 +1,122 @@
+//! Fits of a known linkage under tightened limits, judged by the problem itself: the epsilon constraints of
+//! [`super::picks`] and [`super::front`].
+
+use super::Context;
+use super::constants::tightened::{EVALUATIONS, FINISH};
+use super::multistart::{Effort, judged, polish_until};
+use super::polish::{finish, reserve};
+use crate::judge::warm::start_at;
+use crate::record::{Axis, Candidate, Figures};
+use crate::task::Problem;
+use serde::{Deserialize, Serialize};
+
+/// Limits on figures beside the requirements of a problem; `None`: no limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Tighter {
+    /// The least worst transmission angle, in degrees.
+    pub(super) transmission_deg: Option<f64>,
+    /// The greatest extent.
+    pub(super) extent: Option<f64>,
+    /// The greatest length of the longest link.
+    pub(super) longest: Option<f64>,
+    /// The greatest link ratio.
+    pub(super) link_ratio: Option<f64>,
+}
+
+/// The axes that a fit can limit.
+pub(super) const LIMITED: [Axis; 4] = [Axis::Transmission, Axis::Extent, Axis::Longest, Axis::LinkRatio];
+
+impl Tighter {
+    /// Returns the place of an axis' limit; `None` for an axis that a fit cannot limit.
+    pub(super) fn place(&mut self, axis: Axis) -> Option<&mut Option<f64>> {
+        match axis {
+            Axis::Transmission => Some(&mut self.transmission_deg),
+            Axis::Extent => Some(&mut self.extent),
+            Axis::Longest => Some(&mut self.longest),
+            Axis::LinkRatio => Some(&mut self.link_ratio),
+            Axis::Rms | Axis::Max | Axis::Sensitivity => None,
+        }
+    }
+
+    /// Returns the limits with one axis limited at a value.
+    #[must_use]
+    pub(super) fn with(mut self, axis: Axis, value: f64) -> Tighter {
+        if let Some(place) = self.place(axis) {
+            *place = Some(value);
+        }
+        self
+    }
+
+    /// Returns whether a linkage with these figures keeps the limits.
+    pub(super) fn holds(&self, figures: &Figures) -> bool {
+        let most = |value: f64, limit: Option<f64>| limit.is_none_or(|limit| value <= limit * (1.0 + 1e-9));
+        self.transmission_deg.is_none_or(|least| figures.transmission_deg >= least - 1e-7)
+            && most(figures.extent, self.extent)
+            && most(figures.longest, self.longest)
+            && most(figures.link_ratio, self.link_ratio)
+    }
+
+    /// Returns the problem under these limits and its own, the tighter of both.
+    pub(super) fn of(&self, problem: &Problem) -> Option<Problem> {
+        let mut spec = problem.spec().clone();
+        let require = &mut spec.require;
+        let least = |own: Option<f64>, limit: Option<f64>| match (own, limit) {
+            (Some(own), Some(limit)) => Some(own.min(limit)),
+            (own, limit) => own.or(limit),
+        };
+        if let Some(limit) = self.transmission_deg {
+            let limit = limit.clamp(0.0, 90.0);
+            require.transmission_deg_min =
+                Some(require.transmission_deg_min.map_or(limit, |own| own.max(limit)));
+        }
+        require.extent_max = least(require.extent_max, self.extent);
+        require.longest_max = least(require.longest_max, self.longest);
+        require.link_ratio_max =
+            self.link_ratio.map_or(require.link_ratio_max, |l| require.link_ratio_max.min(l));
+        Problem::new(spec).ok()
+    }
+}
+
+/// The end of a fit under tightened limits.
+pub(super) struct Tightened {
+    /// The candidate, judged by the problem itself; `None` if there is none.
+    pub(super) candidate: Option<Candidate>,
+    /// The evaluations used.
+    pub(super) evaluations: u64,
+}
+
+/// Fits from a candidate under the limits of `tight`, and judges the end by the context's own problem. The fit ends as
+/// soon as its weighted sum of squares is at most `enough`, or after at most `evaluations` evaluations. If tolerances are asked for, or the largest deviation is
+/// the objective, the end is polished for them, the longer the greater the effort.
+pub(super) fn fitted(
+    context: Context<'_>,
+    tight: &Problem,
+    from: &Candidate,
+    effort: Effort,
+    (enough, evaluations): (f64, u64),
+) -> Tightened {
+    let mut out = Tightened { candidate: None, evaluations: 0 };
+    if evaluations == 0 || context.stopped() {
+        return out;
+    }
+    let Some(start) = start_at(tight, from) else { return out };
+    let within = context.of(tight).silent();
+    let fit = polish_until(within, start, effort, evaluations.min(EVALUATIONS), enough);
+    out.evaluations = fit.evaluations;
+    let Some(mut end) = fit.end else { return out };
+    out.candidate = judged(context.problem, &end);
+    let is_accepted = out.candidate.as_ref().is_some_and(|c| c.accepted);
+    let deviations = reserve(tight, u64::MAX) > 0;
+    let max = tight.spec().solve.objective == crate::task::spec::Objective::MaxDeviation;
+    if deviations && (max || !is_accepted) && !context.stopped() {
+        let left = evaluations.saturating_sub(out.evaluations);
+        let polished = finish(within, &end, (effort.steps as u64 / 4).min(FINISH).min(left));
+        out.evaluations += polished.evaluations;
+        if let Some(better) = polished.end {
+            end = better;
+            out.candidate = judged(context.problem, &end).or(out.candidate);
+        }
+    }
+    out
+}
