@@ -45,7 +45,7 @@ pub struct Verdict {
     /// Every defect, whether it is allowed or not.
     pub defects: Vec<Defect>,
     /// The direction: +1 if the crank (or the circuit's parameter) runs counter-clockwise through the points, -1 if
-    /// clockwise.
+    /// clockwise, 0 if it stands still at one place of the motion.
     pub direction: f64,
     /// Whether the motion comes back to the first point of a target that ends there only by reversing.
     pub to_and_fro: bool,
@@ -163,7 +163,9 @@ pub fn judge(
     } else if to_and_fro && comes_back != Return::Any {
         defects.push(Defect::to_and_fro());
     }
-    Verdict { defects, direction: course.direction, to_and_fro, motion }
+    let moves = course.range[1] - course.range[0] > ORDER_TOLERANCE;
+    let direction = if moves { course.direction } else { 0.0 };
+    Verdict { defects, direction, to_and_fro, motion }
 }
 
 /// Returns the parameter of the circuit at each point: the crank angle, or psi of the arc on which the input rocks.

@@ -492,6 +492,20 @@ fn the_motion_passes_the_points_and_stays_between_them() {
 }
 
 #[test]
+fn a_crank_that_stands_still_has_no_direction() {
+    for (l, _) in of_every_type(7, 2) {
+        let directions = |angles: &[f64]| {
+            let places: Vec<_> = angles.iter().map(|angle| (*angle, AssemblyMode::Plus)).collect();
+            verdict(&free(3), &l, &places).direction
+        };
+        let arc = l.mobility().arc(l.mobility().branch(0.5, AssemblyMode::Plus).circuit);
+        let place = arc.map_or(0.5, |arc| arc.middle);
+        assert_eq!(directions(&[place; 3]), 0.0);
+        assert_eq!(directions(&[place, place + 0.01, place + 0.02]), 1.0);
+    }
+}
+
+#[test]
 fn a_rocking_crank_that_keeps_its_order_only_through_toggles_has_a_branch_defect() {
     // The points could only be passed in this order by way of both toggles and the other branch.
     let linkage = FourBar::new(NaturalCoordinates {

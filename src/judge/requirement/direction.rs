@@ -6,10 +6,16 @@ use crate::task::spec::DirectionPolicy;
 pub(super) fn judged(judged: &Judged<'_>) -> Option<Finding> {
     let wants = match judged.require().direction {
         DirectionPolicy::Any => return None,
-        DirectionPolicy::Ccw => true,
-        DirectionPolicy::Cw => false,
+        DirectionPolicy::Ccw => "ccw",
+        DirectionPolicy::Cw => "cw",
     };
-    let word = |ccw: bool| if ccw { "ccw" } else { "cw" };
-    let has = judged.verdict.direction > 0.0;
-    Some(Finding::word(word(has), word(wants), has == wants))
+    let direction = judged.verdict.direction;
+    let has = if direction == 0.0 {
+        "none"
+    } else if direction > 0.0 {
+        "ccw"
+    } else {
+        "cw"
+    };
+    Some(Finding::word(has, wants, has == wants))
 }

@@ -383,9 +383,7 @@ impl Look<'_> {
         }
         // Points in any order have no plain direction.
         let one_way = if timed { turns } else { require.order == OrderPolicy::Required };
-        // A crank that stands still turns neither way.
-        let moves = high - low > 1e-6;
-        if require.direction != DirectionPolicy::Any && one_way && moves {
+        if require.direction != DirectionPolicy::Any && one_way {
             let rises = deg[deg.len() - 1] >= deg[0];
             if rises != (require.direction == DirectionPolicy::Ccw) {
                 self.say(format!("the crank turns the wrong way: {deg:?}"));
