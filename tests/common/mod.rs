@@ -14,6 +14,11 @@ pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
+/// Whether tests are to look as long as `.ci/run` does: `THOROUGH=1`.
+pub fn is_thorough() -> bool {
+    std::env::var_os("THOROUGH").is_some()
+}
+
 /// Every file below `problems/` with this extension.
 pub fn shipped(extension: &str) -> Vec<PathBuf> {
     let mut files: Vec<PathBuf> = ["literature", "examples", "exact", "linkages", "seeds"]

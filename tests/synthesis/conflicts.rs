@@ -1,6 +1,6 @@
 //! When nothing is acceptable: what conflicts is named, and every change that is proposed works when it is typed.
 
-use crate::common::{bytes, job, literature, load, root, run_on};
+use crate::common::{bytes, is_thorough, job, literature, load, root, run_on};
 use linkwright::internals::app::job::run::{Context, run};
 use linkwright::internals::files::problem_file::ProblemFile;
 use linkwright::internals::judge::verify::verify;
@@ -63,7 +63,8 @@ fn impossible() -> Vec<(PathBuf, Set<'static>, &'static str)> {
 }
 
 fn with(path: &std::path::Path, set: &[(&str, &str)]) -> ProblemFile {
-    load(path, &[&[("solve.evaluations", "12000")], set].concat())
+    let evaluations = if is_thorough() { "40000" } else { "12000" };
+    load(path, &[&[("solve.evaluations", evaluations)], set].concat())
 }
 
 /// How many changes are proposed for impossible problems; each is typed and ends with an accepted candidate.

@@ -1,6 +1,6 @@
 //! Machines are switched off and disks are full: no torn file, no lost result, and an error that says what to do.
 
-use crate::common::root;
+use crate::common::{is_thorough, root};
 use linkwright::internals::app::job::checkpoint;
 use linkwright::internals::app::job::folder::{ResultsFolder, read_record};
 use linkwright::internals::numbers::arithmetic::streams::{Stream, below, stream, unit};
@@ -13,8 +13,11 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_linkwright");
-/// How many processes are killed.
-const KILLS: usize = 80;
+/// Returns how many processes are killed.
+fn kills_wanted() -> usize {
+    if is_thorough() { 200 } else { 80 }
+}
+
 /// A job of some milliseconds: searching and writing take about the same time.
 const PROBLEM: &str = "format = 1
 name = \"small\"
@@ -99,9 +102,10 @@ fn a_search_that_is_killed_at_any_instant_leaves_a_whole_result_and_can_be_run_a
     let mut random: Stream = stream(7, 1);
     let (mut kills, mut tries) = (0, 0);
     let mut instants = [0_usize; 3];
-    while kills < KILLS {
+    let wanted = kills_wanted();
+    while kills < wanted {
         tries += 1;
-        assert!(tries < 5 * KILLS, "{kills} of {tries} processes were killed");
+        assert!(tries < 5 * wanted, "{kills} of {tries} processes were killed");
         if below(&mut random, 5) == 0 && place.exists() {
             fs::remove_dir_all(&place).expect("it is ours");
         }
@@ -163,17 +167,24 @@ fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
     let whole = settled(visible(&folder.path().join("whole")));
     let place = folder.path().join("r");
     let mut random: Stream = stream(11, 1);
-    let (mut kills, mut with_checkpoint, mut ends, mut tries) = (0, 0, 0, 0);
-    while kills < KILLS || ends == 0 {
+    let (mut kills, mut with_checkpoint, mut ends, mut tries, mut unfinished) = (0, 0, 0, 0, 0);
+    let wanted = kills_wanted();
+    while kills < wanted || ends == 0 {
         tries += 1;
-        assert!(tries < 5 * KILLS, "{kills} kills, {ends} ends");
+        assert!(tries < 5 * wanted, "{kills} kills, {ends} ends");
         // A run that is killed goes on, on one thread or two, until it comes to its end.
         let mut command = long_job(folder.path(), "r", 1 + below(&mut random, 2));
         command.arg("--resume");
-        // The last one is left alone.
-        let after =
-            if kills < KILLS { time.mul_f64(0.5 * unit(&mut random)) } else { Duration::from_secs(60) };
-        let is_killed = if kills < KILLS {
+        // The last one is left alone. A run that has not ended for long gets more time: the machine may be slower than
+        // it was for the whole run.
+        let patience = 1.0 + f64::from(unfinished) / 8.0;
+        unfinished += 1;
+        let after = if kills < wanted {
+            time.mul_f64(0.5 * patience * unit(&mut random))
+        } else {
+            Duration::from_secs(60)
+        };
+        let is_killed = if kills < wanted {
             killed(command, after)
         } else {
             assert!(matches!(command.status().expect("it runs").code(), Some(0 | 1)));
@@ -194,12 +205,12 @@ fn a_search_killed_again_and_again_goes_on_to_the_bytes_of_an_unbroken_one() {
             }
             continue;
         }
-        ends += 1;
+        (ends, unfinished) = (ends + 1, 0);
         assert!(!place.join("checkpoint.json").exists() && !place.join(".lock").exists());
         assert_eq!(settled(visible(&place)), whole, "after {kills} kills");
         fs::remove_dir_all(&place).expect("it is ours");
     }
-    assert!(with_checkpoint > KILLS / 2, "{with_checkpoint} of {kills}");
+    assert!(with_checkpoint > wanted / 2, "{with_checkpoint} of {kills}");
     assert!(ends >= 2, "{ends}");
 }
 
